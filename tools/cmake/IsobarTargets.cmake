@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# One way to declare a library, a program and a test, so that warnings and sanitizers are the same everywhere.
+
+add_library(isobar_options INTERFACE)
+target_compile_options(isobar_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wformat=2 -Werror)
+target_include_directories(isobar_options INTERFACE ${CMAKE_SOURCE_DIR})
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12 warns falsely inside Eigen and fmt at -O2.
+  target_compile_options(isobar_options INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow)
+endif()
+if(ISOBAR_SANITIZE)
+  target_compile_options(isobar_options INTERFACE -fsanitize=${ISOBAR_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(isobar_options INTERFACE -fsanitize=${ISOBAR_SANITIZE})
+  if(ISOBAR_SANITIZE MATCHES "undefined")
+    target_compile_options(isobar_options INTERFACE -fno-sanitize-recover=all)
+  endif()
+  if(ISOBAR_SANITIZE STREQUAL "thread")
+    target_compile_options(isobar_options INTERFACE -Wno-tsan)
+  endif()
+endif()
+if(ISOBAR_FUZZ)
+  target_compile_options(isobar_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+
+# isobar_library(NAME DEPENDS lib…): static library of every .cpp in the current folder (not below it).
+function(isobar_library name)
+  cmake_parse_arguments(arg "" "" "DEPENDS;PRIVATE_DEPENDS;SOURCES" ${ARGN})
+  if(NOT arg_SOURCES)
+    file(GLOB arg_SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  endif()
+  if(arg_SOURCES)
+    add_library(${name} STATIC ${arg_SOURCES})
+    target_link_libraries(${name} PUBLIC Eigen3::Eigen ${arg_DEPENDS} PRIVATE isobar_options ${arg_PRIVATE_DEPENDS})
+    target_include_directories(${name} PUBLIC ${CMAKE_SOURCE_DIR})
+  else()
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE Eigen3::Eigen ${arg_DEPENDS})
+    target_include_directories(${name} INTERFACE ${CMAKE_SOURCE_DIR})
+  endif()
+endfunction()
+
+# isobar_program(NAME SOURCES … DEPENDS …)
+function(isobar_program name)
+  cmake_parse_arguments(arg "" "" "DEPENDS;SOURCES" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE isobar_options ${arg_DEPENDS})
+endfunction()
+
+# isobar_test(NAME LABEL unit|integration SOURCES … DEPENDS …): one doctest program, one CTest entry.
+# The sources name no main(); tests/test_main.cpp has the only one.
+function(isobar_test name)
+  cmake_parse_arguments(arg "" "LABEL" "DEPENDS;SOURCES" ${ARGN})
+  if(NOT arg_LABEL)
+    set(arg_LABEL unit)
+  endif()
+  add_executable(${name} ${arg_SOURCES} ${CMAKE_SOURCE_DIR}/tests/test_main.cpp)
+  target_link_libraries(${name} PRIVATE isobar_options Eigen3::Eigen ${arg_DEPENDS})
+  target_compile_definitions(${name} PRIVATE
+    ISOBAR_SOURCE_DIR="${CMAKE_SOURCE_DIR}" ISOBAR_SHARED_DATA="${CMAKE_SOURCE_DIR}/../shared/data")
+  add_test(NAME ${name} COMMAND ${name})
+  set_tests_properties(${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 300)
+endfunction()

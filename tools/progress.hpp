@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+
+namespace isobar::tools {
+
+/// A progress bar on stderr while a person watches; silent when stderr is no terminal.
+class Progress {
+ public:
+  explicit Progress(std::string label);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// fraction: 0 … 1; redraws ten times a second at most.
+  void update(double fraction);
+  /// Draws the full bar and ends the line. Called by the destructor if not before.
+  void finish();
+
+ private:
+  void draw(double fraction);
+
+  std::string label_;
+  bool watched_;
+  bool finished_ = false;
+  std::chrono::steady_clock::time_point started_;
+  std::chrono::steady_clock::time_point drawn_;
+};
+
+}  // namespace isobar::tools
