@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/prior/prior_history.hpp"
+
+#include <algorithm>
+
+namespace isobar {
+namespace {
+
+constexpr double kSecondsPerNs = 1e-9;
+
+double lerp(double a, double b, double f) { return a + f * (b - a); }
+
+Eigen::Vector3d lerp(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double f) { return a + f * (b - a); }
+
+/// Rotation by the angle |w| about w (Rodrigues).
+Eigen::Quaterniond rotation_of(const Eigen::Vector3d& angle_rad) {
+  const double angle = angle_rad.norm();
+  if (angle < 1e-12) return Eigen::Quaterniond::Identity();
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, angle_rad / angle));
+}
+
+}  // namespace
+
+Prior interpolate(const Prior& before, const Prior& after, std::int64_t stamp_ns) {
+  const std::int64_t span_ns = after.stamp_ns - before.stamp_ns;
+  const double f =
+      span_ns > 0 ? static_cast<double>(stamp_ns - before.stamp_ns) / static_cast<double>(span_ns) : 1.0;
+  Prior out = after;
+  out.stamp_ns = stamp_ns;
+  const Eigen::Quaterniond q_before(before.T_odom_base.linear());
+  const Eigen::Quaterniond q_after(after.T_odom_base.linear());
+  out.T_odom_base.linear() = q_before.slerp(f, q_after).normalized().toRotationMatrix();
+  out.T_odom_base.translation() = lerp(Eigen::Vector3d(before.T_odom_base.translation()),
+                                       Eigen::Vector3d(after.T_odom_base.translation()), f);
+  out.height_m = lerp(before.height_m, after.height_m, f);
+  out.height_variance_m2 = lerp(before.height_variance_m2, after.height_variance_m2, f);
+  out.height_source = std::max(before.height_source, after.height_source);
+  out.v_base_m_s = lerp(before.v_base_m_s, after.v_base_m_s, f);
+  out.w_base_rad_s = lerp(before.w_base_rad_s, after.w_base_rad_s, f);
+  out.roll_pitch_variance_rad2 = lerp(before.roll_pitch_variance_rad2, after.roll_pitch_variance_rad2, f);
+  out.yaw_rate_variance_rad2_s2 = lerp(before.yaw_rate_variance_rad2_s2, after.yaw_rate_variance_rad2_s2, f);
+  out.velocity_variance_m2_s2 = lerp(before.velocity_variance_m2_s2, after.velocity_variance_m2_s2, f);
+  out.attitude_valid = before.attitude_valid && after.attitude_valid;
+  out.velocity_valid = before.velocity_valid && after.velocity_valid;
+  out.standing_still = before.standing_still && after.standing_still;
+  return out;
+}
+
+Prior extrapolate(const Prior& from, std::int64_t stamp_ns) {
+  const double dt_s = static_cast<double>(stamp_ns - from.stamp_ns) * kSecondsPerNs;
+  Prior out = from;
+  out.stamp_ns = stamp_ns;
+  // Constant twist, exact in rotation; translation with the orientation half-way (second order).
+  const Eigen::Quaterniond half_turn = rotation_of(from.w_base_rad_s * (0.5 * dt_s));
+  const Eigen::Vector3d step = from.T_odom_base.linear() * (half_turn * (from.v_base_m_s * dt_s));
+  out.T_odom_base.translation() += step;
+  const Eigen::Quaterniond turn = (half_turn * half_turn).normalized();
+  out.T_odom_base.linear() = from.T_odom_base.linear() * turn.toRotationMatrix();
+  out.height_m += step.z();
+  out.height_variance_m2 += dt_s * dt_s * from.velocity_variance_m2_s2;
+  return out;
+}
+
+PriorHistory::PriorHistory(std::size_t capacity, std::int64_t max_extrapolation_ns)
+    : ring_(std::max<std::size_t>(capacity, 2)),
+      max_extrapolation_ns_(std::max<std::int64_t>(max_extrapolation_ns, 0)) {}
+
+void PriorHistory::add(const Prior& prior) {
+  if (count_ > 0 && prior.stamp_ns <= newest().stamp_ns) return;
+  if (count_ < ring_.size()) {
+    ring_[(first_ + count_) % ring_.size()] = prior;
+    ++count_;
+    return;
+  }
+  ring_[first_] = prior;
+  first_ = (first_ + 1) % ring_.size();
+}
+
+void PriorHistory::clear() {
+  first_ = 0;
+  count_ = 0;
+}
+
+bool PriorHistory::covers(std::int64_t stamp_ns) const {
+  return count_ > 0 && stamp_ns >= oldest().stamp_ns && stamp_ns - newest().stamp_ns <= max_extrapolation_ns_;
+}
+
+bool PriorHistory::at(std::int64_t stamp_ns, Prior& out) const {
+  if (!covers(stamp_ns)) return false;
+  if (stamp_ns >= newest().stamp_ns) {
+    out = extrapolate(newest(), stamp_ns);
+    return true;
+  }
+  // First prior that is later than stamp_ns: it exists, and is not the oldest.
+  std::size_t low = 1;
+  std::size_t high = count_ - 1;
+  while (low < high) {
+    const std::size_t middle = low + (high - low) / 2;
+    if (nth(middle).stamp_ns > stamp_ns) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  out = interpolate(nth(low - 1), nth(low), stamp_ns);
+  return true;
+}
+
+}  // namespace isobar
