@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every topic in shared memory: its name, what it carries, how deep a reader's queue is. All queues drop the
+// oldest message when full and count it: a dead reader never holds up a writer.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+#include <type_traits>
+
+#include "core/estimates.hpp"
+#include "core/samples.hpp"
+
+namespace isobar::ipc {
+
+/// The local map, thinned for viewers. About 1 MiB.
+struct MapCloud {
+  static constexpr std::uint32_t kMaxPoints = 65'536;
+
+  std::int64_t stamp_ns = 0;      ///< time of the last scan that is in the map
+  std::uint32_t sequence = 0;     ///< counts the published maps
+  std::uint32_t point_count = 0;  ///< points[0 … point_count-1] are valid
+  ScanPoint points[kMaxPoints];   // NOLINT(modernize-avoid-c-arrays): p_map; time and ring carry nothing
+
+  MapCloud() {}  // NOLINT: user-written, so that loaning a chunk does not zero a megabyte
+};
+
+/// How well a part of the program is, with the meaning of diagnostic_msgs/DiagnosticStatus.
+enum class HealthLevel : std::uint8_t { kOk = 0, kWarning = 1, kError = 2, kStale = 3 };
+
+/// One line of health. The texts end with a zero byte.
+struct HealthEntry {
+  static constexpr std::size_t kNameBytes = 40;
+  static constexpr std::size_t kMessageBytes = 120;
+
+  char name[kNameBytes];  // NOLINT(modernize-avoid-c-arrays): what it is about, such as "lidar/packets_lost"
+  char message[kMessageBytes];  // NOLINT(modernize-avoid-c-arrays): one sentence; may be empty
+  double value;                 ///< the figure, in the unit that the name or the message says
+  HealthLevel level;
+};
+
+/// The health of isobard, once a second.
+struct HealthReport {
+  static constexpr std::uint32_t kMaxEntries = 48;
+
+  std::int64_t stamp_ns = 0;
+  std::uint32_t entry_count = 0;     ///< entries[0 … entry_count-1] are valid
+  HealthEntry entries[kMaxEntries];  // NOLINT(modernize-avoid-c-arrays): payload in shared memory
+
+  HealthReport() {}  // NOLINT: user-written, so that loaning a chunk does not zero it all
+
+  /// Appends an entry; texts that are too long are cut. False, and nothing happens, when the report is full.
+  bool add(std::string_view name, HealthLevel level, std::string_view message, double value) noexcept {
+    if (entry_count >= kMaxEntries) {
+      return false;
+    }
+    HealthEntry& entry = entries[entry_count++];
+    copy_text(name, entry.name, HealthEntry::kNameBytes);
+    copy_text(message, entry.message, HealthEntry::kMessageBytes);
+    entry.value = value;
+    entry.level = level;
+    return true;
+  }
+
+ private:
+  static void copy_text(std::string_view from, char* to, std::size_t capacity) noexcept {
+    const std::size_t length = from.size() < capacity - 1 ? from.size() : capacity - 1;
+    std::memcpy(to, from.data(), length);
+    std::memset(to + length, 0, capacity - length);
+  }
+};
+
+/// A topic: one row of the table below. One process publishes it, any number read it.
+template <class Payload>
+struct Topic {
+  static_assert(std::is_trivially_destructible_v<Payload>);
+  const char* name;       ///< at most 100 characters
+  std::uint32_t depth;    ///< messages that wait for a reader at most, 1 … 256
+  std::uint32_t history;  ///< messages that a late reader still gets, 0 … 16
+};
+
+namespace topics {
+
+inline constexpr Topic<Scan> kLidarScan{"lidar/scan", 4, 0};
+inline constexpr Topic<ImuSample> kImu{"imu", 256, 0};
+inline constexpr Topic<PressureSample> kBarometer{"barometer", 256, 0};
+inline constexpr Topic<PressureSample> kBaseBarometer{"base_barometer", 256, 0};
+inline constexpr Topic<WheelSample> kWheel{"wheel", 256, 0};
+inline constexpr Topic<Prior> kPrior{"prior", 64, 0};
+inline constexpr Topic<PoseEstimate> kPose{"pose", 16, 0};
+inline constexpr Topic<RegisteredScan> kRegisteredScan{"registered_scan", 4, 0};
+inline constexpr Topic<MapCloud> kMapCloud{"map_cloud", 1, 1};
+inline constexpr Topic<HealthReport> kHealth{"health", 4, 1};
+
+}  // namespace topics
+
+/// One size of chunk in shared memory. A message takes the smallest that fits it.
+struct ChunkPool {
+  std::uint32_t chunk_bytes;
+  std::uint32_t chunk_count;
+};
+
+/// Sized so that every queue of the table can be full for three readers at once, with what they hold.
+inline constexpr ChunkPool kChunkPools[] = {
+    // NOLINT(modernize-avoid-c-arrays)
+    {256, 4096},        // samples
+    {1024, 512},        // priors, poses
+    {16 * 1024, 32},    // health
+    {1200 * 1024, 32},  // scans, registered scans, maps
+};
+
+}  // namespace isobar::ipc
