@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The one place that says which sample values can be real. Files, datagrams and device drivers all ask here,
+// so that a value refused in a recording is refused live as well.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "core/samples.hpp"
+
+namespace isobar {
+
+/// Limits outside of which a value is a fault of the sensor or of the transport, not a measurement.
+struct PlausibleRange {
+  double lowest;
+  double highest;
+  /// False for NaN and infinities as well.
+  [[nodiscard]] constexpr bool holds(double value) const { return value >= lowest && value <= highest; }
+};
+
+/// Absolute pressure [Pa]: 10 kPa is 16 km of height, 120 kPa is 1.4 km below the sea (deepest mines end at 4
+/// km, but are ventilated); barometers for robots measure 30 … 120 kPa.
+inline constexpr PlausibleRange kPlausiblePressurePa{10e3, 120e3};
+/// Temperature of a sensor [degrees Celsius]: polar night to the limit of automotive silicon.
+inline constexpr PlausibleRange kPlausibleTemperatureC{-60.0, 100.0};
+/// Angular rate, each axis [rad/s]: MEMS gyros of robots saturate at 2000 deg/s = 34.9 rad/s.
+inline constexpr PlausibleRange kPlausibleGyroRadS{-40.0, 40.0};
+/// Specific force, each axis [m/s^2]: MEMS accelerometers of robots saturate at 16 … 40 g.
+inline constexpr PlausibleRange kPlausibleAccelMS2{-400.0, 400.0};
+/// Speed from wheels, each axis [m/s].
+inline constexpr PlausibleRange kPlausibleWheelMS{-20.0, 20.0};
+/// Yaw rate from wheels [rad/s]: no faster than the gyro can follow.
+inline constexpr PlausibleRange kPlausibleWheelRadS{-40.0, 40.0};
+/// Norm of an attitude quaternion as printed with few decimals; it is normalised afterwards.
+inline constexpr PlausibleRange kPlausibleQuaternionNorm{0.9, 1.1};
+/// Stamps [ns since 1970] lie between 0 and the year 2200; int64 overflows in 2262, and sums of stamps must
+/// not.
+inline constexpr std::int64_t kPlausibleStampLowestNs = 0;
+inline constexpr std::int64_t kPlausibleStampHighestNs = 7'258'118'400LL * 1'000'000'000LL;
+
+/// Which rule a sample breaks, as a text that never dies; nullptr when the sample is plausible.
+[[nodiscard]] inline const char* implausibility(const ImuSample& sample) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!kPlausibleGyroRadS.holds(sample.gyro_rad_s[axis])) {
+      return "angular rate must lie within -40 … 40 rad/s";
+    }
+    if (!kPlausibleAccelMS2.holds(sample.accel_m_s2[axis])) {
+      return "specific force must lie within -400 … 400 m/s^2";
+    }
+  }
+  if (sample.has_attitude && !kPlausibleQuaternionNorm.holds(sample.q_world_imu.norm())) {
+    return "attitude quaternion must have norm 1";
+  }
+  return nullptr;
+}
+
+/// The temperature may be NaN: a sensor without one.
+[[nodiscard]] inline const char* implausibility(const PressureSample& sample) {
+  if (!kPlausiblePressurePa.holds(sample.pressure_pa)) {
+    return "pressure must lie within 10000 … 120000 Pa";
+  }
+  if (!std::isnan(sample.temperature_c) && !kPlausibleTemperatureC.holds(sample.temperature_c)) {
+    return "temperature must lie within -60 … 100 degrees C";
+  }
+  return nullptr;
+}
+
+[[nodiscard]] inline const char* implausibility(const WheelSample& sample) {
+  if (!kPlausibleWheelMS.holds(sample.vx_m_s) || !kPlausibleWheelMS.holds(sample.vy_m_s)) {
+    return "wheel speed must lie within -20 … 20 m/s";
+  }
+  if (!kPlausibleWheelRadS.holds(sample.wz_rad_s)) {
+    return "wheel yaw rate must lie within -40 … 40 rad/s";
+  }
+  return nullptr;
+}
+
+[[nodiscard]] inline const char* implausible_stamp(std::int64_t stamp_ns) {
+  const bool plausible = stamp_ns >= kPlausibleStampLowestNs && stamp_ns <= kPlausibleStampHighestNs;
+  return plausible ? nullptr : "stamp must lie between the years 1970 and 2200";
+}
+
+}  // namespace isobar

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "core/samples.hpp"
+#include "core/time/clock_anchor.hpp"
+#include "drivers/velodyne/packet_format.hpp"
+
+namespace isobar::velodyne {
+
+struct VelodyneConfig {
+  Model model = Model::kVlp16;
+  /// Returns nearer than this are dropped [m], 0 … 10: housing and mount of the sensor, 0 keeps all.
+  double min_range_m = 0.3;
+  /// Returns farther than this are dropped [m], up to 131 (16 bits of 2 mm).
+  double max_range_m = 131.0;
+  /// Sector in which the sensor sees the robot itself [deg], azimuth clockwise from above as the packet
+  /// counts, from start to end, 0 … 360, may pass 0. Equal values: no sector is dropped.
+  double mask_start_deg = 0.0;
+  double mask_end_deg = 0.0;
+};
+
+enum class DecodeStatus : std::uint8_t {
+  kOk,          ///< decoded
+  kPosition,    ///< a position packet: no points, nothing wrong
+  kTruncated,   ///< shorter than a data packet
+  kOversized,   ///< longer than a data packet
+  kGarbage,     ///< right size, but a block flag, an azimuth or the return mode is impossible
+  kWrongModel,  ///< of another model than configured: see wrong_model_message()
+  kDuplicate,   ///< seen already
+};
+
+struct DecodeResult {
+  DecodeStatus status = DecodeStatus::kOk;
+  /// The scan given to add_packet() is complete: publish it and lend another one to the next call.
+  bool scan_complete = false;
+};
+
+/// Counters since the start; one writer.
+struct VelodyneCounters {
+  std::uint64_t packets = 0;  ///< data packets decoded
+  std::uint64_t position = 0;
+  std::uint64_t truncated = 0;
+  std::uint64_t oversized = 0;
+  std::uint64_t garbage = 0;
+  std::uint64_t wrong_model = 0;
+  std::uint64_t duplicated = 0;
+  std::uint64_t reordered = 0;    ///< decoded all the same, into the scan that is open
+  std::uint64_t too_late = 0;     ///< reordered by so much that no open scan can hold them: not decoded
+  std::uint64_t lost = 0;         ///< missing, from the gaps in the sensor's time
+  std::uint64_t clock_steps = 0;  ///< the sensor's or the host's clock was set
+  std::uint64_t returns = 0;      ///< points handed out
+  std::uint64_t scans = 0;        ///< completed
+};
+
+/// Decodes Velodyne data packets into scans. Pure: no I/O, no clock, no allocation after construction.
+///
+/// The caller owns the memory of the scans. Every call names the scan that is being filled; the decoder
+/// resets it at the start of a revolution. When a packet closes a revolution, its points of the next
+/// revolution wait inside the decoder for the next call:
+///
+///     Scan* scan = loan();
+///     for (each packet) {
+///       if (decoder.add_packet(payload, stamp_ns, *scan).scan_complete) { publish(scan); scan = loan(); }
+///     }
+///     if (decoder.flush(*scan)) { publish(scan); }
+///
+/// Points are in the sensor's frame (x at azimuth 0, y left, z up; recording-format.md). Within one scan
+/// times come from the sensor's clock alone; Scan::stamp_ns is anchored to the host's clock by ClockAnchor. A
+/// scan ends where the azimuth passes 0, after a gap of about a turn, when the sensor's clock steps, or when
+/// it is full; no point is lost.
+class VelodyneDecoder {
+ public:
+  explicit VelodyneDecoder(const VelodyneConfig& config);
+
+  /// payload: the UDP payload. host_stamp_ns: when the host received it, robot clock.
+  DecodeResult add_packet(std::span<const std::uint8_t> payload, std::int64_t host_stamp_ns, Scan& current);
+
+  /// Ends the open revolution. True if `current` now holds a scan.
+  bool flush(Scan& current);
+
+  [[nodiscard]] const VelodyneCounters& counters() const { return counters_; }
+  /// Names both models, for the status: "packets of HDL-32E (product id 0x21), but VLP-16 is configured".
+  [[nodiscard]] std::string wrong_model_message() const;
+
+ private:
+  struct Packet;
+  struct Spilled {
+    ScanPoint point;  // time_4us unused
+    std::int64_t device_ns;
+  };
+
+  DecodeStatus inspect(std::span<const std::uint8_t> payload, Packet& packet);
+  bool seen(const Packet& packet);
+  void account_gap(const Packet& packet);
+  [[nodiscard]] bool must_cut_before(const Packet& packet, bool stepped) const;
+  void decode_block(const Packet& packet, int block, bool into_spill, Scan& current);
+  void emit(const ScanPoint& point, std::int64_t device_ns, bool into_spill, Scan& current);
+  void open(std::int64_t device_ns, Scan& current);
+  void open_from_spill(Scan& current);
+  void make_room_before(std::int64_t device_ns, Scan& current);
+  void complete(Scan& current);
+
+  VelodyneConfig config_;
+  const ModelTraits& traits_;
+  std::array<float, 32> cos_elevation_{};
+  std::array<float, 32> sin_elevation_{};
+  std::uint16_t min_count_ = 0;
+  std::uint16_t max_count_ = 0;
+  std::uint32_t mask_start_ = 0;
+  std::uint32_t mask_width_ = 0;
+  std::array<float, kFullTurn> cos_azimuth_{};
+  std::array<float, kFullTurn> sin_azimuth_{};
+
+  ClockAnchor anchor_;
+  VelodyneCounters counters_;
+  std::uint8_t wrong_product_id_ = 0;
+
+  struct Identity {
+    std::uint32_t timestamp_us = 0;
+    std::uint32_t azimuth = 0;
+    bool used = false;
+  };
+  std::array<Identity, 32> recent_{};
+  std::size_t recent_next_ = 0;
+
+  bool have_last_ = false;
+  std::int64_t last_device_ns_ = 0;  // of the newest packet
+  std::uint32_t last_azimuth_ = 0;   // of its last block
+  double azimuth_rate_ = 0.0;        // [0.01 deg / ns]
+
+  bool scan_open_ = false;
+  std::int64_t scan_start_device_ns_ = 0;
+  std::int64_t scan_end_device_ns_ = 0;
+  std::uint32_t sequence_ = 0;
+  std::uint32_t lost_in_scan_ = 0;
+  std::array<Spilled, kBlocks * kChannels> spill_{};
+  std::size_t spill_count_ = 0;
+  bool spill_open_ = false;
+  std::int64_t spill_start_device_ns_ = 0;
+  std::int64_t spill_end_device_ns_ = 0;
+};
+
+}  // namespace isobar::velodyne
