@@ -21,6 +21,11 @@ namespace isobar::ipc {
 /// Faults that the shared-memory library reported and survived, since the start of this process.
 [[nodiscard]] std::uint64_t library_fault_count() noexcept;
 
+/// What is done instead of ending the process with code 69 when the library reports a fault that it cannot
+/// survive. The action must not return and must not use the library: it may replace the process by exec.
+using FatalAction = void (*)();
+void set_fatal_action(FatalAction action) noexcept;
+
 /// Creates the shared memory and serves the processes that attach, with threads of its own.
 class Broker {
  public:

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ipc/broker_lock.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/file.h>
+#include <sys/inotify.h>
+#include <sys/random.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "core/errors.hpp"
+
+namespace isobar::ipc {
+namespace {
+
+constexpr const char* kLockPath = "/dev/shm/isobar.lock";
+/// The lock of iceoryx itself, held by any program with a RouDi inside.
+constexpr const char* kLibraryLockPath = "/tmp/iox-unique-roudi.lock";
+
+struct flock whole_file(short type) {
+  struct flock lock {};
+  lock.l_type = type;
+  lock.l_whence = SEEK_SET;
+  return lock;
+}
+
+std::string reason() { return std::strerror(errno); }  // NOLINT(concurrency-mt-unsafe)
+
+/// Does a process that is not isobard serve iceoryx here? That would end this process inside the library.
+bool library_lock_is_held() {
+  const int descriptor = ::open(kLibraryLockPath, O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) {
+    return false;
+  }
+  const bool held = ::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(descriptor);
+  return held;
+}
+
+bool read_instance(int descriptor, std::uint64_t& instance) noexcept {
+  return ::pread(descriptor, &instance, sizeof(instance), 0) == static_cast<ssize_t>(sizeof(instance)) &&
+         instance != 0;
+}
+
+bool is_locked(int descriptor) noexcept {
+  struct flock query = whole_file(F_RDLCK);
+  return ::fcntl(descriptor, F_OFD_GETLK, &query) == 0 && query.l_type != F_UNLCK;
+}
+
+/// A holder that has announced itself; -1: none.
+int open_announced(std::uint64_t& instance) {
+  const int descriptor = ::open(kLockPath, O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) {
+    return -1;
+  }
+  // The lock before the number: a number that is read after the lock was seen is never that of a dead holder.
+  if (is_locked(descriptor) && read_instance(descriptor, instance)) {
+    return descriptor;
+  }
+  ::close(descriptor);
+  return -1;
+}
+
+/// Closes a descriptor at the end of a block.
+class Descriptor {
+ public:
+  explicit Descriptor(int value) : value_(value) {}
+  ~Descriptor() {
+    if (value_ >= 0) {
+      ::close(value_);
+    }
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int get() const { return value_; }
+
+ private:
+  int value_;
+};
+
+}  // namespace
+
+BrokerLock BrokerLock::acquire() {
+  const int descriptor = ::open(kLockPath, O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (descriptor < 0) {
+    throw ServiceError(std::string(kLockPath) + ": cannot be opened: " + reason());
+  }
+  BrokerLock lock(descriptor);
+  struct flock request = whole_file(F_WRLCK);
+  if (::fcntl(descriptor, F_OFD_SETLK, &request) != 0) {
+    throw ServiceError("another isobard is running on this machine (it holds " + std::string(kLockPath) +
+                       "); stop it first");
+  }
+  if (library_lock_is_held()) {
+    throw ServiceError("another program serves iceoryx on this machine (it holds " +
+                       std::string(kLibraryLockPath) + "); stop it first: iox-roudi or a second isobard");
+  }
+  if (::ftruncate(descriptor, 0) != 0) {
+    throw ServiceError(std::string(kLockPath) + ": cannot be written: " + reason());
+  }
+  return lock;
+}
+
+void BrokerLock::announce() {
+  std::uint64_t instance = 0;
+  while (instance == 0) {
+    if (::getrandom(&instance, sizeof(instance), 0) != static_cast<ssize_t>(sizeof(instance))) {
+      throw ServiceError("no random numbers: " + reason());
+    }
+  }
+  if (::pwrite(descriptor_, &instance, sizeof(instance), 0) != static_cast<ssize_t>(sizeof(instance))) {
+    throw ServiceError(std::string(kLockPath) + ": cannot be written: " + reason());
+  }
+}
+
+BrokerLock::BrokerLock(BrokerLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+BrokerLock::~BrokerLock() {
+  if (descriptor_ >= 0) {
+    // A failure leaves the number of a dead holder behind, which the lock's absence makes harmless.
+    static_cast<void>(::ftruncate(descriptor_, 0) == 0);
+    ::close(descriptor_);
+  }
+}
+
+BrokerWatch BrokerWatch::find(std::chrono::milliseconds timeout) {
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  const Descriptor changes(::inotify_init1(IN_CLOEXEC | IN_NONBLOCK));
+  // Watched before the first look, so that a start in between is not missed.
+  static_cast<void>(::inotify_add_watch(changes.get(), "/dev/shm", IN_CREATE | IN_MODIFY));
+  for (;;) {
+    std::uint64_t instance = 0;
+    const int descriptor = open_announced(instance);
+    if (descriptor >= 0) {
+      return {descriptor, instance};
+    }
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+    if (left.count() <= 0) {
+      throw ServiceError("isobard is not running: there is no shared memory to attach to");
+    }
+    // A second at most, for machines where inotify is refused.
+    pollfd waiting{changes.get(), POLLIN, 0};
+    static_cast<void>(::poll(&waiting, 1, static_cast<int>(std::min<std::int64_t>(left.count(), 1000))));
+    std::array<char, 4096> events{};
+    while (::read(changes.get(), events.data(), events.size()) > 0) {
+    }
+  }
+}
+
+BrokerWatch::BrokerWatch(BrokerWatch&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)), instance_(other.instance_) {}
+
+BrokerWatch::~BrokerWatch() {
+  if (descriptor_ >= 0) {
+    ::close(descriptor_);
+  }
+}
+
+bool BrokerWatch::alive() const noexcept {
+  std::uint64_t instance = 0;
+  return is_locked(descriptor_) && read_instance(descriptor_, instance) && instance == instance_;
+}
+
+}  // namespace isobar::ipc

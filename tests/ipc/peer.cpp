@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The other process of the shared-memory tests. Exit codes: 0 done, 69 service error, 1 something else.
+//   peer broker            holds the broker and publishes priors, whose height counts up, until it is killed
+//   peer read N            attaches and reads until N priors came; prints how the heights went
+//   peer watch             attaches, reads one prior, then waits until the broker is gone
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+#include "core/errors.hpp"
+#include "ipc/shared_memory.hpp"
+
+namespace {
+
+using namespace isobar;  // NOLINT(google-build-using-namespace): a test's helper
+using std::chrono_literals::operator""ms;
+
+int run_broker() {
+  const ipc::Broker broker;
+  ipc::Publisher<Prior> priors(ipc::topics::kPrior);
+  ipc::Subscriber<ImuSample> nothing(ipc::topics::kImu);
+  ipc::Waiter waiter({&nothing.raw()});
+  std::puts("ready");
+  std::fflush(stdout);
+  for (Prior prior;; prior.height_m += 1.0) {
+    priors.send(prior);
+    static_cast<void>(waiter.wait_for(5ms));
+  }
+}
+
+int run_reader(int wanted, bool watch) {
+  const ipc::Attachment attachment("peer", 5000ms);
+  ipc::Subscriber<Prior> priors(ipc::topics::kPrior);
+  ipc::Waiter waiter({&priors.raw()});
+  double last = -1.0;
+  for (int count = 0; count < wanted;) {
+    if (waiter.wait_for(5000ms) != ipc::Waiter::Event::kData) {
+      return 1;
+    }
+    while (const auto prior = priors.take()) {
+      if (prior->height_m <= last) {
+        return 1;
+      }
+      last = prior->height_m;
+      ++count;
+    }
+  }
+  std::puts("received");
+  std::fflush(stdout);
+  while (watch && attachment.broker_alive()) {
+    static_cast<void>(waiter.wait_for(20ms));
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string_view role = argc > 1 ? argv[1] : "";
+  try {
+    if (role == "broker") {
+      return run_broker();
+    }
+    return run_reader(role == "read" && argc > 2 ? std::atoi(argv[2]) : 1, role == "watch");
+  } catch (const Error& error) {
+    std::puts(error.what());
+    return error.exit_code();
+  }
+}
