@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Settings of the altimeter. Every field says its unit, its range and why it has its default.
+#pragma once
+
+#include <cstdint>
+
+namespace isobar {
+
+/// Which air temperature the hypsometric factor uses.
+enum class AirTemperatureMode : std::uint8_t {
+  kAuto,   ///< from the barometers' own thermometers, see AirTemperatureTracker
+  kFixed,  ///< AirTemperatureConfig::fixed_c
+};
+
+/// Air temperature between base station and robot. 10 K wrong is 3.4 % of every height.
+struct AirTemperatureConfig {
+  AirTemperatureMode mode = AirTemperatureMode::kAuto;
+
+  /// Air temperature [degC], -60 … 60. Used where mode is kFixed, and by kAuto until a thermometer has spoken
+  /// (or if none ever does). 15 is the international standard atmosphere's at sea level.
+  double fixed_c = 15.0;
+
+  /// Most that a barometer warms itself above the air [K], 0 … 30. The estimate never falls further than
+  /// this below the coldest sensor of the moment: what it remembers of a colder place or hour must not stay.
+  /// Chips near a processor read 2 to 8 K too warm.
+  double max_self_heating_k = 8.0;
+
+  /// Time constants with which the estimate goes down and up [s], 1 … 1e6. Down: a sensor colder than the estimate
+  /// proves colder air; the minute keeps the height from jumping (5 K at 12 m are 20 cm). Up: a
+  /// rising reading is self-heating rather than weather, so it is believed only over an hour.
+  double fall_time_s = 60.0;
+  double rise_time_s = 3600.0;
+
+  /// Low-pass of each thermometer [s], 0.1 … 600: takes out its noise before the lowest is taken.
+  double smoothing_time_s = 5.0;
+
+  /// Uncertainty of the mean air temperature of the column [K], 0 … 30; goes into the height's variance.
+  double sigma_k = 2.0;
+};
+
+/// How barometers are checked and turned into height differences.
+struct AltimeterConfig {
+  AirTemperatureConfig air;
+
+  /// Plausible absolute pressures [Pa], 1 … 200000. 30 kPa is 9 km up, 115 kPa a mine 1.1 km down.
+  double min_pressure_pa = 30'000.0;
+  double max_pressure_pa = 115'000.0;
+
+  /// Bounds of the white noise of one sample, estimated online [Pa], 0.001 … 1000. Below the floor no chip
+  /// goes (DPS310 at its best 0.2 Pa); `initial` holds until enough samples have come (DPS310, 32 Hz: 0.35 Pa).
+  double noise_floor_pa = 0.1;
+  double noise_ceiling_pa = 20.0;
+  double initial_noise_pa = 0.5;
+
+  /// How fast the pressure at the base may wander between two samples, as a random walk [Pa/sqrt(s)],
+  /// 1e-4 … 10. 0.06 smooths a 32 Hz DPS310 over about 1 s: its noise shrinks eight times, and the lag behind
+  /// a storm of 100 Pa an hour is 0.03 Pa.
+  double base_walk_pa_sqrt_s = 0.06;
+
+  /// A base station silent for longer is lost [s], 0.5 … 600: its last pressure is held, the height
+  /// becomes a single barometer's. Weather moves 0.1 to 0.3 Pa meanwhile.
+  double base_timeout_s = 10.0;
+
+  /// Difference between successive samples of one sensor that no motion explains [Pa], 1 … 1e5: a spike.
+  /// 200 Pa is 17 m in one sample. A new level is believed once `spike_confirmations` samples agree on it (1 … 1000).
+  double spike_pa = 200.0;
+  std::uint32_t spike_confirmations = 16;
+
+  /// A sensor whose value has not changed by one bit for longer is stuck, and counts as silent [s], 0.5 … 600.
+  /// Noise alone changes a working sensor's last digit at every conversion.
+  double stuck_timeout_s = 3.0;
+};
+
+}  // namespace isobar
