@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
 #include "core/errors.hpp"
+#include "core/evaluation/text_table.hpp"
 
 namespace isobar::evaluation {
 
@@ -32,11 +32,8 @@ std::string_view next_word(std::string_view& line) {
 }
 
 std::optional<double> parse_number(std::string_view word) {
-  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
+  const std::optional<double> value = parse_double(word);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 /// Seconds as nanoseconds; plain decimals exactly, which a double of 1.7e9 s could not hold (240 ns).
@@ -106,16 +103,12 @@ Trajectory make_trajectory(std::vector<StampedPose> poses) {
 
 Trajectory parse_tum(std::string_view text, const std::string& name) {
   std::vector<StampedPose> poses;
-  std::size_t line_number = 0;
-  while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    ++line_number;
-    std::string_view rest = line;
+  LineReader lines(text);
+  while (const std::optional<std::string_view> line = lines.next()) {
+    std::string_view rest = *line;
     const std::string_view first = next_word(rest);
     if (first.empty() || first.front() == '#') continue;
-    poses.push_back(parse_pose(line, name + ":" + std::to_string(line_number) + ": "));
+    poses.push_back(parse_pose(*line, name + ":" + std::to_string(lines.line_number()) + ": "));
   }
   if (poses.empty()) throw DataError(name + ": has no pose");
   return make_trajectory(std::move(poses));
