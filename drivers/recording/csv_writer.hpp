@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace isobar::recording {
+
+/// A text file with a buffer, whose errors are not lost.
+class TextFile {
+ public:
+  /// Creates or truncates. Throws DataError.
+  explicit TextFile(const std::filesystem::path& file);
+  void write(std::string_view text) { std::fwrite(text.data(), 1, text.size(), file_.get()); }
+  /// Flushes and closes. Throws DataError when anything could not be written.
+  void close();
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::string name_;
+  std::unique_ptr<std::FILE, Closer> file_;
+};
+
+/// One row of numbers, in the shortest notation that reads back as the same bits.
+class CsvRow {
+ public:
+  CsvRow& add(double value);
+  CsvRow& add(std::int64_t value);
+  /// The row with its newline.
+  std::string_view finish();
+
+ private:
+  void separate();
+
+  static constexpr std::size_t kCapacity = 512;  // 16 numbers of 32 bytes
+  char text_[kCapacity];                         // NOLINT(modernize-avoid-c-arrays)
+  std::size_t used_ = 0;
+};
+
+}  // namespace isobar::recording

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Ethernet II, IPv4 (RFC 791) and UDP (RFC 768) as far as a lidar's packets need them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace isobar::recording {
+
+inline constexpr std::size_t kEthernetHeaderBytes = 14;
+inline constexpr std::size_t kIpv4HeaderBytes = 20;
+inline constexpr std::size_t kUdpHeaderBytes = 8;
+inline constexpr std::size_t kMaxUdpPayloadBytes = 65'535 - kIpv4HeaderBytes - kUdpHeaderBytes;
+
+/// One's complement sum of RFC 1071 over big-endian 16-bit words; an odd last byte counts as the high half.
+[[nodiscard]] std::uint32_t internet_sum(std::span<const std::uint8_t> bytes, std::uint32_t start = 0);
+/// Folds and complements the sum.
+[[nodiscard]] std::uint16_t internet_checksum(std::uint32_t sum);
+
+/// Puts a frame around a payload, from 192.168.1.201 (a Velodyne's factory address) to the broadcast address,
+/// with the same source and destination port. `frame` is overwritten. payload: at most kMaxUdpPayloadBytes.
+void build_udp_frame(std::span<const std::uint8_t> payload, std::uint16_t port, std::uint16_t identification,
+                     std::vector<std::uint8_t>& frame);
+
+}  // namespace isobar::recording
