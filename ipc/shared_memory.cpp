@@ -20,6 +20,7 @@
 #include <iceoryx_posh/roudi/iceoryx_roudi_components.hpp>
 #include <iceoryx_posh/runtime/posh_runtime.hpp>
 #include <iceoryx_posh/runtime/posh_runtime_single_process.hpp>
+#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -92,6 +93,22 @@ void prepare_library() {
   }();
   static_cast<void>(kPrepared);
 }
+
+/// Silences what the library prints past its own log level while the broker starts.
+class MutedStreams {
+ public:
+  MutedStreams() : out_(std::cout.rdbuf(nullptr)), log_(std::clog.rdbuf(nullptr)) {}
+  ~MutedStreams() {
+    std::cout.rdbuf(out_);
+    std::clog.rdbuf(log_);
+  }
+  MutedStreams(const MutedStreams&) = delete;
+  MutedStreams& operator=(const MutedStreams&) = delete;
+
+ private:
+  std::streambuf* out_;
+  std::streambuf* log_;
+};
 
 std::string own_group() { return std::string(iox::posix::PosixGroup::getGroupOfCurrentProcess().getName()); }
 
@@ -168,6 +185,7 @@ Broker::Broker() {
   prepare_library();
   BrokerLock lock = BrokerLock::acquire();
   require_space();
+  const MutedStreams muted;
   impl_ = std::make_unique<Impl>(std::move(lock));
   impl_->lock.announce();
 }
