@@ -18,8 +18,12 @@ struct ClockAnchorConfig {
   std::int64_t max_cadence_ns = 500'000'000;
   /// A changed offset is believed after it has been seen on both clocks for this long [ns] …
   std::int64_t confirm_ns = 500'000'000;
-  /// … or, when samples come earlier than the offset allows (so that it must be wrong), this many in a row.
-  std::int64_t confirm_early_samples = 4;
+  /// … or, where delay cannot explain it (samples come early, or the device broke its own cadence), after
+  /// this many samples in a row.
+  std::int64_t confirm_samples = 4;
+  /// Samples that come earlier than the offset allows by up to this lower it at once, others after
+  /// confirm_samples, so that one wrong host stamp cannot pull the offset down [ns].
+  std::int64_t max_early_ns = 2'000'000;
 };
 
 /// Maps a device's clock to the host's from pairs (device stamp, host receive stamp).
@@ -61,10 +65,9 @@ class ClockAnchor {
 
  private:
   Finding first(std::int64_t device_ns, std::int64_t host_ns);
-  Finding re_anchor(std::int64_t difference_ns, std::int64_t host_ns);
-  Finding suspect(std::int64_t difference_ns, std::int64_t host_ns);
+  Finding re_anchor(std::int64_t offset_ns, std::int64_t host_ns);
+  Finding suspect(std::int64_t difference_ns, std::int64_t host_ns, bool device_regular);
   void follow(std::int64_t difference_ns, std::int64_t elapsed_ns);
-  bool early_confirmed(std::int64_t difference_ns);
 
   ClockAnchorConfig config_;
   bool anchored_ = false;
@@ -80,6 +83,7 @@ class ClockAnchor {
   std::int64_t candidate_high_ns_ = 0;
   std::int64_t candidate_device_ns_ = 0;
   std::int64_t candidate_host_ns_ = 0;
+  bool candidate_is_delay_ = false;
   std::int64_t early_samples_ = 0;
   std::int64_t early_highest_ns_ = 0;
   std::uint64_t steps_ = 0;

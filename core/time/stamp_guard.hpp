@@ -23,12 +23,16 @@ enum class StampVerdict : std::uint8_t {
 
 /// Watches the stamps of one stream, so that one absurd stamp can never make later good samples look old.
 ///
+/// A stream slower than max_forward_ns is recognised by its even steps, and the limit then follows its
+/// cadence.
+///
 /// After kHeld: kConfirmed says that the held sample was good (take it before this one); kHeld says that the
 /// held one was absurd and that this one is now in question; any other verdict says that the held one was
 /// absurd.
 class StampGuard {
  public:
-  explicit StampGuard(const StampGuardConfig& config = {}) : config_(config) {}
+  explicit StampGuard(const StampGuardConfig& config = {})
+      : max_forward_ns_(config.max_forward_ns), max_reorder_ns_(config.max_reorder_ns) {}
 
   StampVerdict check(std::int64_t stamp_ns);
 
@@ -45,7 +49,8 @@ class StampGuard {
   [[nodiscard]] bool usual(std::int64_t from_ns, std::int64_t to_ns) const;
   StampVerdict confirm(std::int64_t stamp_ns);
 
-  StampGuardConfig config_;
+  std::int64_t max_forward_ns_;  // grows with the cadence of a slow stream
+  std::int64_t max_reorder_ns_;
   bool started_ = false;
   bool holding_ = false;
   std::int64_t newest_ns_ = 0;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/samples.hpp"
 #include "core/time/clock_anchor.hpp"
@@ -33,6 +34,7 @@ enum class DecodeStatus : std::uint8_t {
   kGarbage,     ///< right size, but a block flag, an azimuth or the return mode is impossible
   kWrongModel,  ///< of another model than configured: see wrong_model_message()
   kDuplicate,   ///< seen already
+  kTooLate,     ///< overtaken by so much that no open scan can hold it
 };
 
 struct DecodeResult {
@@ -89,43 +91,51 @@ class VelodyneDecoder {
   [[nodiscard]] std::string wrong_model_message() const;
 
  private:
-  struct Packet;
-  struct Spilled {
-    ScanPoint point;  // time_4us unused
+  /// A data packet that has been checked.
+  struct Packet {
+    const std::uint8_t* bytes = nullptr;
+    std::uint32_t timestamp_us = 0;
+    bool dual = false;
+    std::array<std::uint32_t, kBlocks> azimuth{};  // [0.01 deg]
+    std::int64_t device_ns = 0;                    // of its first firing, unwrapped
+  };
+  struct TimedPoint {
+    ScanPoint point;  // time_4us not yet set
     std::int64_t device_ns;
   };
-
-  DecodeStatus inspect(std::span<const std::uint8_t> payload, Packet& packet);
-  bool seen(const Packet& packet);
-  void account_gap(const Packet& packet);
-  [[nodiscard]] bool must_cut_before(const Packet& packet, bool stepped) const;
-  void decode_block(const Packet& packet, int block, bool into_spill, Scan& current);
-  void emit(const ScanPoint& point, std::int64_t device_ns, bool into_spill, Scan& current);
-  void open(std::int64_t device_ns, Scan& current);
-  void open_from_spill(Scan& current);
-  void make_room_before(std::int64_t device_ns, Scan& current);
-  void complete(Scan& current);
-
-  VelodyneConfig config_;
-  const ModelTraits& traits_;
-  std::array<float, 32> cos_elevation_{};
-  std::array<float, 32> sin_elevation_{};
-  std::uint16_t min_count_ = 0;
-  std::uint16_t max_count_ = 0;
-  std::uint32_t mask_start_ = 0;
-  std::uint32_t mask_width_ = 0;
-  std::array<float, kFullTurn> cos_azimuth_{};
-  std::array<float, kFullTurn> sin_azimuth_{};
-
-  ClockAnchor anchor_;
-  VelodyneCounters counters_;
-  std::uint8_t wrong_product_id_ = 0;
-
   struct Identity {
     std::uint32_t timestamp_us = 0;
     std::uint32_t azimuth = 0;
     bool used = false;
   };
+
+  DecodeStatus inspect(std::span<const std::uint8_t> payload, Packet& packet);
+  bool seen(const Packet& packet);
+  DecodeResult add_in_order(const Packet& packet, bool stepped, std::int64_t offset_before_ns, Scan& current);
+  DecodeResult add_reordered(const Packet& packet, Scan& current);
+  [[nodiscard]] std::uint32_t lost_before(const Packet& packet) const;
+  [[nodiscard]] int first_block_of_next_scan(const Packet& packet, bool stepped, const Scan& current) const;
+  void decode(const Packet& packet, int first_block, int end_block);
+  void decode_block(const Packet& packet, int block, std::uint32_t azimuth_step);
+  void open(std::int64_t device_ns, Scan& current);
+  void append(std::int64_t end_device_ns, Scan& current);
+  void take_pending(Scan& current);
+  void complete(std::int64_t offset_ns, Scan& current);
+
+  VelodyneConfig config_;
+  const ModelTraits& traits_;
+  std::array<float, kChannels> cos_elevation_{};  // by laser
+  std::array<float, kChannels> sin_elevation_{};
+  std::uint32_t min_count_ = 1;  // in units of kDistanceUnitM
+  std::uint32_t max_count_ = 0;
+  std::uint32_t mask_start_ = 0;
+  std::uint32_t mask_width_ = 0;
+  std::vector<float> cos_azimuth_;  // by azimuth in 0.01 deg
+  std::vector<float> sin_azimuth_;
+
+  ClockAnchor anchor_;
+  VelodyneCounters counters_;
+  std::uint8_t wrong_product_id_ = 0;
   std::array<Identity, 32> recent_{};
   std::size_t recent_next_ = 0;
 
@@ -135,15 +145,16 @@ class VelodyneDecoder {
   double azimuth_rate_ = 0.0;        // [0.01 deg / ns]
 
   bool scan_open_ = false;
-  std::int64_t scan_start_device_ns_ = 0;
-  std::int64_t scan_end_device_ns_ = 0;
+  std::int64_t scan_start_ns_ = 0;  // device time, unwrapped
+  std::int64_t scan_end_ns_ = 0;
   std::uint32_t sequence_ = 0;
-  std::uint32_t lost_in_scan_ = 0;
-  std::array<Spilled, kBlocks * kChannels> spill_{};
-  std::size_t spill_count_ = 0;
-  bool spill_open_ = false;
-  std::int64_t spill_start_device_ns_ = 0;
-  std::int64_t spill_end_device_ns_ = 0;
+
+  std::array<TimedPoint, static_cast<std::size_t>(kBlocks) * kChannels> points_;  // of one packet
+  std::size_t point_count_ = 0;
+  bool pending_ = false;  // points_ belong to a scan that has not been opened yet
+  std::int64_t pending_start_ns_ = 0;
+  std::int64_t pending_end_ns_ = 0;
+  std::uint32_t pending_lost_ = 0;
 };
 
 }  // namespace isobar::velodyne
