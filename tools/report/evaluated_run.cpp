@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/evaluated_run.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "core/errors.hpp"
+#include "tools/report/text_file.hpp"
+
+namespace isobar::report {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Enough for every picture of the report; a larger map is thinned evenly.
+constexpr std::size_t kMaxMapPoints = 1'500'000;
+
+std::string repairs_note(const std::string& name, const evaluation::StampRepairs& repairs) {
+  return name + ": " + std::to_string(repairs.backwards) + " poses were out of order and sorted, " +
+         std::to_string(repairs.duplicates) + " with a stamp seen before were dropped.";
+}
+
+bool needed_repair(const evaluation::StampRepairs& repairs) {
+  return repairs.backwards + repairs.duplicates > 0;
+}
+
+std::vector<evaluation::HeightSigma> sigmas_of(const std::vector<StatusRow>& status) {
+  std::vector<evaluation::HeightSigma> sigmas;
+  for (const StatusRow& row : status) sigmas.push_back({row.stamp_ns, row.sd_z_m});
+  return sigmas;
+}
+
+ReplayOutput load_estimate(const fs::path& path) {
+  if (fs::is_directory(path)) return read_replay_output(path, kMaxMapPoints);
+  ReplayOutput output;
+  output.trajectory = evaluation::parse_tum(read_text_file(path), path.string());
+  return output;
+}
+
+EvaluatedMethod evaluate_one(const ReferenceData& reference, const EstimateSource& source,
+                             const evaluation::EvaluationOptions& options) {
+  ReplayOutput output = load_estimate(source.path);
+  EvaluatedMethod method{source.name,
+                         source.path,
+                         {},
+                         std::move(output.status),
+                         std::move(output.map_points),
+                         output.map_points_total};
+  try {
+    method.evaluation = evaluation::evaluate(reference.trajectory, reference.segments, output.trajectory,
+                                             sigmas_of(method.status), options);
+  } catch (const DataError& error) {
+    throw DataError(source.path.string() + ": " + error.what());
+  }
+  const Eigen::Isometry3f transform = method.evaluation.T_reference_estimate.cast<float>();
+  for (auto& point : method.map_points)
+    Eigen::Map<Eigen::Vector3f>(point.data()) = transform * Eigen::Vector3f(point.data());
+  return method;
+}
+
+void add_notes(EvaluatedRun& run) {
+  run.notes = run.reference.notes;
+  if (std::any_of(run.methods.begin(), run.methods.end(),
+                  [](const EvaluatedMethod& m) { return m.evaluation.figures.whole_run_as_flat; })) {
+    run.notes.emplace_back(
+        "No flat segments were named: the relative error on z is taken over the whole run.");
+  }
+  for (const EvaluatedMethod& method : run.methods) {
+    const evaluation::MethodFigures& figures = method.evaluation.figures;
+    if (needed_repair(figures.repairs))
+      run.notes.push_back(repairs_note(display_name(method.name), figures.repairs));
+    if (figures.paired < figures.poses) {
+      run.notes.push_back(display_name(method.name) + ": " + std::to_string(figures.poses - figures.paired) +
+                          " of " + std::to_string(figures.poses) +
+                          " poses lie outside of the reference's time and are left out.");
+    }
+  }
+}
+
+}  // namespace
+
+ReferenceData load_reference(const fs::path& path, const std::optional<fs::path>& segments_file) {
+  ReferenceData reference;
+  const bool is_recording = fs::is_directory(path);
+  reference.source = path;
+  const fs::path trajectory_file = is_recording ? path / "reference.tum" : path;
+  reference.trajectory = evaluation::parse_tum(read_text_file(trajectory_file), trajectory_file.string());
+  std::optional<fs::path> file = segments_file;
+  if (!file && is_recording && fs::exists(path / "segments.csv")) file = path / "segments.csv";
+  if (file) reference.segments = evaluation::parse_segments_csv(read_text_file(*file), file->string());
+  if (needed_repair(reference.trajectory.repairs)) {
+    reference.notes.push_back(repairs_note("The reference", reference.trajectory.repairs));
+  }
+  return reference;
+}
+
+EvaluatedRun evaluate_methods(ReferenceData reference, std::vector<EstimateSource> estimates,
+                              const evaluation::EvaluationOptions& options) {
+  default_names(estimates);
+  EvaluatedRun run{std::move(reference), {}, options, {}};
+  for (const EstimateSource& source : estimates)
+    run.methods.push_back(evaluate_one(run.reference, source, options));
+  add_notes(run);
+  return run;
+}
+
+void default_names(std::vector<EstimateSource>& estimates) {
+  for (EstimateSource& estimate : estimates) {
+    if (!estimate.name.empty()) continue;
+    const fs::path path = estimate.path.has_filename() ? estimate.path : estimate.path.parent_path();
+    const bool is_trajectory = path.filename() == "trajectory.tum" && path.has_parent_path();
+    estimate.name = is_trajectory ? path.parent_path().filename().string() : path.stem().string();
+  }
+  std::map<std::string, int> uses;
+  for (const EstimateSource& estimate : estimates) ++uses[estimate.name];
+  for (EstimateSource& estimate : estimates) {
+    if (uses[estimate.name] > 1) estimate.name = estimate.path.string();
+  }
+}
+
+std::string display_name(const std::string& method) {
+  static const std::map<std::string, std::string> kNames{{"3dof", "3-DOF"},
+                                                         {"4dof", "4-DOF"},
+                                                         {"6dof", "6-DOF"},
+                                                         {"4dof-altitude", "4-DOF altitude"},
+                                                         {"6dof-altitude", "6-DOF altitude"},
+                                                         {"odometry", "Odometry"}};
+  const auto found = kNames.find(method);
+  return found == kNames.end() ? method : found->second;
+}
+
+}  // namespace isobar::report

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/line_chart.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isobar::report {
+
+namespace {
+
+constexpr double kLeft = 68.0;
+constexpr double kRight = 14.0;
+constexpr double kBottom = 50.0;
+constexpr double kLegendGap = 8.0;
+constexpr const char* kBandColour = "#eef2f7";
+
+void draw_bands(Picture& picture, const LineChart& chart, const Axes& axes) {
+  for (const Band& band : chart.bands) {
+    const double from = axes.x.clamped(band.from);
+    const double to = axes.x.clamped(band.to);
+    if (to - from < 0.5) continue;
+    picture.rect({from, axes.frame.y, to - from, axes.frame.height}, kBandColour);
+    if (to - from > text_width(band.label, 11.0) + 6.0) {
+      picture.text({0.5 * (from + to), axes.frame.y + 14.0}, band.label, {11.0, "#6b7280", "middle"});
+    }
+  }
+}
+
+void draw_series(Picture& picture, const Series& series, const Axes& axes) {
+  std::vector<Point> run;
+  const std::size_t count = std::min(series.x.size(), series.y.size());
+  for (std::size_t i = 0; i <= count; ++i) {
+    if (i < count && std::isfinite(series.x[i]) && std::isfinite(series.y[i])) {
+      run.push_back({axes.x(series.x[i]), axes.y(series.y[i])});
+      continue;
+    }
+    picture.polyline(thinned(run), series.stroke);
+    run.clear();
+  }
+}
+
+Range data_range(const LineChart& chart, const std::vector<double> Series::*values) {
+  std::vector<double> all;
+  for (const Series& series : chart.series)
+    all.insert(all.end(), (series.*values).begin(), (series.*values).end());
+  return range_of(all);
+}
+
+}  // namespace
+
+std::vector<Point> thinned(const std::vector<Point>& points) {
+  std::vector<Point> kept;
+  for (std::size_t begin = 0; begin < points.size();) {
+    std::size_t end = begin;
+    while (end < points.size() && std::floor(points[end].x) == std::floor(points[begin].x)) ++end;
+    std::size_t low = begin;
+    std::size_t high = begin;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (points[i].y < points[low].y) low = i;
+      if (points[i].y > points[high].y) high = i;
+    }
+    std::vector<std::size_t> chosen{begin, std::min(low, high), std::max(low, high), end - 1};
+    chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+    for (const std::size_t i : chosen) kept.push_back(points[i]);
+    begin = end;
+  }
+  return kept;
+}
+
+Picture draw(const LineChart& chart) {
+  Picture picture(chart.width, chart.height);
+  std::vector<LegendEntry> legend;
+  for (const Series& series : chart.series) {
+    if (!series.name.empty()) legend.push_back({series.name, series.stroke});
+  }
+  const double inner_width = chart.width - kLeft - kRight;
+  const double top = draw_legend(picture, {kLeft, 0.0}, inner_width, legend) + kLegendGap;
+  const Box frame{kLeft, top, inner_width, chart.height - top - kBottom};
+  const Range x = chart.x_range.value_or(data_range(chart, &Series::x));
+  const Range y = chart.y_range.value_or(padded(data_range(chart, &Series::y), 0.06, chart.min_y_width));
+  const Axes axes{frame, Scale::linear(padded(x, 0.0), frame.x, frame.right(), 90.0),
+                  Scale::linear(y, frame.bottom(), frame.y, 44.0), chart.x_label, chart.y_label};
+  draw_bands(picture, chart, axes);
+  draw_axes(picture, axes);
+  picture.begin_clip(frame, chart.id);
+  if (chart.zero_line) {
+    picture.line({frame.x, axes.y(0.0)}, {frame.right(), axes.y(0.0)}, {"#6b7280", 1.0});
+  }
+  for (const Series& series : chart.series) draw_series(picture, series, axes);
+  picture.end_clip();
+  return picture;
+}
+
+}  // namespace isobar::report
