@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Everything that can be set, as plain values with their defaults. config/ reads it from TOML; a replay takes
+// sensors and mounts from the recording and the rest from here.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/estimates.hpp"
+#include "core/geometry.hpp"
+#include "core/map/map_config.hpp"
+#include "core/prior/prior_config.hpp"
+#include "core/registration/registration_config.hpp"
+
+namespace isobar {
+
+/// [lidar]
+struct LidarSettings {
+  std::string model = "VLP-16";     ///< "VLP-16" or "HDL-32E"
+  std::string address = "0.0.0.0";  ///< IPv4 address to listen on
+  std::uint16_t port = 2368;        ///< UDP port of the data packets
+  Mount mount;                      ///< of the sensor in base_link
+  double min_range_m = 0.3;         ///< see velodyne::VelodyneConfig
+  double max_range_m = 131.0;
+  double mask_start_deg = 0.0;
+  double mask_end_deg = 0.0;
+};
+
+/// [imu]
+struct ImuSettings {
+  Mount mount;
+};
+
+/// [barometer]
+struct BarometerSettings {
+  Mount mount;  ///< position of the pressure port in base_link; its rotation means nothing
+};
+
+/// [input]: sample datagrams of IMU, barometers and wheels (drivers/datagram/datagram.hpp)
+struct InputSettings {
+  std::string address = "0.0.0.0";
+  std::uint16_t port = 7373;
+};
+
+/// [output]
+struct OutputSettings {
+  std::string directory;             ///< folder for trajectory, map and status of a live run; empty: none
+  double cloud_interval_s = 2.0;     ///< between map clouds for viewers, 0.2 … 3600
+};
+
+/// [dds]
+struct DdsSettings {
+  std::uint32_t domain = 0;        ///< 0 … 232, as ROS_DOMAIN_ID
+  std::string interface;           ///< network interface or address; empty: chosen by DDS, loopback if there is no other
+  std::string topic_prefix;        ///< put before every topic name, such as "robot1"; empty: none
+  std::string map_frame = "map";
+  std::string odom_frame = "odom";
+  std::string base_frame = "base_link";
+  std::string lidar_frame = "lidar";
+  std::string imu_frame = "imu";
+  std::string barometer_frame = "barometer";
+  double odom_rate_hz = 100.0;     ///< at most this many odom and tf messages a second, 1 … 1000
+};
+
+/// [realtime]
+struct RealtimeSettings {
+  bool enabled = false;             ///< SCHED_FIFO, and all memory locked
+  int inertial_priority = 55;       ///< 1 … 99
+  int prior_priority = 55;
+  int lidar_priority = 45;
+  int registration_priority = 40;
+  std::vector<int> estimator_cpus;  ///< cores for lidar, inertial, prior and registration; empty: all
+  std::vector<int> map_cpus;        ///< cores for the map thread; empty: all
+};
+
+struct Config {
+  Method method = Method::k3Dof;
+  LidarSettings lidar;
+  ImuSettings imu;
+  BarometerSettings barometer;
+  InputSettings input;
+  OutputSettings output;
+  DdsSettings dds;
+  RealtimeSettings realtime;
+  /// Mounts in here (T_base_imu, p_base_port) are filled from [imu] and [barometer], or from the recording.
+  PriorConfig prior;
+  RegistrationConfig registration;
+  MapConfig map;
+};
+
+}  // namespace isobar

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/counts.hpp"
+
+#include <array>
+#include <iterator>
+
+namespace isobar {
+
+std::vector<RunCount> counts_of(const velodyne::VelodyneCounters& counters, const std::string& wrong_model_message) {
+  return {
+      {"lidar packets", counters.packets, ""},
+      {"lidar packets truncated", counters.truncated, ""},
+      {"lidar packets oversized", counters.oversized, ""},
+      {"lidar packets garbage", counters.garbage, ""},
+      {"lidar packets of another model", counters.wrong_model,
+       counters.wrong_model > 0 ? wrong_model_message : std::string{}},
+      {"lidar packets duplicated", counters.duplicated, ""},
+      {"lidar packets reordered", counters.reordered, ""},
+      {"lidar packets too late", counters.too_late, ""},
+      {"lidar packets lost", counters.lost, ""},
+      {"lidar position packets", counters.position, ""},
+      {"lidar clock steps", counters.clock_steps, ""},
+      {"lidar returns", counters.returns, ""},
+      {"lidar scans", counters.scans, ""},
+  };
+}
+
+std::vector<RunCount> counts_of(const PriorCounters& counters) {
+  return {
+      {"imu samples", counters.imu_accepted, ""},
+      {"imu samples with bad values", counters.imu_bad_value, ""},
+      {"imu samples with bad times", counters.imu_bad_time, ""},
+      {"imu gaps", counters.imu_gaps, ""},
+      {"imu restarts", counters.imu_restarts, ""},
+      {"barometer samples", counters.pressure_accepted, ""},
+      {"barometer samples with bad values", counters.pressure_bad_value, ""},
+      {"barometer samples with bad times", counters.pressure_bad_time, ""},
+      {"barometer samples repeated", counters.pressure_repeated, ""},
+      {"barometer samples gated", counters.pressure_gated, ""},
+      {"barometer steps believed", counters.pressure_steps, ""},
+      {"base samples", counters.base_accepted, ""},
+      {"base samples with bad values", counters.base_bad_value, ""},
+      {"base samples with bad times", counters.base_bad_time, ""},
+      {"base samples repeated", counters.base_repeated, ""},
+      {"base station lost", counters.base_lost, ""},
+      {"wheel samples", counters.wheel_accepted, ""},
+      {"wheel samples with bad values", counters.wheel_bad_value, ""},
+      {"wheel samples with bad times", counters.wheel_bad_time, ""},
+      {"moving ground", counters.moving_ground, ""},
+  };
+}
+
+std::vector<RunCount> counts_of(const datagram::Counters& counters) {
+  constexpr std::array<const char*, datagram::kKinds> kNames = {"imu", "baro", "base", "wheel"};
+  std::vector<RunCount> counts = {
+      {"sample datagrams", counters.datagrams, ""},
+      {"sample lines malformed", counters.malformed, ""},
+      {"sample lines implausible", counters.implausible, ""},
+      {"sample lines of unknown kind", counters.unknown_kind, ""},
+  };
+  for (std::size_t kind = 0; kind < datagram::kKinds; ++kind) {
+    const std::string name = std::string(kNames[kind]) + " lines ";
+    counts.push_back({name + "good", counters.samples[kind], ""});
+    counts.push_back({name + "lost", counters.lost[kind], ""});
+    counts.push_back({name + "duplicated", counters.duplicated[kind], ""});
+    counts.push_back({name + "reordered", counters.reordered[kind], ""});
+  }
+  return counts;
+}
+
+void append(std::vector<RunCount>& counts, std::vector<RunCount> more) {
+  counts.insert(counts.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+}  // namespace isobar

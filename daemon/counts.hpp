@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Counters of the stages by name, for counters.csv, the health report and the summary of a replay.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/prior/prior_estimator.hpp"
+#include "daemon/run_output.hpp"
+#include "drivers/datagram/datagram.hpp"
+#include "drivers/velodyne/velodyne_decoder.hpp"
+
+namespace isobar {
+
+std::vector<RunCount> counts_of(const velodyne::VelodyneCounters& counters, const std::string& wrong_model_message);
+std::vector<RunCount> counts_of(const PriorCounters& counters);
+std::vector<RunCount> counts_of(const datagram::Counters& counters);
+
+/// Appends `more` to `counts`.
+void append(std::vector<RunCount>& counts, std::vector<RunCount> more);
+
+}  // namespace isobar

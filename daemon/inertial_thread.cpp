@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/inertial_thread.hpp"
+
+namespace isobar {
+
+InertialThread::InertialThread(const std::string& address, std::uint16_t port, ThreadSettings settings)
+    : settings_(std::move(settings)),
+      receiver_(address, port),
+      imu_(ipc::topics::kImu),
+      barometer_(ipc::topics::kBarometer),
+      base_barometer_(ipc::topics::kBaseBarometer),
+      wheel_(ipc::topics::kWheel) {}
+
+InertialThread::~InertialThread() { stop(); }
+
+void InertialThread::start() { thread_ = std::thread([this] { loop(); }); }
+
+void InertialThread::stop() noexcept {
+  receiver_.stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+void InertialThread::loop() noexcept {
+  constexpr int kReportEveryMs = 200;
+  (void)apply_to_this_thread(settings_);
+  ReceivedDatagram received;
+  for (;;) {
+    switch (receiver_.receive(received, kReportEveryMs)) {
+      case UdpReceiver::Status::kDatagram:
+        take_datagram(received);
+        break;
+      case UdpReceiver::Status::kStopped:
+        report();
+        return;
+      case UdpReceiver::Status::kTimeout:
+      case UdpReceiver::Status::kError:
+        break;
+    }
+    report();
+  }
+}
+
+void InertialThread::take_datagram(const ReceivedDatagram& received) noexcept {
+  parser_.begin(received.payload);
+  datagram::Sample sample;
+  while (parser_.next(sample)) {
+    to_robot_clock(sample, received.stamp_ns);
+    own_.last_sample_ns[static_cast<std::size_t>(sample.kind)] = received.stamp_ns;
+    if (!publish(sample)) ++own_.samples_without_memory;
+  }
+}
+
+void InertialThread::to_robot_clock(datagram::Sample& sample, std::int64_t receive_ns) noexcept {
+  if (sample.stamp_ns() == 0) {
+    sample.set_stamp_ns(receive_ns);
+    return;
+  }
+  ClockAnchor& anchor = anchors_[static_cast<std::size_t>(sample.kind)];
+  (void)anchor.add(sample.stamp_ns(), receive_ns);
+  sample.set_stamp_ns(anchor.to_host_ns(anchor.device_unwrapped_ns()));
+}
+
+bool InertialThread::publish(const datagram::Sample& sample) noexcept {
+  switch (sample.kind) {
+    case datagram::Kind::kImu:
+      return imu_.send(sample.imu);
+    case datagram::Kind::kPressure:
+      return barometer_.send(sample.pressure);
+    case datagram::Kind::kBasePressure:
+      return base_barometer_.send(sample.pressure);
+    case datagram::Kind::kWheel:
+      return wheel_.send(sample.wheel);
+  }
+  return true;
+}
+
+void InertialThread::report() noexcept {
+  own_.counters = parser_.counters();
+  own_.dropped_by_kernel = receiver_.dropped_by_kernel();
+  for (std::size_t kind = 0; kind < datagram::kKinds; ++kind) own_.clock_steps[kind] = anchors_[kind].steps();
+  status_.put(own_);
+}
+
+}  // namespace isobar

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <string>
+#include <thread>
+
+#include "core/time/clock_anchor.hpp"
+#include "daemon/mailbox.hpp"
+#include "daemon/realtime.hpp"
+#include "drivers/datagram/datagram.hpp"
+#include "drivers/datagram/udp.hpp"
+#include "ipc/shared_memory.hpp"
+
+namespace isobar {
+
+/// What the inertial thread says of itself.
+struct InertialStatus {
+  datagram::Counters counters;
+  std::array<std::int64_t, datagram::kKinds> last_sample_ns{};  ///< robot clock, by Kind, 0: none yet
+  std::array<std::uint64_t, datagram::kKinds> clock_steps{};    ///< by Kind
+  std::uint64_t dropped_by_kernel = 0;
+  std::uint64_t samples_without_memory = 0;
+};
+
+/// Sample datagrams of IMU, barometers and wheels in, samples on the robot's clock out.
+class InertialThread {
+ public:
+  /// Throws ServiceError when the port cannot be bound.
+  InertialThread(const std::string& address, std::uint16_t port, ThreadSettings settings);
+  ~InertialThread();
+  InertialThread(const InertialThread&) = delete;
+  InertialThread& operator=(const InertialThread&) = delete;
+
+  void start();
+  void stop() noexcept;  ///< returns when the thread has ended
+
+  [[nodiscard]] InertialStatus status() const noexcept { return status_.get(); }
+  [[nodiscard]] std::uint16_t port() const noexcept { return receiver_.port(); }
+
+ private:
+  void loop() noexcept;
+  void take_datagram(const ReceivedDatagram& received) noexcept;
+  void to_robot_clock(datagram::Sample& sample, std::int64_t receive_ns) noexcept;
+  bool publish(const datagram::Sample& sample) noexcept;
+  void report() noexcept;
+
+  ThreadSettings settings_;
+  UdpReceiver receiver_;
+  datagram::DatagramParser parser_;
+  std::array<ClockAnchor, datagram::kKinds> anchors_;  ///< every sender may have a clock of its own
+  ipc::Publisher<ImuSample> imu_;
+  ipc::Publisher<PressureSample> barometer_;
+  ipc::Publisher<PressureSample> base_barometer_;
+  ipc::Publisher<WheelSample> wheel_;
+  InertialStatus own_;
+  Mailbox<InertialStatus> status_;
+  std::thread thread_;
+};
+
+}  // namespace isobar

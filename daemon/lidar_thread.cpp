@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/lidar_thread.hpp"
+
+namespace isobar {
+
+LidarThread::LidarThread(const velodyne::VelodyneConfig& config, const std::string& address, std::uint16_t port,
+                         ThreadSettings settings)
+    : settings_(std::move(settings)),
+      receiver_(address, port),
+      decoder_(config),
+      publisher_(ipc::topics::kLidarScan) {}
+
+LidarThread::~LidarThread() {
+  stop();
+  if (loaned_ != nullptr) publisher_.discard(loaned_);
+}
+
+void LidarThread::start() { thread_ = std::thread([this] { loop(); }); }
+
+void LidarThread::stop() noexcept {
+  receiver_.stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+void LidarThread::loop() noexcept {
+  constexpr int kReportEveryMs = 200;
+  (void)apply_to_this_thread(settings_);
+  loaned_ = publisher_.loan();
+  ReceivedDatagram datagram;
+  for (;;) {
+    switch (receiver_.receive(datagram, kReportEveryMs)) {
+      case UdpReceiver::Status::kDatagram:
+        take_packet(datagram);
+        break;
+      case UdpReceiver::Status::kStopped:
+        report();
+        return;
+      case UdpReceiver::Status::kTimeout:
+      case UdpReceiver::Status::kError:
+        break;
+    }
+    report();
+  }
+}
+
+void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
+  own_.last_packet_ns = datagram.stamp_ns;
+  Scan& scan = loaned_ != nullptr ? *loaned_ : unpublished_;
+  if (decoder_.add_packet(datagram.payload, datagram.stamp_ns, scan).scan_complete) hand_over();
+}
+
+void LidarThread::hand_over() noexcept {
+  if (loaned_ != nullptr) {
+    publisher_.publish(loaned_);
+  } else {
+    ++own_.scans_without_memory;
+  }
+  loaned_ = publisher_.loan();
+}
+
+void LidarThread::report() noexcept {
+  own_.counters = decoder_.counters();
+  own_.dropped_by_kernel = receiver_.dropped_by_kernel();
+  status_.put(own_);
+}
+
+}  // namespace isobar

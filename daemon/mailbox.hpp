@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+namespace isobar {
+
+/// The newest value of one writer thread for any reader thread: a sequence lock. The writer never waits; a reader
+/// that meets a write tries again. (H.-J. Boehm, "Can seqlocks get along with programming language memory
+/// models?", 2012: the words are atomics, so that there is no data race.)
+template <class T>
+class Mailbox {
+  static_assert(std::is_trivially_copyable_v<T>);
+  static constexpr std::size_t kWords = (sizeof(T) + 7) / 8;
+
+ public:
+  Mailbox() { put(T{}); }
+
+  /// Writer's thread only.
+  void put(const T& value) noexcept {
+    std::array<std::uint64_t, kWords> words{};
+    std::memcpy(words.data(), &value, sizeof(T));
+    const std::uint32_t before = sequence_.load(std::memory_order_relaxed);
+    sequence_.store(before + 1, std::memory_order_relaxed);
+    // Each word is released after the odd number: whoever reads a new word also sees the odd number.
+    for (std::size_t i = 0; i < kWords; ++i) words_[i].store(words[i], std::memory_order_release);
+    sequence_.store(before + 2, std::memory_order_release);
+  }
+
+  /// Any thread.
+  [[nodiscard]] T get() const noexcept {
+    std::array<std::uint64_t, kWords> words{};
+    for (;;) {
+      const std::uint32_t before = sequence_.load(std::memory_order_acquire);
+      for (std::size_t i = 0; i < kWords; ++i) words[i] = words_[i].load(std::memory_order_acquire);
+      if ((before & 1U) == 0U && sequence_.load(std::memory_order_relaxed) == before) break;
+    }
+    T value{};
+    std::memcpy(static_cast<void*>(&value), words.data(), sizeof(T));
+    return value;
+  }
+
+ private:
+  std::atomic<std::uint32_t> sequence_{0};
+  std::array<std::atomic<std::uint64_t>, kWords> words_{};
+};
+
+}  // namespace isobar

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/map_thread.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <exception>
+
+#include "daemon/cpu_time.hpp"
+
+namespace isobar {
+
+MapThread::MapThread(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, double cloud_interval_s,
+                     RunOutput* output, ThreadSettings settings)
+    : settings_(std::move(settings)),
+      map_(config, T_base_lidar),
+      snapshots_(map_.snapshot()),
+      scans_(ipc::topics::kRegisteredScan),
+      clouds_(ipc::topics::kMapCloud),
+      waiter_({&scans_.raw()}),
+      output_(output),
+      cloud_interval_ns_(static_cast<std::int64_t>(cloud_interval_s * 1e9)) {}
+
+MapThread::~MapThread() { stop(); }
+
+void MapThread::start() { thread_ = std::thread([this] { loop(); }); }
+
+void MapThread::stop() noexcept {
+  waiter_.stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+void MapThread::loop() noexcept {
+  (void)apply_to_this_thread(settings_);
+  while (waiter_.wait() != ipc::Waiter::Event::kStopped) drain();
+  points_.clear();
+  map_.append_points(points_);
+  write_evicted();
+}
+
+void MapThread::drain() noexcept {
+  while (const auto scan = scans_.take()) {
+    points_.clear();
+    const CpuTimer timer;
+    if (map_.update(*scan, points_)) {
+      snapshots_.publish(map_.snapshot());
+      own_.update_ms = timer.elapsed_ms();
+      ++own_.updates;
+    }
+    write_evicted();
+    publish_cloud(scan->pose.stamp_ns);
+    ++own_.scans;
+  }
+  own_.dropped_scans = scans_.dropped();
+  own_.cells = map_.cell_count();
+  own_.tiles = map_.tile_count();
+  own_.seen_through = map_.seen_through_count();
+  status_.put(own_);
+}
+
+void MapThread::write_evicted() noexcept {
+  if (output_ == nullptr || points_.empty()) return;
+  try {
+    output_->add_map_points(points_);
+  } catch (const std::exception& error) {
+    spdlog::error("map file: {}; the map is no longer written, the pose goes on", error.what());
+    output_ = nullptr;
+  }
+}
+
+void MapThread::publish_cloud(std::int64_t stamp_ns) noexcept {
+  if (stamp_ns - last_cloud_ns_ < cloud_interval_ns_ || !clouds_.has_subscribers()) return;
+  ipc::MapCloud* cloud = clouds_.loan();
+  if (cloud == nullptr) return;
+  last_cloud_ns_ = stamp_ns;
+  points_.clear();
+  map_.append_points(points_);
+  const std::size_t stride = points_.size() / ipc::MapCloud::kMaxPoints + 1;
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < points_.size(); i += stride) {
+    const MapPoint& point = points_[i];
+    ScanPoint& out = cloud->points[count++];
+    out.x_m = static_cast<float>(point.p_map.x());
+    out.y_m = static_cast<float>(point.p_map.y());
+    out.z_m = static_cast<float>(point.p_map.z());
+    out.intensity = point.intensity;
+  }
+  cloud->stamp_ns = stamp_ns;
+  cloud->sequence = cloud_sequence_++;
+  cloud->point_count = count;
+  clouds_.publish(cloud);
+}
+
+}  // namespace isobar

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+#include "core/map/local_map.hpp"
+#include "core/map/snapshot_exchange.hpp"
+#include "daemon/mailbox.hpp"
+#include "daemon/realtime.hpp"
+#include "daemon/run_output.hpp"
+#include "ipc/shared_memory.hpp"
+
+namespace isobar {
+
+/// What the map thread says of itself.
+struct MapStatus {
+  std::uint64_t scans = 0;
+  std::uint64_t dropped_scans = 0;
+  std::uint64_t updates = 0;
+  std::uint64_t cells = 0;
+  std::uint64_t tiles = 0;
+  std::uint64_t seen_through = 0;
+  double update_ms = 0.0;  ///< CPU time of the last update
+};
+
+/// Registered scans in; immutable snapshots for the registration and clouds for viewers out. Not real-time: it
+/// allocates, and it is the one that frees old snapshots.
+class MapThread {
+ public:
+  /// `output` may be null; else it gets the points that leave the local map, from this thread only.
+  MapThread(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, double cloud_interval_s,
+            RunOutput* output, ThreadSettings settings);
+  ~MapThread();
+  MapThread(const MapThread&) = delete;
+  MapThread& operator=(const MapThread&) = delete;
+
+  void start();
+  /// Returns when the thread has ended; what is in the local map has gone to the output then.
+  void stop() noexcept;
+
+  [[nodiscard]] SnapshotExchange<MapSnapshot>& snapshots() noexcept { return snapshots_; }
+  [[nodiscard]] MapStatus status() const noexcept { return status_.get(); }
+
+ private:
+  void loop() noexcept;
+  void drain() noexcept;
+  void write_evicted() noexcept;
+  void publish_cloud(std::int64_t stamp_ns) noexcept;
+
+  ThreadSettings settings_;
+  LocalMap map_;
+  SnapshotExchange<MapSnapshot> snapshots_;
+  ipc::Subscriber<RegisteredScan> scans_;
+  ipc::Publisher<ipc::MapCloud> clouds_;
+  ipc::Waiter waiter_;
+  RunOutput* output_;
+  std::int64_t cloud_interval_ns_;
+  std::int64_t last_cloud_ns_ = 0;
+  std::uint32_t cloud_sequence_ = 0;
+  std::vector<MapPoint> points_;  ///< scratch
+  MapStatus own_;
+  Mailbox<MapStatus> status_;
+  std::thread thread_;
+};
+
+}  // namespace isobar

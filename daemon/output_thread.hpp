@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <thread>
+
+#include "daemon/realtime.hpp"
+#include "daemon/run_output.hpp"
+#include "ipc/shared_memory.hpp"
+
+namespace isobar {
+
+/// Writes every pose to the folder of the run. Not real-time; a full disk ends the writing, never the poses.
+class OutputThread {
+ public:
+  OutputThread(RunOutput& output, ThreadSettings settings);
+  ~OutputThread();
+  OutputThread(const OutputThread&) = delete;
+  OutputThread& operator=(const OutputThread&) = delete;
+
+  void start();
+  void stop() noexcept;  ///< returns when the thread has ended and every waiting pose is written
+
+ private:
+  void loop() noexcept;
+  void drain() noexcept;
+
+  ThreadSettings settings_;
+  RunOutput* output_;
+  ipc::Subscriber<PoseEstimate> poses_;
+  ipc::Subscriber<Prior> priors_;
+  ipc::Waiter waiter_;
+  Prior newest_prior_;
+  std::thread thread_;
+};
+
+}  // namespace isobar

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <thread>
+
+#include "core/prior/prior_estimator.hpp"
+#include "daemon/mailbox.hpp"
+#include "daemon/realtime.hpp"
+#include "ipc/shared_memory.hpp"
+
+namespace isobar {
+
+/// What the prior thread says of itself.
+struct PriorStatus {
+  PriorCounters counters;
+  std::uint64_t dropped_samples = 0;  ///< lost because this thread came too late
+  std::int64_t stamp_ns = 0;          ///< of the newest prior, 0: none yet
+  double height_m = 0.0;
+  double height_variance_m2 = 0.0;
+  HeightSource height_source = HeightSource::kNone;
+  bool attitude_valid = false;
+  bool velocity_valid = false;
+};
+
+/// Samples in, one prior an IMU sample out.
+class PriorThread {
+ public:
+  PriorThread(const PriorConfig& config, ThreadSettings settings);
+  ~PriorThread();
+  PriorThread(const PriorThread&) = delete;
+  PriorThread& operator=(const PriorThread&) = delete;
+
+  void start();
+  void stop() noexcept;  ///< returns when the thread has ended
+
+  [[nodiscard]] PriorStatus status() const noexcept { return status_.get(); }
+
+ private:
+  void loop() noexcept;
+  void drain() noexcept;
+  void report(const Prior& prior) noexcept;
+
+  ThreadSettings settings_;
+  PriorEstimator estimator_;
+  ipc::Subscriber<ImuSample> imu_;
+  ipc::Subscriber<PressureSample> barometer_;
+  ipc::Subscriber<PressureSample> base_barometer_;
+  ipc::Subscriber<WheelSample> wheel_;
+  ipc::Publisher<Prior> publisher_;
+  ipc::Waiter waiter_;
+  Mailbox<PriorStatus> status_;
+  std::thread thread_;
+};
+
+}  // namespace isobar

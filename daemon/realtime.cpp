@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/realtime.hpp"
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+
+#include <cstring>
+
+namespace isobar {
+
+std::string apply_to_this_thread(const ThreadSettings& settings) noexcept {
+  std::string refused;
+  pthread_setname_np(pthread_self(), settings.name.substr(0, 15).c_str());
+  if (!settings.cpus.empty()) {
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    for (const int cpu : settings.cpus) CPU_SET(static_cast<unsigned>(cpu), &set);
+    if (const int error = pthread_setaffinity_np(pthread_self(), sizeof(set), &set); error != 0) {
+      refused += settings.name + ": cores not set: " + std::strerror(error) + "; ";
+    }
+  }
+  if (settings.fifo_priority > 0) {
+    sched_param parameters{};
+    parameters.sched_priority = settings.fifo_priority;
+    if (const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters); error != 0) {
+      refused += settings.name + ": SCHED_FIFO " + std::to_string(settings.fifo_priority) +
+                 " refused: " + std::strerror(error) + " (LimitRTPRIO= or CAP_SYS_NICE allows it)";
+    }
+  }
+  return refused;
+}
+
+std::string lock_memory() noexcept {
+  if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return {};
+  return std::string("memory not locked: ") + std::strerror(errno) + " (LimitMEMLOCK=infinity allows it)";
+}
+
+}  // namespace isobar

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scheduling, affinity and memory locking of a thread of the pipeline.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace isobar {
+
+/// How one thread of the pipeline is scheduled.
+struct ThreadSettings {
+  std::string name;        ///< as `top -H` shows it, 15 characters at most
+  int fifo_priority = 0;   ///< SCHED_FIFO 1 … 99; 0 leaves the thread to the ordinary scheduler
+  std::vector<int> cpus{}; ///< cores that it may run on; empty: all
+};
+
+/// Applies the settings to the calling thread. Returns an empty string, or what was refused and how to allow it
+/// (a robot still drives without real-time rights; the health report says so).
+[[nodiscard]] std::string apply_to_this_thread(const ThreadSettings& settings) noexcept;
+
+/// Keeps all present and future pages of the process in memory. Returns an empty string or what was refused.
+[[nodiscard]] std::string lock_memory() noexcept;
+
+}  // namespace isobar

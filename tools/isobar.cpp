@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `isobar`: the person's tool. Exit codes: 0, 64 usage, 65 data, 69 service, 78 configuration.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "core/errors.hpp"
+#include "tools/commands.hpp"
+
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App app{"Isobar: lidar localisation that keeps its height, with air pressure.\n"
+               "Exit codes: 0 done, 64 usage, 65 bad data, 69 service unavailable, 78 bad configuration."};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", ISOBAR_VERSION);
+  app.get_formatter()->column_width(32);
+  isobar::tools::add_simulate_command(app);
+  isobar::tools::add_replay_command(app);
+  isobar::tools::add_evaluate_command(app);
+  isobar::tools::add_experiment_command(app);
+  isobar::tools::add_play_command(app);
+  isobar::tools::add_config_command(app);
+#if ISOBAR_WITH_DDS
+  isobar::tools::add_echo_command(app);
+#endif
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    const bool asked_for_help = error.get_exit_code() == 0;
+    app.exit(error);
+    return asked_for_help ? 0 : 64;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const isobar::Error& error) {
+    std::fprintf(stderr, "isobar: %s\n", error.what());
+    return error.exit_code();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "isobar: unexpected: %s\n", error.what());
+    return 70;
+  }
+}
