@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "core/geometry.hpp"
+#include "core/registration/pose_propagator.hpp"
+
+namespace isobar::dds {
+
+/// What isobar-dds says, to whom, and under which names. Section [dds] of the configuration.
+struct DdsConfig {
+  /// DDS domain, ROS_DOMAIN_ID of the nodes that listen, 0 … 232 (the ports of more do not exist).
+  int domain_id = 0;
+  /// Network interface to speak on, by name or address; empty: the best one of the machine, and loopback
+  /// where there is no other.
+  std::string network_interface;
+  /// Largest datagram [bytes], 1472 … 65500. The default is Cyclone's own; 65500 halves the load of clouds
+  /// where nobody minds IP fragments, as on loopback.
+  int max_message_bytes = 14720;
+
+  /// Put before the topics' names, such as "robot1"; empty: none. Never before /tf, /tf_static, /diagnostics.
+  std::string ros_namespace;
+  /// Under this name ROS 2 tools show the bridge.
+  std::string node_name = "isobar";
+  /// Bytes of an endpoint's id in ros_discovery_info: 16 from ROS 2 Iron on, 24 up to Humble.
+  int ros_gid_bytes = 16;
+
+  std::string map_frame = "map";
+  std::string odom_frame = "odom";
+  std::string base_frame = "base_link";
+  std::string lidar_frame = "lidar";
+  std::string imu_frame = "imu";
+  std::string barometer_frame = "barometer";
+
+  /// Rate of odom and tf [Hz], 1 … 200; the IMU's rate if that is lower. 100 serves controllers.
+  double odom_rate_hz = 100.0;
+  /// Rate of altitude [Hz], 0.1 … 200. Air pressure is filtered to a few hertz anyway.
+  double altitude_rate_hz = 10.0;
+  /// Publish each registered scan and the map. Off saves most of the bridge's load.
+  bool publish_clouds = true;
+
+  /// How corrections of the registration enter odom.
+  PosePropagatorConfig propagator;
+};
+
+/// Where the sensors sit in base_link, for /tf_static.
+struct SensorMounts {
+  Mount lidar;
+  Mount imu;
+  Mount barometer;
+};
+
+/// @throws ConfigError naming the key and the rule that it breaks
+void validate(const DdsConfig& config);
+
+}  // namespace isobar::dds

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One writer or one reader of one topic.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "ipc/dds/participant.hpp"
+#include "ipc/dds/topics.hpp"
+
+namespace isobar::dds {
+
+/// Writes a topic. One thread at a time.
+template <class Message>
+class Writer {
+ public:
+  /// @throws ServiceError DDS refuses
+  Writer(dds_entity_t participant, const DdsTopic<Message>& topic, const std::string& ros_namespace = {}) {
+    const std::string name = dds_name(topic, ros_namespace);
+    topic_ = checked(dds_create_topic(participant, topic.descriptor, name.c_str(), nullptr, nullptr),
+                     "topic " + name);
+    const QosPointer qos = endpoint_qos(topic.delivery, topic.depth);
+    writer_ = checked(dds_create_writer(participant, topic_.get(), qos.get(), nullptr), "writer of " + name);
+  }
+
+  /// False when it could not be sent, which is counted: somebody reads too slowly.
+  bool write(const Message& message) noexcept {
+    if (dds_write(writer_.get(), &message) == DDS_RETCODE_OK) {
+      return true;
+    }
+    ++failures_;
+    return false;
+  }
+  [[nodiscard]] std::uint64_t failures() const noexcept { return failures_; }
+  [[nodiscard]] dds_entity_t get() const noexcept { return writer_.get(); }
+
+  /// Does anybody listen? Latched topics are worth writing even if not.
+  [[nodiscard]] bool has_readers() const noexcept {
+    dds_publication_matched_status_t status{};
+    return dds_get_publication_matched_status(writer_.get(), &status) == DDS_RETCODE_OK &&
+           status.current_count > 0;
+  }
+
+ private:
+  Entity topic_;
+  Entity writer_;
+  std::uint64_t failures_ = 0;
+};
+
+/// Reads a topic. One thread at a time.
+template <class Message>
+class Reader {
+ public:
+  /// @throws ServiceError DDS refuses
+  Reader(dds_entity_t participant, const DdsTopic<Message>& topic, const std::string& ros_namespace = {}) {
+    const std::string name = dds_name(topic, ros_namespace);
+    topic_ = checked(dds_create_topic(participant, topic.descriptor, name.c_str(), nullptr, nullptr),
+                     "topic " + name);
+    const QosPointer qos = endpoint_qos(topic.delivery, topic.depth);
+    reader_ = checked(dds_create_reader(participant, topic_.get(), qos.get(), nullptr), "reader of " + name);
+  }
+
+  /// Hands every waiting message to `use(const Message&)`; they are valid during the call only.
+  /// @return how many there were
+  template <class Use>
+  int take(Use&& use) {
+    int used = 0;
+    for (;;) {
+      void* sample = nullptr;
+      dds_sample_info_t info{};
+      if (dds_take(reader_.get(), &sample, &info, 1, 1) <= 0) {
+        return used;
+      }
+      if (info.valid_data) {
+        use(*static_cast<const Message*>(sample));
+        ++used;
+      }
+      dds_return_loan(reader_.get(), &sample, 1);
+    }
+  }
+  [[nodiscard]] dds_entity_t get() const noexcept { return reader_.get(); }
+
+ private:
+  Entity topic_;
+  Entity reader_;
+};
+
+}  // namespace isobar::dds

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ipc/dds/messages.hpp"
+
+#include <bit>
+#include <cstddef>
+#include <cstdio>
+
+namespace isobar::dds {
+namespace {
+
+constexpr std::int64_t kSecondNs = 1'000'000'000;
+
+// sensor_msgs/PointField's numbers of the types
+constexpr std::uint8_t kUint8 = 2;
+constexpr std::uint8_t kFloat32 = 7;
+
+static_assert(std::endian::native == std::endian::little, "points are sent as they are in memory");
+
+void fill_vector(const Eigen::Vector3d& vector, geometry_msgs_msg_dds__Vector3_& message) noexcept {
+  message.x = vector.x();
+  message.y = vector.y();
+  message.z = vector.z();
+}
+
+void fill_rotation(const Eigen::Isometry3d& T, geometry_msgs_msg_dds__Quaternion_& message) noexcept {
+  Eigen::Quaterniond q(T.linear());
+  q.normalize();
+  message.x = q.x();
+  message.y = q.y();
+  message.z = q.z();
+  message.w = q.w();
+}
+
+void fill_pose_of(const Eigen::Isometry3d& T, geometry_msgs_msg_dds__Pose_& message) noexcept {
+  message.position.x = T.translation().x();
+  message.position.y = T.translation().y();
+  message.position.z = T.translation().z();
+  fill_rotation(T, message.orientation);
+}
+
+/// ROS wants the rows one after the other, in the order of Matrix6d's variables.
+void fill_covariance(const Matrix6d& covariance, double (&message)[36]) noexcept {  // NOLINT
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 6; ++column) {
+      message[row * 6 + column] = covariance(row, column);
+    }
+  }
+}
+
+}  // namespace
+
+TimeMessage to_time(std::int64_t stamp_ns) noexcept {
+  std::int64_t seconds = stamp_ns / kSecondNs;
+  std::int64_t rest = stamp_ns % kSecondNs;
+  if (rest < 0) {
+    --seconds;
+    rest += kSecondNs;
+  }
+  return {static_cast<std::int32_t>(seconds), static_cast<std::uint32_t>(rest)};
+}
+
+std::int64_t to_stamp_ns(const TimeMessage& time) noexcept {
+  return static_cast<std::int64_t>(time.sec) * kSecondNs + static_cast<std::int64_t>(time.nanosec);
+}
+
+void fill_header(std::int64_t stamp_ns, const std::string& frame, HeaderMessage& header) noexcept {
+  header.stamp = to_time(stamp_ns);
+  header.frame_id = text(frame);
+}
+
+void fill_odometry(const Odometry& odometry, const DdsConfig& names, OdometryMessage& message) noexcept {
+  fill_header(odometry.stamp_ns, names.odom_frame, message.header);
+  message.child_frame_id = text(names.base_frame);
+  fill_pose_of(odometry.T_odom_base, message.pose.pose);
+  fill_covariance(odometry.pose_covariance, message.pose.covariance);
+  fill_vector(odometry.v_base_m_s, message.twist.twist.linear);
+  fill_vector(odometry.w_base_rad_s, message.twist.twist.angular);
+  fill_covariance(odometry.twist_covariance, message.twist.covariance);
+}
+
+void fill_pose(const PoseEstimate& pose, const DdsConfig& names, PoseMessage& message) noexcept {
+  fill_header(pose.stamp_ns, names.map_frame, message.header);
+  fill_pose_of(pose.T_map_base, message.pose.pose);
+  fill_covariance(pose.covariance, message.pose.covariance);
+}
+
+void fill_altitude(const Prior& prior, const DdsConfig& names, AltitudeMessage& message) noexcept {
+  fill_header(prior.stamp_ns, names.map_frame, message.header);
+  message.height = prior.height_m;
+  message.variance = prior.height_variance_m2;
+  message.source = text(name_of(prior.height_source));
+}
+
+void fill_transform(std::int64_t stamp_ns, const std::string& parent, const std::string& child,
+                    const Eigen::Isometry3d& T_parent_child, TransformStampedMessage& message) noexcept {
+  fill_header(stamp_ns, parent, message.header);
+  message.child_frame_id = text(child);
+  fill_vector(T_parent_child.translation(), message.transform.translation);
+  fill_rotation(T_parent_child, message.transform.rotation);
+}
+
+const char* name_of(HeightSource source) noexcept {
+  switch (source) {
+    case HeightSource::kDifferential:
+      return "differential";
+    case HeightSource::kSingleBarometer:
+      return "single_barometer";
+    case HeightSource::kHeld:
+      return "held";
+    case HeightSource::kNone:
+      break;
+  }
+  return "none";
+}
+
+CloudBuilder::CloudBuilder()
+    : fields_{{{text("x"), offsetof(ScanPoint, x_m), kFloat32, 1},
+               {text("y"), offsetof(ScanPoint, y_m), kFloat32, 1},
+               {text("z"), offsetof(ScanPoint, z_m), kFloat32, 1},
+               {text("intensity"), offsetof(ScanPoint, intensity), kUint8, 1},
+               {text("ring"), offsetof(ScanPoint, ring), kUint8, 1}}} {
+  message_.fields._buffer = fields_.data();
+  message_.height = 1;
+  message_.point_step = sizeof(ScanPoint);
+  message_.is_dense = true;
+}
+
+const CloudMessage& CloudBuilder::build(std::int64_t stamp_ns, const std::string& frame,
+                                        const ScanPoint* points, std::uint32_t count,
+                                        bool with_ring) noexcept {
+  fill_header(stamp_ns, frame, message_.header);
+  const auto field_count = static_cast<std::uint32_t>(with_ring ? fields_.size() : fields_.size() - 1);
+  message_.fields._length = message_.fields._maximum = field_count;
+  message_.width = count;
+  message_.row_step = count * message_.point_step;
+  message_.data._length = message_.data._maximum = message_.row_step;
+  // Cyclone only reads what it writes, so that the points need not be copied first.
+  message_.data._buffer = const_cast<std::uint8_t*>(reinterpret_cast<const std::uint8_t*>(points));  // NOLINT
+  return message_;
+}
+
+DiagnosticsBuilder::DiagnosticsBuilder() {
+  for (std::size_t i = 0; i < kMaxStatuses; ++i) {
+    values_[i] = {text("value"), texts_[i].value.data()};
+    statuses_[i].name = texts_[i].name.data();
+    statuses_[i].message = texts_[i].message.data();
+    statuses_[i].hardware_id = text("isobar");
+    statuses_[i].values._buffer = &values_[i];
+    statuses_[i].values._length = statuses_[i].values._maximum = 1;
+  }
+  message_.header.frame_id = text("");
+  message_.status._buffer = statuses_.data();
+  message_.status._maximum = kMaxStatuses;
+}
+
+void DiagnosticsBuilder::start(std::int64_t stamp_ns) noexcept {
+  message_.header.stamp = to_time(stamp_ns);
+  message_.status._length = 0;
+}
+
+void DiagnosticsBuilder::add(const char* name, ipc::HealthLevel level, const char* message,
+                             double value) noexcept {
+  const std::size_t index = message_.status._length;
+  if (index >= kMaxStatuses) {
+    return;
+  }
+  ++message_.status._length;
+  Texts& texts = texts_[index];
+  std::snprintf(texts.name.data(), texts.name.size(), "isobar: %s", name);
+  std::snprintf(texts.message.data(), texts.message.size(), "%s", message);
+  std::snprintf(texts.value.data(), texts.value.size(), "%.9g", value);
+  statuses_[index].level = static_cast<std::uint8_t>(level);
+}
+
+}  // namespace isobar::dds

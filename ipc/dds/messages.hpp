@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Isobar's values in ROS 2's messages. Texts in the messages point to what the caller keeps alive.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "core/estimates.hpp"
+#include "core/registration/pose_propagator.hpp"
+#include "ipc/dds/dds_config.hpp"
+#include "ipc/dds/topics.hpp"
+#include "ipc/topics.hpp"
+
+namespace isobar::dds {
+
+using TimeMessage = builtin_interfaces_msg_dds__Time_;
+using HeaderMessage = std_msgs_msg_dds__Header_;
+using TransformStampedMessage = geometry_msgs_msg_dds__TransformStamped_;
+using PointFieldMessage = sensor_msgs_msg_dds__PointField_;
+
+/// The generated C types want a pointer to characters that may change; nothing here changes them.
+[[nodiscard]] inline char* text(const char* value) noexcept { return const_cast<char*>(value); }
+[[nodiscard]] inline char* text(const std::string& value) noexcept { return text(value.c_str()); }
+
+/// Nanoseconds since the epoch, before it too: ROS counts the nanoseconds upwards from the second below.
+[[nodiscard]] TimeMessage to_time(std::int64_t stamp_ns) noexcept;
+[[nodiscard]] std::int64_t to_stamp_ns(const TimeMessage& time) noexcept;
+
+void fill_header(std::int64_t stamp_ns, const std::string& frame, HeaderMessage& header) noexcept;
+void fill_odometry(const Odometry& odometry, const DdsConfig& names, OdometryMessage& message) noexcept;
+void fill_pose(const PoseEstimate& pose, const DdsConfig& names, PoseMessage& message) noexcept;
+void fill_altitude(const Prior& prior, const DdsConfig& names, AltitudeMessage& message) noexcept;
+void fill_transform(std::int64_t stamp_ns, const std::string& parent, const std::string& child,
+                    const Eigen::Isometry3d& T_parent_child, TransformStampedMessage& message) noexcept;
+
+/// differential | single_barometer | held | none
+[[nodiscard]] const char* name_of(HeightSource source) noexcept;
+
+/// Builds PointCloud2 messages over points that stay where they are: a ScanPoint is sent as its 16 bytes.
+/// Fields: x, y, z (float32, metres), intensity (uint8) and, for scans, ring (uint8).
+class CloudBuilder {
+ public:
+  CloudBuilder();
+  CloudBuilder(const CloudBuilder&) = delete;
+  CloudBuilder& operator=(const CloudBuilder&) = delete;
+
+  /// The message is valid until the next call, and as long as `points` and `frame` are.
+  [[nodiscard]] const CloudMessage& build(std::int64_t stamp_ns, const std::string& frame,
+                                          const ScanPoint* points, std::uint32_t count,
+                                          bool with_ring) noexcept;
+
+ private:
+  std::array<PointFieldMessage, 5> fields_{};
+  CloudMessage message_{};
+};
+
+/// Builds the diagnostics of isobard's health report and of the bridge itself.
+class DiagnosticsBuilder {
+ public:
+  DiagnosticsBuilder();
+  DiagnosticsBuilder(const DiagnosticsBuilder&) = delete;
+  DiagnosticsBuilder& operator=(const DiagnosticsBuilder&) = delete;
+
+  void start(std::int64_t stamp_ns) noexcept;
+  /// Adds what health entries say; those that do not fit are left out. Texts are copied.
+  void add(const char* name, ipc::HealthLevel level, const char* message, double value) noexcept;
+  [[nodiscard]] const DiagnosticsMessage& message() const noexcept { return message_; }
+
+  static constexpr std::size_t kMaxStatuses = ipc::HealthReport::kMaxEntries + 16;
+
+ private:
+  struct Texts {
+    std::array<char, ipc::HealthEntry::kNameBytes + 16> name{};
+    std::array<char, ipc::HealthEntry::kMessageBytes> message{};
+    std::array<char, 32> value{};
+  };
+  std::array<Texts, kMaxStatuses> texts_{};
+  std::array<diagnostic_msgs_msg_dds__KeyValue_, kMaxStatuses> values_{};
+  std::array<diagnostic_msgs_msg_dds__DiagnosticStatus_, kMaxStatuses> statuses_{};
+  DiagnosticsMessage message_{};
+};
+
+}  // namespace isobar::dds

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every DDS topic: its ROS 2 name, its type, how it is delivered. The topic /a of ROS is rt/a in DDS.
+#pragma once
+
+#include <ros2.h>
+
+#include <cstdint>
+#include <string>
+
+#include "ipc/dds/qos.hpp"
+
+namespace isobar::dds {
+
+// The generated names are C's; these are the ROS 2 types.
+using OdometryMessage = nav_msgs_msg_dds__Odometry_;
+using PoseMessage = geometry_msgs_msg_dds__PoseWithCovarianceStamped_;
+using TfMessage = tf2_msgs_msg_dds__TFMessage_;
+using AltitudeMessage = isobar_msgs_msg_dds__Altitude_;
+using CloudMessage = sensor_msgs_msg_dds__PointCloud2_;
+using DiagnosticsMessage = diagnostic_msgs_msg_dds__DiagnosticArray_;
+using PressureMessage = sensor_msgs_msg_dds__FluidPressure_;
+using ImuMessage = sensor_msgs_msg_dds__Imu_;
+
+/// One row of the table below.
+template <class Message>
+struct DdsTopic {
+  const char* name;  ///< ROS name, without the leading slash
+  const dds_topic_descriptor_t* descriptor;
+  Delivery delivery;
+  int depth;
+  bool is_global;  ///< stays outside the robot's namespace
+};
+
+namespace topics {
+
+// clang-format off
+inline const DdsTopic<OdometryMessage> kOdom{"odom", &nav_msgs_msg_dds__Odometry__desc, Delivery::kReliable, 10, false};
+inline const DdsTopic<PoseMessage> kPose{"pose", &geometry_msgs_msg_dds__PoseWithCovarianceStamped__desc, Delivery::kReliable, 10, false};
+inline const DdsTopic<TfMessage> kTf{"tf", &tf2_msgs_msg_dds__TFMessage__desc, Delivery::kReliable, 100, true};
+inline const DdsTopic<TfMessage> kTfStatic{"tf_static", &tf2_msgs_msg_dds__TFMessage__desc, Delivery::kLatched, 1, true};
+inline const DdsTopic<AltitudeMessage> kAltitude{"altitude", &isobar_msgs_msg_dds__Altitude__desc, Delivery::kReliable, 10, false};
+inline const DdsTopic<CloudMessage> kRegisteredScan{"registered_scan", &sensor_msgs_msg_dds__PointCloud2__desc, Delivery::kReliable, 5, false};
+inline const DdsTopic<CloudMessage> kMap{"map", &sensor_msgs_msg_dds__PointCloud2__desc, Delivery::kLatched, 1, false};
+inline const DdsTopic<DiagnosticsMessage> kDiagnostics{"diagnostics", &diagnostic_msgs_msg_dds__DiagnosticArray__desc, Delivery::kReliable, 10, true};
+
+inline const DdsTopic<PressureMessage> kBasePressure{"base/fluid_pressure", &sensor_msgs_msg_dds__FluidPressure__desc, Delivery::kBestEffort, 5, true};
+inline const DdsTopic<ImuMessage> kImu{"imu/data", &sensor_msgs_msg_dds__Imu__desc, Delivery::kBestEffort, 5, false};
+inline const DdsTopic<OdometryMessage> kWheel{"wheel/odom", &nav_msgs_msg_dds__Odometry__desc, Delivery::kBestEffort, 5, false};
+// clang-format on
+
+}  // namespace topics
+
+/// The name in DDS: "rt/odom", or "rt/robot1/odom" in the namespace robot1.
+template <class Message>
+[[nodiscard]] std::string dds_name(const DdsTopic<Message>& topic, const std::string& ros_namespace) {
+  const bool plain = topic.is_global || ros_namespace.empty();
+  return plain ? std::string("rt/") + topic.name : "rt/" + ros_namespace + "/" + topic.name;
+}
+
+}  // namespace isobar::dds
