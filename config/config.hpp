@@ -12,6 +12,7 @@
 #include "core/map/map_config.hpp"
 #include "core/prior/prior_config.hpp"
 #include "core/registration/registration_config.hpp"
+#include "ipc/dds/dds_config.hpp"
 
 namespace isobar {
 
@@ -49,20 +50,6 @@ struct OutputSettings {
   double cloud_interval_s = 2.0;     ///< between map clouds for viewers, 0.2 … 3600
 };
 
-/// [dds]
-struct DdsSettings {
-  std::uint32_t domain = 0;        ///< 0 … 232, as ROS_DOMAIN_ID
-  std::string interface;           ///< network interface or address; empty: chosen by DDS, loopback if there is no other
-  std::string topic_prefix;        ///< put before every topic name, such as "robot1"; empty: none
-  std::string map_frame = "map";
-  std::string odom_frame = "odom";
-  std::string base_frame = "base_link";
-  std::string lidar_frame = "lidar";
-  std::string imu_frame = "imu";
-  std::string barometer_frame = "barometer";
-  double odom_rate_hz = 100.0;     ///< at most this many odom and tf messages a second, 1 … 1000
-};
-
 /// [realtime]
 struct RealtimeSettings {
   bool enabled = false;             ///< SCHED_FIFO, and all memory locked
@@ -81,7 +68,7 @@ struct Config {
   BarometerSettings barometer;
   InputSettings input;
   OutputSettings output;
-  DdsSettings dds;
+  dds::DdsConfig dds;  ///< [dds]
   RealtimeSettings realtime;
   /// Mounts in here (T_base_imu, p_base_port) are filled from [imu] and [barometer], or from the recording.
   PriorConfig prior;
