@@ -25,8 +25,8 @@ struct AirTemperatureConfig {
   /// Chips near a processor read 2 to 8 K too warm.
   double max_self_heating_k = 8.0;
 
-  /// Time constants with which the estimate goes down and up [s], 1 … 1e6. Down: a sensor colder than the estimate
-  /// proves colder air; the minute keeps the height from jumping (5 K at 12 m are 20 cm). Up: a
+  /// Time constants with which the estimate goes down and up [s], 1 … 1e6. Down: a sensor colder than the
+  /// estimate proves colder air; the minute keeps the height from jumping (5 K at 12 m are 20 cm). Up: a
   /// rising reading is self-heating rather than weather, so it is believed only over an hour.
   double fall_time_s = 60.0;
   double rise_time_s = 3600.0;
@@ -47,7 +47,8 @@ struct AltimeterConfig {
   double max_pressure_pa = 115'000.0;
 
   /// Bounds of the white noise of one sample, estimated online [Pa], 0.001 … 1000. Below the floor no chip
-  /// goes (DPS310 at its best 0.2 Pa); `initial` holds until enough samples have come (DPS310, 32 Hz: 0.35 Pa).
+  /// goes (DPS310 at its best 0.2 Pa); `initial` holds until enough samples have come (DPS310, 32 Hz: 0.35
+  /// Pa).
   double noise_floor_pa = 0.1;
   double noise_ceiling_pa = 20.0;
   double initial_noise_pa = 0.5;
@@ -62,12 +63,13 @@ struct AltimeterConfig {
   double base_timeout_s = 10.0;
 
   /// Difference between successive samples of one sensor that no motion explains [Pa], 1 … 1e5: a spike.
-  /// 200 Pa is 17 m in one sample. A new level is believed once `spike_confirmations` samples agree on it (1 … 1000).
+  /// 200 Pa is 17 m in one sample. A new level is believed once `spike_confirmations` samples agree on it (1
+  /// … 1000).
   double spike_pa = 200.0;
   std::uint32_t spike_confirmations = 16;
 
-  /// A sensor whose value has not changed by one bit for longer is stuck, and counts as silent [s], 0.5 … 600.
-  /// Noise alone changes a working sensor's last digit at every conversion.
+  /// A sensor whose value has not changed by one bit for longer is stuck, and counts as silent [s], 0.5 …
+  /// 600. Noise alone changes a working sensor's last digit at every conversion.
   double stuck_timeout_s = 3.0;
 };
 

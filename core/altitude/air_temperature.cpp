@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/altitude/air_temperature.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isobar {
+namespace {
+
+constexpr double kSecondsPerNs = 1e-9;
+constexpr double kLowestPlausibleC = -60.0;
+constexpr double kHighestPlausibleC = 100.0;
+// A thermometer silent for longer no longer says what the air is like now.
+constexpr double kForgetSensorS = 60.0;
+
+}  // namespace
+
+AirTemperatureTracker::AirTemperatureTracker(const AirTemperatureConfig& config)
+    : config_(config), estimate_c_(config.fixed_c) {}
+
+void AirTemperatureTracker::smooth(Thermometer& thermometer, std::int64_t stamp_ns,
+                                   double temperature_c) const {
+  const double dt_s = static_cast<double>(stamp_ns - thermometer.stamp_ns) * kSecondsPerNs;
+  if (!thermometer.started || dt_s > kForgetSensorS) {
+    thermometer = {stamp_ns, temperature_c, 0.0, true};
+    return;
+  }
+  if (dt_s <= 0.0) return;
+  // Plain mean at first, exponential once the smoothing time has passed: the first samples count most.
+  thermometer.weight_s = std::min(thermometer.weight_s + dt_s, config_.smoothing_time_s);
+  const double gain = std::min(1.0, dt_s / (thermometer.weight_s + dt_s));
+  thermometer.smooth_c += gain * (temperature_c - thermometer.smooth_c);
+  thermometer.stamp_ns = stamp_ns;
+}
+
+void AirTemperatureTracker::follow(double lowest_c, double dt_s) {
+  const double time_s = lowest_c < estimate_c_ ? config_.fall_time_s : config_.rise_time_s;
+  estimate_c_ += (lowest_c - estimate_c_) * -std::expm1(-dt_s / time_s);
+  // The clamp moves with the same unhurried time constant as a fall.
+  const double least_c = lowest_c - config_.max_self_heating_k;
+  if (estimate_c_ < least_c)
+    estimate_c_ += (least_c - estimate_c_) * -std::expm1(-dt_s / config_.fall_time_s);
+}
+
+void AirTemperatureTracker::add(std::size_t sensor, std::int64_t stamp_ns, double temperature_c) {
+  if (config_.mode == AirTemperatureMode::kFixed || sensor >= kSensors) return;
+  if (!(temperature_c >= kLowestPlausibleC && temperature_c <= kHighestPlausibleC)) return;
+  smooth(thermometers_[sensor], stamp_ns, temperature_c);
+  double lowest_c = kHighestPlausibleC;
+  for (const Thermometer& thermometer : thermometers_) {
+    const double age_s = static_cast<double>(stamp_ns - thermometer.stamp_ns) * kSecondsPerNs;
+    if (thermometer.started && age_s < kForgetSensorS) lowest_c = std::min(lowest_c, thermometer.smooth_c);
+  }
+  if (!started_) {
+    start_ns_ = stamp_ns_ = stamp_ns;
+    estimate_c_ = lowest_c;
+    started_ = true;
+    return;
+  }
+  if (stamp_ns <= stamp_ns_) return;
+  const double since_start_s = static_cast<double>(stamp_ns - start_ns_) * kSecondsPerNs;
+  const double dt_s = static_cast<double>(stamp_ns - stamp_ns_) * kSecondsPerNs;
+  stamp_ns_ = stamp_ns;
+  if (since_start_s < config_.smoothing_time_s) {
+    // The height is still zero: take the mean of the first seconds, of whichever sensor is colder, at once.
+    estimate_c_ = lowest_c;
+    return;
+  }
+  follow(lowest_c, dt_s);
+}
+
+}  // namespace isobar

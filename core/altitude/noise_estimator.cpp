@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/altitude/noise_estimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isobar {
+namespace {
+
+// The initial value counts as much as this many samples.
+constexpr double kInitialWeight = 10.0;
+// Squared differences are clipped at this many times their expectation; costs 0.5 % of the variance of a
+// Gaussian.
+constexpr double kClip = 9.0;
+
+}  // namespace
+
+NoiseEstimator::NoiseEstimator(const Options& options)
+    : options_(options),
+      variance_(options.initial_sigma * options.initial_sigma),
+      weight_(std::min(kInitialWeight, options.memory_samples)) {}
+
+void NoiseEstimator::set_lag(std::size_t lag) {
+  lag = std::clamp<std::size_t>(lag, 1, kMaxLag);
+  if (lag == lag_) return;
+  lag_ = lag;
+  restart();
+}
+
+void NoiseEstimator::add(double value) {
+  ring_[next_] = value;
+  const std::size_t size = ring_.size();
+  const double middle = ring_[(next_ + size - lag_) % size];
+  const double oldest = ring_[(next_ + size - 2 * lag_) % size];
+  next_ = (next_ + 1) % size;
+  filled_ = std::min(filled_ + 1, size);
+  if (filled_ <= 2 * lag_) return;
+  const double difference = value - 2.0 * middle + oldest;
+  const double floor_variance = options_.floor_sigma * options_.floor_sigma;
+  const double sample = std::min(difference * difference / 6.0, kClip * std::max(variance_, floor_variance));
+  weight_ = std::min(weight_ + 1.0, options_.memory_samples);
+  variance_ += (sample - variance_) / weight_;
+}
+
+void NoiseEstimator::restart() { filled_ = 0; }
+
+double NoiseEstimator::sigma() const {
+  return std::clamp(std::sqrt(variance_), options_.floor_sigma, options_.ceiling_sigma);
+}
+
+}  // namespace isobar

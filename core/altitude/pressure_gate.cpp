@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/altitude/pressure_gate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isobar {
+namespace {
+
+constexpr double kSecondsPerNs = 1e-9;
+// A fast lift in a high building: 10 m/s are 120 Pa/s. What a sensor may move while nobody looked.
+constexpr double kFastestChangePaS = 120.0;
+
+double seconds(std::int64_t from_ns, std::int64_t to_ns) {
+  return static_cast<double>(to_ns - from_ns) * kSecondsPerNs;
+}
+
+}  // namespace
+
+bool PressureGate::is_spike(const PressureSample& sample) {
+  const double allowed_pa = config_.spike_pa + kFastestChangePaS * seconds(fresh_stamp_ns_, sample.stamp_ns);
+  if (std::abs(sample.pressure_pa - pressure_pa_) <= allowed_pa) {
+    agreeing_ = 0;
+    return false;
+  }
+  const bool agrees = agreeing_ > 0 && std::abs(sample.pressure_pa - candidate_pa_) <= config_.spike_pa;
+  agreeing_ = agrees ? agreeing_ + 1 : 1;
+  candidate_pa_ = sample.pressure_pa;
+  if (agreeing_ < config_.spike_confirmations) return true;
+  agreeing_ = 0;
+  return false;
+}
+
+PressureStatus PressureGate::check(const PressureSample& sample) {
+  // Written so that NaN fails.
+  const bool plausible =
+      sample.pressure_pa >= config_.min_pressure_pa && sample.pressure_pa <= config_.max_pressure_pa;
+  if (!plausible) return PressureStatus::kBadValue;
+  if (started_) {
+    if (sample.stamp_ns <= alive_stamp_ns_) return PressureStatus::kBadTime;
+    if (sample.pressure_pa == pressure_pa_) {
+      alive_stamp_ns_ = sample.stamp_ns;
+      return PressureStatus::kRepeated;
+    }
+    if (is_spike(sample)) return PressureStatus::kBadValue;
+  }
+  started_ = true;
+  pressure_pa_ = sample.pressure_pa;
+  fresh_stamp_ns_ = alive_stamp_ns_ = sample.stamp_ns;
+  return PressureStatus::kAccepted;
+}
+
+bool PressureGate::lost(std::int64_t now_ns, double timeout_s) const {
+  if (!started_) return true;
+  return seconds(alive_stamp_ns_, now_ns) > timeout_s ||
+         seconds(fresh_stamp_ns_, now_ns) > std::max(config_.stuck_timeout_s, timeout_s);
+}
+
+}  // namespace isobar
