@@ -11,6 +11,8 @@ namespace {
 constexpr double kMaxSpeedMS = 15.0;
 /// Scans further apart than this say nothing about the velocity now.
 constexpr double kMaxScanGapS = 0.5;
+/// A pose may be this much younger than the last prior that was seen and still take its height.
+constexpr double kMaxHeightAgeS = 0.1;
 
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
   return static_cast<double>(to_ns - from_ns) * 1e-9;
@@ -97,6 +99,14 @@ Eigen::Isometry3d PosePropagator::best_pose(const Prior& prior) const {
 
 bool PosePropagator::height_at(std::int64_t stamp_ns, double& height_m) const {
   const std::size_t available = std::min(height_count_, kHeights);
+  if (available == 0) {
+    return false;
+  }
+  const Height& newest = heights_[(height_count_ - 1) % kHeights];
+  if (stamp_ns > newest.stamp_ns) {
+    height_m = newest.height_m;
+    return seconds_between(newest.stamp_ns, stamp_ns) <= kMaxHeightAgeS;
+  }
   for (std::size_t back = 1; back < available; ++back) {
     const Height& older = heights_[(height_count_ - 1 - back) % kHeights];
     const Height& newer = heights_[(height_count_ - back) % kHeights];

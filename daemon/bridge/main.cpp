@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// isobar-dds: the bridge between isobard's shared memory and DDS.
+//
+// It is a process of its own, so that no fault in a network parser reaches the estimator. It waits for
+// isobard as long as it takes; when isobard goes, it starts itself over, because a process cannot attach to
+// shared memory twice.
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/errors.hpp"
+#include "daemon/bridge/forwarding.hpp"
+#include "daemon/bridge/process.hpp"
+#include "daemon/bridge/settings.hpp"
+#include "ipc/dds/discovery.hpp"
+#include "ipc/dds/outputs.hpp"
+#include "ipc/dds/participant.hpp"
+#include "ipc/shared_memory.hpp"
+
+namespace isobar::bridge {
+namespace {
+
+using std::chrono_literals::operator""ms;
+using std::chrono_literals::operator""s;
+
+/// isobard sends hundreds of priors a second and its health every second. After this long without anything
+/// the way through shared memory is broken (this process was stopped for so long that it was given up, say).
+constexpr auto kMaxSilence = 5s;
+
+/// Everything on the DDS side.
+struct Network {
+  dds::Participant participant;
+  dds::PoseOutputs poses;
+  dds::CloudOutputs clouds;
+  dds::NodeAnnouncement announcement;
+
+  explicit Network(const Settings& settings)
+      : participant({settings.dds.domain_id, settings.dds.network_interface, settings.dds.max_message_bytes}),
+        poses(participant.get(), settings.dds, settings.mounts),
+        clouds(participant.get(), settings.dds),
+        announcement(participant.get(), settings.dds.ros_gid_bytes) {
+    std::vector<dds_entity_t> writers = poses.writers();
+    for (const dds_entity_t writer : clouds.writers()) {
+      writers.push_back(writer);
+    }
+    announcement.announce(settings.dds.ros_namespace, settings.dds.node_name, writers, {});
+  }
+};
+
+/// Null when the program was told to end meanwhile.
+std::unique_ptr<ipc::Attachment> wait_for_isobard(Network& network, StopSignals& signals,
+                                                  const ServiceManager& manager) {
+  dds::DiagnosticsBuilder builder;
+  for (bool told = false; !signals.wait_for(0ms);) {
+    manager.alive();
+    try {
+      return std::make_unique<ipc::Attachment>("isobar-dds", manager.interval());
+    } catch (const ServiceError& error) {
+      if (!told) {
+        spdlog::info("{}; waiting for it", error.what());
+        manager.status("waiting for isobard");
+        told = true;
+      }
+      report_absence(network.poses, builder);
+    }
+  }
+  return nullptr;
+}
+
+/// Why the bridge has to start over, if it has to.
+std::optional<std::string> reason_to_restart(const ipc::Attachment& attachment, const Forwarding& forwarding,
+                                             bool on_lonely_loopback) {
+  if (!attachment.broker_alive()) {
+    return "isobard has gone";
+  }
+  if (forwarding.silence() > kMaxSilence) {
+    return "isobard has been silent for " + std::to_string(kMaxSilence.count()) + " s";
+  }
+  if (on_lonely_loopback && dds::loopback_if_alone().empty()) {
+    return "a network has come up";
+  }
+  return std::nullopt;
+}
+
+/// Returns when told to end; starts over when it must.
+void forward(Network& network, const Settings& settings, const ipc::Attachment& attachment,
+             StopSignals& signals, const ServiceManager& manager) {
+  auto forwarding = std::make_unique<Forwarding>(network.poses, network.clouds, settings.dds.publish_clouds);
+  manager.status("forwarding");
+  spdlog::info("attached to isobard");
+  const bool on_lonely_loopback =
+      settings.dds.network_interface.empty() && !network.participant.network_interface().empty();
+  std::uint64_t rounds = 0;
+  while (!signals.wait_for(manager.interval())) {
+    if (forwarding->rounds() != rounds) {
+      rounds = forwarding->rounds();
+      manager.alive();
+    }
+    if (const auto reason = reason_to_restart(attachment, *forwarding, on_lonely_loopback)) {
+      spdlog::warn("{}; starting over", *reason);
+      // The readers learn that this participant ends. Nothing of shared memory is cleaned up: with isobard
+      // gone it cannot be, and the new program starts without it.
+      dds_delete(network.participant.get());
+      replace_process();
+    }
+  }
+}
+
+int run(const Settings& settings) {
+  StopSignals signals;
+  const ServiceManager manager;
+  ipc::set_fatal_action(&replace_process_later);
+  Network network(settings);
+  const std::string& interface = network.participant.network_interface();
+  spdlog::info("DDS domain {} on {}", settings.dds.domain_id, interface.empty() ? "the network" : interface);
+  manager.ready("DDS is up");
+  if (const auto attachment = wait_for_isobard(network, signals, manager)) {
+    forward(network, settings, *attachment, signals, manager);
+  }
+  manager.stopping();
+  spdlog::info("stopped");
+  return 0;
+}
+
+}  // namespace
+}  // namespace isobar::bridge
+
+int main(int argc, char** argv) {
+  isobar::bridge::remember_arguments(argv);
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("isobar-dds"));
+  spdlog::set_pattern("%n: %l: %v");
+  CLI::App app("isobar-dds: publishes what isobard estimates over DDS, as ROS 2 nodes understand it");
+  isobar::bridge::Options options;
+  isobar::bridge::add_options(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 64;
+  }
+  try {
+    return isobar::bridge::run(isobar::bridge::load_settings(options));
+  } catch (const isobar::Error& error) {
+    spdlog::error("{}", error.what());
+    return error.exit_code();
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return 70;
+  }
+}

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the bridge has to do with the operating system: signals, the service manager, starting over.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace isobar::bridge {
+
+/// SIGTERM and SIGINT as events of one thread. Make it before any other thread, which then never gets them.
+class StopSignals {
+ public:
+  StopSignals();
+  /// True when the program has been told to end, now or before.
+  [[nodiscard]] bool wait_for(std::chrono::milliseconds timeout);
+
+ private:
+  bool stopped_ = false;
+};
+
+/// Remembers how this program was started, so that replace_process() can do it again.
+void remember_arguments(char** argv);
+
+/// Starts this program over in place: same process id, same arguments, nothing else kept. Safe in a process
+/// whose libraries are in any state. Ends the process with code 69 if the system refuses.
+[[noreturn]] void replace_process() noexcept;
+
+/// The same after a second, for faults that may come back at once.
+[[noreturn]] void replace_process_later() noexcept;
+
+/// Talks to systemd where it is there, and does nothing elsewhere.
+class ServiceManager {
+ public:
+  ServiceManager();
+  void ready(const std::string& status) const;
+  void status(const std::string& status) const;
+  void stopping() const;
+  void alive() const;  ///< to be called at least every interval()
+  /// Half of the watchdog's time, or half a second where there is none or it is longer.
+  [[nodiscard]] std::chrono::milliseconds interval() const { return interval_; }
+
+ private:
+  std::chrono::milliseconds interval_{500};
+};
+
+}  // namespace isobar::bridge

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/bridge/settings.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace isobar::bridge {
+
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("--config", options.config_file, "configuration of isobard; its section [dds] is used")
+      ->type_name("FILE");
+  app.add_option("--domain", options.domain, "DDS domain, as ROS_DOMAIN_ID (0 to 232)")->type_name("N");
+  app.add_option("--interface", options.network_interface,
+                 "network interface to speak on, by name or address")
+      ->type_name("NAME");
+}
+
+Settings load_settings(const Options& options) {
+  Settings settings;
+  if (options.domain) {
+    settings.dds.domain_id = *options.domain;
+  }
+  if (options.network_interface) {
+    settings.dds.network_interface = *options.network_interface;
+  }
+  dds::validate(settings.dds);
+  return settings;
+}
+
+}  // namespace isobar::bridge
