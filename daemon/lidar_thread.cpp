@@ -59,6 +59,9 @@ void LidarThread::hand_over() noexcept {
 }
 
 void LidarThread::report() noexcept {
+  if (decoder_.counters().wrong_model > own_.counters.wrong_model) {
+    decoder_.wrong_model_message().copy(own_.wrong_model_message.data(), own_.wrong_model_message.size() - 1);
+  }
   own_.counters = decoder_.counters();
   own_.dropped_by_kernel = receiver_.dropped_by_kernel();
   status_.put(own_);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <string>
 #include <thread>
 
@@ -18,7 +19,7 @@ struct LidarStatus {
   std::uint64_t dropped_by_kernel = 0;
   std::uint64_t scans_without_memory = 0;  ///< complete scans that found no chunk in shared memory
   std::int64_t last_packet_ns = 0;         ///< robot clock, 0: none yet
-  std::uint8_t wrong_product_id = 0;
+  std::array<char, 120> wrong_model_message{};  ///< names both models; empty while all packets are of the right one
 };
 
 /// UDP packets of the lidar in, scans out.
@@ -35,7 +36,6 @@ class LidarThread {
   void stop() noexcept;  ///< returns when the thread has ended
 
   [[nodiscard]] LidarStatus status() const noexcept { return status_.get(); }
-  [[nodiscard]] std::string wrong_model_message() const { return decoder_.wrong_model_message(); }
   [[nodiscard]] std::uint16_t port() const noexcept { return receiver_.port(); }
 
  private:

@@ -5,7 +5,9 @@
 #include <sched.h>
 #include <sys/mman.h>
 
+#include <cerrno>
 #include <cstring>
+#include <thread>
 
 namespace isobar {
 
@@ -29,6 +31,16 @@ std::string apply_to_this_thread(const ThreadSettings& settings) noexcept {
     }
   }
   return refused;
+}
+
+std::vector<std::string> try_settings(const std::vector<ThreadSettings>& settings) {
+  std::vector<std::string> refusals;
+  for (const ThreadSettings& wanted : settings) {
+    std::string refused;
+    std::thread([&] { refused = apply_to_this_thread(wanted); }).join();
+    if (!refused.empty()) refusals.push_back(std::move(refused));
+  }
+  return refusals;
 }
 
 std::string lock_memory() noexcept {

@@ -18,6 +18,10 @@ struct ThreadSettings {
 /// (a robot still drives without real-time rights; the health report says so).
 [[nodiscard]] std::string apply_to_this_thread(const ThreadSettings& settings) noexcept;
 
+/// Applies each of the settings to a thread that ends at once; returns what was refused. A thread of the pipeline
+/// then meets no surprise.
+[[nodiscard]] std::vector<std::string> try_settings(const std::vector<ThreadSettings>& settings);
+
 /// Keeps all present and future pages of the process in memory. Returns an empty string or what was refused.
 [[nodiscard]] std::string lock_memory() noexcept;
 

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "config/config.hpp"
+
+namespace isobar {
+
+/// Reads a TOML file over the defaults. Throws ConfigError "file:line:column: key: rule (got X)" for a key that is
+/// unknown, a value of the wrong type or out of range, and for a file that is missing, a directory or no TOML.
+Config load_config(const std::filesystem::path& file);
+
+/// Every setting as TOML, with unit, range and reason as comments; loading it gives the same Config.
+std::string show_config(const Config& config);
+
+}  // namespace isobar

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// isobard: the whole graph on one screen.
+//
+//   lidar ──packets→scan──────────────┐                    ┌─▶ poses ──▶ isobar-dds ──▶ DDS
+//   imu ─┐                            ▼                    │
+//   baro ├─ samples ─▶ prior ─ priors ─▶ registration ─────┤
+//   wheel┤                               ▲                 └─▶ registered scans ─▶ map
+//   base ┘                               └────────────────────── snapshots ─────────┘
+//
+// Every arrow is a topic in shared memory (ipc/topics.hpp); only the snapshot is handed over inside the process.
+#include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include "config/config_io.hpp"
+#include "core/errors.hpp"
+#include "daemon/counts.hpp"
+#include "daemon/health.hpp"
+#include "daemon/inertial_thread.hpp"
+#include "daemon/lidar_thread.hpp"
+#include "daemon/map_thread.hpp"
+#include "daemon/output_thread.hpp"
+#include "daemon/prior_thread.hpp"
+#include "daemon/registration_thread.hpp"
+#include "daemon/service.hpp"
+#include "daemon/stage_settings.hpp"
+
+namespace isobar {
+
+namespace {
+
+/// How each thread is scheduled; the table of priorities is in the configuration, [realtime].
+struct Scheduling {
+  ThreadSettings lidar, inertial, prior, registration, map, output;
+};
+
+Scheduling scheduling_of(const RealtimeSettings& realtime) {
+  const auto fifo = [&](int priority) { return realtime.enabled ? priority : 0; };
+  return {
+      {"lidar", fifo(realtime.lidar_priority), realtime.estimator_cpus},
+      {"inertial", fifo(realtime.inertial_priority), realtime.estimator_cpus},
+      {"prior", fifo(realtime.prior_priority), realtime.estimator_cpus},
+      {"registration", fifo(realtime.registration_priority), realtime.estimator_cpus},
+      {"map", 0, realtime.map_cpus},
+      {"output", 0, {}},
+  };
+}
+
+/// What the system refuses of the scheduling, for the health report: a robot drives without it, only less evenly.
+std::vector<std::string> refusals_of(const Scheduling& scheduling, bool realtime) {
+  std::vector<std::string> refusals = try_settings({scheduling.lidar, scheduling.inertial, scheduling.prior,
+                                                    scheduling.registration, scheduling.map, scheduling.output});
+  if (realtime) {
+    if (std::string refusal = lock_memory(); !refusal.empty()) refusals.push_back(std::move(refusal));
+  }
+  return refusals;
+}
+
+void run(const Config& config, Service& service) {
+  const StageSettings stages = stage_settings(config);
+  const Scheduling scheduling = scheduling_of(config.realtime);
+  const std::vector<std::string> refusals = refusals_of(scheduling, config.realtime.enabled);
+
+  ipc::Broker broker;
+  std::optional<RunOutput> output;
+  if (!config.output.directory.empty()) {
+    output.emplace(config.output.directory);
+    output->write_settings(show_config(config));
+  }
+
+  MapThread map(stages.map, stages.T_base_lidar, config.output.cloud_interval_s, output ? &*output : nullptr,
+                scheduling.map);
+  RegistrationThread registration(stages.registration, stages.method, stages.T_base_lidar, map.snapshots(),
+                                  scheduling.registration);
+  PriorThread prior(stages.prior, scheduling.prior);
+  InertialThread inertial(config.input.address, config.input.port, scheduling.inertial);
+  LidarThread lidar(stages.lidar, config.lidar.address, config.lidar.port, scheduling.lidar);
+  std::optional<OutputThread> writer;
+  if (output) writer.emplace(*output, scheduling.output);
+
+  // Consumers first, so that nothing is produced that nobody takes.
+  if (writer) writer->start();
+  map.start();
+  registration.start();
+  prior.start();
+  inertial.start();
+  lidar.start();
+  spdlog::info("ready: lidar {} on UDP port {}, samples on UDP port {}", config.lidar.model, lidar.port(),
+               inertial.port());
+
+  const auto look = [&] {
+    return StatusSnapshot{RobotClock::now_ns(), lidar.status(),        inertial.status(),
+                          prior.status(),       registration.status(), map.status()};
+  };
+  HealthMonitor monitor(config, refusals);
+  ipc::Publisher<ipc::HealthReport> health(ipc::topics::kHealth);
+  service.ready();
+  while (service.wait_for(std::chrono::seconds(1))) {
+    ipc::HealthReport report;
+    monitor.fill(look(), report);
+    health.send(report);
+    for (const std::string& line : monitor.news(report)) spdlog::info("{}", line);
+    service.alive();
+  }
+
+  spdlog::info("stopping");
+  service.stopping();
+  // Producers first: what is on its way still reaches the map and the files.
+  lidar.stop();
+  inertial.stop();
+  prior.stop();
+  registration.stop();
+  map.stop();
+  if (writer) writer->stop();
+  if (output) {
+    const StatusSnapshot last = look();
+    std::vector<RunCount> counts = counts_of(last.lidar.counters, last.lidar.wrong_model_message.data());
+    append(counts, counts_of(last.inertial.counters));
+    append(counts, counts_of(last.prior.counters));
+    output->close(counts);
+    spdlog::info("{} poses and {} map points in {}", output->poses(), output->map_points(), config.output.directory);
+  }
+}
+
+int main_with_errors(int argc, char** argv) {
+  CLI::App app{"isobard: pose of a robot from lidar, IMU, wheels and air pressure.\n"
+               "Exit codes: 0 stopped by a signal, 64 usage, 69 service unavailable, 78 bad configuration."};
+  std::string config_file;
+  std::string output_directory;
+  app.add_option("--config", config_file, "TOML file; `isobar config show` prints every key with its default");
+  app.add_option("--output", output_directory, "folder for trajectory.tum, map.ply, status.csv; overrides [output]");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const bool asked_for_help = error.get_exit_code() == 0;
+    app.exit(error);
+    return asked_for_help ? 0 : 64;
+  }
+  // First of all, so that every thread inherits the blocked signals.
+  Service service;
+  Config config = config_file.empty() ? Config{} : load_config(config_file);
+  if (!output_directory.empty()) config.output.directory = output_directory;
+  run(config, service);
+  return 0;
+}
+
+}  // namespace
+
+}  // namespace isobar
+
+int main(int argc, char** argv) {
+  spdlog::set_pattern("%Y-%m-%d %H:%M:%S.%e isobard %l: %v");
+  try {
+    return isobar::main_with_errors(argc, argv);
+  } catch (const isobar::Error& error) {
+    spdlog::error("{}", error.what());
+    return error.exit_code();
+  } catch (const std::exception& error) {
+    spdlog::error("unexpected: {}", error.what());
+    return 70;
+  }
+}

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/stage_settings.hpp"
+
+#include "core/errors.hpp"
+
+namespace isobar {
+
+namespace {
+
+velodyne::Model model_of(const LidarSettings& lidar) {
+  if (const velodyne::ModelTraits* traits = velodyne::find_model(lidar.model)) return traits->model;
+  throw ConfigError("lidar.model: must be \"VLP-16\" or \"HDL-32E\" (got \"" + lidar.model + "\")");
+}
+
+}  // namespace
+
+StageSettings stage_settings(const Config& config) {
+  StageSettings settings;
+  settings.lidar.model = model_of(config.lidar);
+  settings.lidar.min_range_m = config.lidar.min_range_m;
+  settings.lidar.max_range_m = config.lidar.max_range_m;
+  settings.lidar.mask_start_deg = config.lidar.mask_start_deg;
+  settings.lidar.mask_end_deg = config.lidar.mask_end_deg;
+  settings.prior = config.prior;
+  settings.prior.T_base_imu = config.imu.mount.T_base_sensor();
+  settings.prior.p_base_port = config.barometer.mount.xyz_m;
+  settings.registration = config.registration;
+  settings.map = config.map;
+  settings.method = config.method;
+  settings.T_base_lidar = config.lidar.mount.T_base_sensor();
+  return settings;
+}
+
+Config with_sensors_of(const recording::Manifest& manifest, Config config) {
+  if (!manifest.lidar) throw DataError("recording.toml: no [lidar]: there is nothing to register");
+  if (!manifest.imu) throw DataError("recording.toml: no [imu]: roll and pitch cannot be known without");
+  if (velodyne::find_model(manifest.lidar->model) == nullptr) {
+    throw DataError("recording.toml: lidar.model: \"" + manifest.lidar->model +
+                    "\" has no driver; there are VLP-16 and HDL-32E");
+  }
+  config.lidar.model = manifest.lidar->model;
+  config.lidar.port = manifest.lidar->port;
+  config.lidar.mount = manifest.lidar->mount;
+  config.imu.mount = manifest.imu->mount;
+  if (manifest.barometer) config.barometer.mount = manifest.barometer->mount;
+  return config;
+}
+
+}  // namespace isobar

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/estimates.hpp"
+#include "tools/report/replay_output.hpp"
+
+namespace isobar::tools {
+
+/// All methods, in the order of the paper's comparison.
+inline constexpr std::array<Method, 6> kAllMethods = {Method::k6Dof,         Method::k6DofAltitude, Method::kOdometry,
+                                                      Method::k4DofAltitude, Method::k4Dof,         Method::k3Dof};
+
+/// The method of a name as the command line spells it; nothing for any other word.
+inline std::optional<Method> method_of(std::string_view name) {
+  for (const Method method : kAllMethods) {
+    if (report::method_name(method) == name) return method;
+  }
+  return std::nullopt;
+}
+
+/// "6dof, 6dof-altitude, …"
+inline std::string method_names() {
+  std::string names;
+  for (const Method method : kAllMethods) {
+    names += (names.empty() ? "" : ", ") + std::string(report::method_name(method));
+  }
+  return names;
+}
+
+}  // namespace isobar::tools

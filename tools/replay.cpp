@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `isobar replay`: the pipeline over a recording, as fast as it goes.
+#include "daemon/replay.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "config/config_io.hpp"
+#include "core/errors.hpp"
+#include "tools/commands.hpp"
+#include "tools/method_option.hpp"
+#include "tools/progress.hpp"
+
+namespace isobar::tools {
+
+namespace {
+
+struct ReplayOptions {
+  std::filesystem::path recording;
+  std::filesystem::path config;
+  std::string method;
+  std::filesystem::path out;
+};
+
+/// Counters that always move; the others are worth a line when they are not zero.
+bool is_ordinary(const std::string& name) {
+  return name == "lidar packets" || name == "lidar returns" || name == "lidar scans" || name == "imu samples" ||
+         name == "barometer samples" || name == "base samples" || name == "wheel samples" ||
+         name == "lidar position packets" || name == "map cells seen through";
+}
+
+void print_summary(const ReplaySummary& summary, const std::filesystem::path& out) {
+  for (const std::string& warning : summary.warnings) std::printf("note: %s\n", warning.c_str());
+  if (!summary.base_clock.empty()) std::printf("base station clock: %s\n", summary.base_clock.c_str());
+  for (const RunCount& count : summary.counts) {
+    if (count.count == 0 || is_ordinary(count.name)) continue;
+    std::printf("counted: %s: %llu%s%s\n", count.name.c_str(), static_cast<unsigned long long>(count.count),
+                count.first_message.empty() ? "" : "; first: ", count.first_message.c_str());
+  }
+  std::printf("%llu scans: %llu poses registered, %llu from the prior; %llu map points\n",
+              static_cast<unsigned long long>(summary.scans), static_cast<unsigned long long>(summary.registered),
+              static_cast<unsigned long long>(summary.from_prior), static_cast<unsigned long long>(summary.map_points));
+  std::printf("%.1f s of recording in %.1f s, %.1f times real time\n", summary.recorded_s, summary.wall_s,
+              summary.wall_s > 0.0 ? summary.recorded_s / summary.wall_s : 0.0);
+  std::printf("written: %s/trajectory.tum map.ply status.csv counters.csv settings.toml\n", out.c_str());
+}
+
+void run(const ReplayOptions& options) {
+  Config config = options.config.empty() ? Config{} : load_config(options.config);
+  if (!options.method.empty()) {
+    const auto method = method_of(options.method);
+    if (!method) throw UsageError("--method: \"" + options.method + "\" is none of " + method_names());
+    config.method = *method;
+  }
+  Progress progress("replaying");
+  const ReplaySummary summary =
+      replay(options.recording, config, options.out, [&](double fraction) { progress.update(fraction); });
+  progress.finish();
+  print_summary(summary, options.out);
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app) {
+  auto options = std::make_shared<ReplayOptions>();
+  CLI::App* command = app.add_subcommand("replay", "Estimate poses and a map from a recording");
+  command->add_option("RECORDING", options->recording, "recording folder")->required();
+  command->add_option("--config", options->config, "TOML file; sensors and mounts come from the recording");
+  command->add_option("--method", options->method, method_names() + " (default: the configuration's)");
+  command->add_option("--out", options->out, "folder for trajectory.tum, map.ply, status.csv, settings.toml")->required();
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace isobar::tools
