@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Configuration of the local map.
+#pragma once
+
+namespace isobar {
+
+/// Size and density of the local map, and when it changes.
+struct MapConfig {
+  /// Edge of a plane cell [m], 0.1 … 1. Smaller follows finer indoor detail, larger needs fewer cells outdoors.
+  double cell_m = 0.25;
+  /// Tiles whose centre is farther than this from the robot leave memory [m], 20 … 200. Beyond the reach of the
+  /// registration nothing is matched.
+  double radius_m = 70.0;
+  /// The map takes a scan when the robot moved this far since the last one it took [m], 0 … 2.
+  double update_distance_m = 0.15;
+  /// … or turned this far [deg], 0 … 45.
+  double update_angle_deg = 4.0;
+  /// … or this long ago [s], 0.1 … 60: things move while the robot stands.
+  double update_interval_s = 1.0;
+  /// … or when less than this share of the scan found the map, 0 … 1: a door opened, the place is new.
+  double update_overlap = 0.75;
+  /// Observations after which a cell's plane no longer changes, 8 … 1000. Enough to average the lidar's noise;
+  /// few enough that the oldest pose counts, which keeps drift out of places seen twice.
+  int freeze_observations = 80;
+  /// Largest thickness (standard deviation along the normal) of a cell that counts as a plane [m], 0.01 … 0.2.
+  /// The noise of a VLP-16 is 0.01 … 0.03 m.
+  double max_thickness_m = 0.05;
+  /// Largest standard deviation of a normal's direction [deg], 0.5 … 15. Worse ones are not matched.
+  double max_normal_deviation_deg = 4.0;
+  /// Points seen through this often leave the map, 1 … 50. 0 keeps everything.
+  int see_through_limit = 3;
+  /// A ray must pass a point's surface by this much to count as seen through [m], 0.1 … 2: above the noise of
+  /// range and height.
+  double see_through_margin_m = 0.35;
+  /// Points farther than this from the robot are not tested for being seen through [m], 2 … 100.
+  double see_through_range_m = 25.0;
+};
+
+}  // namespace isobar

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One scan in, one pose out: deskew, sample, match, solve, judge.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+
+#include "core/estimates.hpp"
+#include "core/map/map_snapshot.hpp"
+#include "core/prior/prior_history.hpp"
+#include "core/registration/correspondences.hpp"
+#include "core/registration/deskew.hpp"
+#include "core/registration/method.hpp"
+#include "core/registration/motion_model.hpp"
+#include "core/registration/point_to_plane.hpp"
+#include "core/registration/registration_config.hpp"
+#include "core/registration/sampling.hpp"
+#include "core/registration/solver.hpp"
+
+namespace isobar {
+
+/// Registers scans to the map, starting from the prior. Allocates in its constructor only. One thread.
+class Registration {
+ public:
+  /// `T_base_lidar`: pose of the lidar in base_link.
+  Registration(const RegistrationConfig& config, Method method, const Eigen::Isometry3d& T_base_lidar);
+
+  /// Takes a prior; they must come in order of time.
+  void add_prior(const Prior& prior);
+
+  /// True where the priors reach the end of the scan, so that register_scan() need not extrapolate.
+  [[nodiscard]] bool ready(const Scan& scan) const;
+
+  /// Estimates the pose at the end of `scan` against `map`; writes pose and deskewed, thinned points to `out`.
+  /// Never fails: what cannot be registered gets the prior's pose and mode kPriorOnly.
+  void register_scan(const Scan& scan, const MapSnapshot& map, RegisteredScan& out);
+
+  /// Pose at the newest prior, for the time between scans and without any. False before gravity is known.
+  bool propagate(PoseEstimate& out) const;
+
+  /// Starts the next scan at this pose of base_link in the map (yaw and position are used; roll, pitch, and for
+  /// 3-DOF z, come from the prior).
+  void set_pose(const Eigen::Isometry3d& T_map_base);
+
+ private:
+  void solve(const MapSnapshot& map, const Prediction& prediction, PoseEstimate& pose);
+  [[nodiscard]] bool acceptable(const PoseEstimate& pose, const Prediction& prediction) const;
+  void finish(const Prior& prior, const Prediction& prediction, PoseEstimate& pose);
+
+  RegistrationConfig config_;
+  MethodTraits method_;
+  Eigen::Isometry3d T_base_lidar_;
+  PriorHistory history_;
+  MotionModel motion_;
+  Deskewer deskewer_;
+  Sampler sampler_;
+  Correspondences correspondences_;
+  PoseEstimate last_;
+};
+
+}  // namespace isobar
