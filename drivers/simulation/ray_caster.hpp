@@ -45,7 +45,6 @@ class RayCaster {
     float edge2[3][4];       // NOLINT(modernize-avoid-c-arrays)
     std::uint32_t index[4];  // NOLINT(modernize-avoid-c-arrays)
   };
-  struct Surround;
   class Builder;
 
   void intersect(const Leaf& leaf, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,

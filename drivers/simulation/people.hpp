@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// People who walk up and down a corridor.
+#pragma once
+
+#include "drivers/simulation/corridor.hpp"
+#include "drivers/simulation/random.hpp"
+#include "drivers/simulation/world.hpp"
+
+namespace isobar::simulation {
+
+/// Someone who walks to and fro along one leg, near one wall, for `samples` steps of the time grid.
+[[nodiscard]] MovingBody make_walker(const Corridor& corridor, std::size_t leg, double floor_z_m,
+                                     std::size_t samples, Random& random);
+
+}  // namespace isobar::simulation
