@@ -36,7 +36,7 @@ inline constexpr PlausibleRange kPlausibleQuaternionNorm{0.9, 1.1};
 /// Stamps [ns since 1970] lie between 0 and the year 2200; int64 overflows in 2262, and sums of stamps must
 /// not.
 inline constexpr std::int64_t kPlausibleStampLowestNs = 0;
-inline constexpr std::int64_t kPlausibleStampHighestNs = 7'258'118'400LL * 1'000'000'000LL;
+inline constexpr std::int64_t kPlausibleStampHighestNs = 4'102'444'800LL * 1'000'000'000LL;
 
 /// Which rule a sample breaks, as a text that never dies; nullptr when the sample is plausible.
 [[nodiscard]] inline const char* implausibility(const ImuSample& sample) {
@@ -77,7 +77,7 @@ inline constexpr std::int64_t kPlausibleStampHighestNs = 7'258'118'400LL * 1'000
 
 [[nodiscard]] inline const char* implausible_stamp(std::int64_t stamp_ns) {
   const bool plausible = stamp_ns >= kPlausibleStampLowestNs && stamp_ns <= kPlausibleStampHighestNs;
-  return plausible ? nullptr : "stamp must lie between the years 1970 and 2200";
+  return plausible ? nullptr : "stamp must lie between the years 1970 and 2100";
 }
 
 }  // namespace isobar

@@ -28,6 +28,9 @@ class CsvReader {
   [[nodiscard]] std::string_view field(std::size_t column) const;
   [[nodiscard]] bool has(std::size_t column) const { return position_[column] != kAbsent; }
 
+  /// See TextLines.
+  void skip_to_last(std::uint64_t bytes) { lines_.skip_to_last(bytes); }
+
   [[nodiscard]] const TextLines& lines() const { return lines_; }
   /// Why the row is bad: "file:line: rule".
   [[nodiscard]] std::string bad_row_message() const;

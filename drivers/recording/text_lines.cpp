@@ -35,6 +35,22 @@ bool TextLines::refill() {
   return !at_end_;
 }
 
+void TextLines::skip_to_last(std::uint64_t bytes) {
+  std::error_code error;
+  const std::uint64_t size = std::filesystem::file_size(name_, error);
+  const std::uint64_t position = bytes_read_ - (end_ - begin_);
+  if (error || size < bytes || size - bytes <= position ||
+      std::fseek(file_.get(), static_cast<long>(size - bytes), SEEK_SET) != 0) {
+    return;
+  }
+  begin_ = 0;
+  end_ = 0;
+  bytes_read_ = size - bytes;
+  at_end_ = false;
+  std::string_view part_of_a_line;
+  next(part_of_a_line);
+}
+
 bool TextLines::next(std::string_view& line) {
   too_long_ = false;
   std::size_t searched = begin_;

@@ -24,6 +24,10 @@ class TextLines {
   /// The next line without its end; valid until the next call.
   bool next(std::string_view& line);
 
+  /// Goes to the first line that begins in the last `bytes` of the file, unless that is behind already. Line
+  /// numbers then count from there.
+  void skip_to_last(std::uint64_t bytes);
+
   [[nodiscard]] bool too_long() const { return too_long_; }
   [[nodiscard]] std::size_t line_number() const { return line_number_; }
   [[nodiscard]] const std::string& file_name() const { return name_; }

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "core/time/stamp_guard.hpp"
+
+namespace isobar::recording {
+
+/// Brings the samples of one file into the order of their stamps, looking ahead by a few rows only.
+///
+/// A single absurd stamp is left out; so is a short run of them (shorter than the look-ahead) that ends where
+/// the good stamps go on. Samples that were overtaken are sorted in; those overtaken by more than the
+/// look-ahead are left out, because later ones have been handed out already. When the clock really was set
+/// back, the stream goes on with the new stamps.
+template <typename Sample>
+class StampOrder {
+ public:
+  static constexpr std::size_t kLookAhead = 32;
+  /// No sensor is silent for an hour between its first sample and the second: the first stamp was absurd.
+  static constexpr std::int64_t kMaxFirstStepNs = 3'600'000'000'000;
+
+  /// So many stamps at the start of a file are absurd rather than the truth before the clock was set.
+  static constexpr std::size_t kMaxAbsurdAtStart = 3;
+
+  struct Counts {
+    std::uint64_t duplicates = 0;
+    std::uint64_t absurd = 0;
+    std::uint64_t too_late = 0;
+  };
+
+  explicit StampOrder(const StampGuardConfig& config) : guard_(config) {}
+
+  /// The next sample in order. read: bool(Sample&), false at the end of the file.
+  template <typename Read>
+  bool next(Sample& sample, const Read& read) {
+    while (!at_end_ && after_step_.empty() && ordered_.size() < kLookAhead) {
+      Sample incoming;
+      if (read(incoming)) {
+        take(std::move(incoming));
+      } else {
+        at_end_ = true;
+        counts_.absurd += held_ ? 1 : 0;
+      }
+    }
+    if (ordered_.empty() && !after_step_.empty()) {
+      handed_out_ = false;
+      stepped_ = false;
+      std::swap(ordered_, after_step_);
+    }
+    if (ordered_.empty()) {
+      return false;
+    }
+    sample = std::move(ordered_.front());
+    ordered_.pop_front();
+    handed_out_ = true;
+    newest_out_ns_ = sample.stamp_ns;
+    return true;
+  }
+
+  [[nodiscard]] const StampGuard& guard() const { return guard_; }
+  [[nodiscard]] const Counts& counts() const { return counts_; }
+
+ private:
+  void take(Sample&& incoming) {
+    const std::int64_t before_ns = guard_.newest_ns();
+    const StampVerdict verdict = guard_.check(incoming.stamp_ns);
+    if (verdict == StampVerdict::kConfirmed) {
+      Sample held = std::move(*held_);
+      held_.reset();
+      if (held.stamp_ns > before_ns) {
+        step_forward(held.stamp_ns, before_ns);
+      } else {
+        step_back(held.stamp_ns);
+      }
+      insert(std::move(held));
+      insert(std::move(incoming));
+      return;
+    }
+    counts_.absurd += held_ ? 1 : 0;
+    held_.reset();
+    switch (verdict) {
+      case StampVerdict::kHeld:
+        held_ = std::move(incoming);
+        break;
+      case StampVerdict::kDuplicate:
+        ++counts_.duplicates;
+        break;
+      default:
+        insert(std::move(incoming));
+        break;
+    }
+  }
+
+  void step_forward(std::int64_t to_ns, std::int64_t from_ns) {
+    if (!handed_out_ && ordered_.size() == 1 && to_ns - from_ns > kMaxFirstStepNs) {
+      ordered_.clear();
+      ++counts_.absurd;
+    }
+  }
+
+  /// The stamps go back to `to_ns`, for good. What lies ahead of it in the look-ahead was absurd if what lies
+  /// before it goes on; else the clock was set.
+  void step_back(std::int64_t to_ns) {
+    const auto ahead = std::find_if(ordered_.begin(), ordered_.end(),
+                                    [to_ns](const Sample& sample) { return sample.stamp_ns > to_ns; });
+    const bool nothing_before = ahead == ordered_.begin() && !handed_out_;
+    const bool goes_on = nothing_before ? ordered_.size() <= kMaxAbsurdAtStart
+                                        : ahead != ordered_.begin() || newest_out_ns_ <= to_ns;
+    if (goes_on) {
+      counts_.absurd += static_cast<std::uint64_t>(ordered_.end() - ahead);
+      ordered_.erase(ahead, ordered_.end());
+    } else {
+      stepped_ = true;
+    }
+  }
+
+  void insert(Sample&& sample) {
+    if (stepped_ && !ordered_.empty()) {
+      after_step_.push_back(std::move(sample));
+      return;
+    }
+    if (stepped_) {
+      handed_out_ = false;
+    }
+    stepped_ = false;
+    if (handed_out_ && sample.stamp_ns < newest_out_ns_) {
+      ++counts_.too_late;
+      return;
+    }
+    const auto place = std::upper_bound(
+        ordered_.begin(), ordered_.end(), sample.stamp_ns,
+        [](std::int64_t stamp_ns, const Sample& other) { return stamp_ns < other.stamp_ns; });
+    if (place != ordered_.begin() && std::prev(place)->stamp_ns == sample.stamp_ns) {
+      ++counts_.duplicates;
+      return;
+    }
+    ordered_.insert(place, std::move(sample));
+  }
+
+  StampGuard guard_;
+  Counts counts_;
+  std::deque<Sample> ordered_;
+  std::deque<Sample> after_step_;  // belong behind a step back of the clock
+  std::optional<Sample> held_;
+  bool stepped_ = false;
+  bool handed_out_ = false;
+  bool at_end_ = false;
+  std::int64_t newest_out_ns_ = 0;
+};
+
+}  // namespace isobar::recording

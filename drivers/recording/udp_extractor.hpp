@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace isobar::recording {
+
+/// Headers in front of the IP packet. Values are libpcap's DLT_ numbers.
+enum class LinkType : int {
+  kLoopback = 0,  ///< 4 bytes of address family
+  kEthernet = 1,
+  kRawIp = 12,
+  kLinuxCooked = 113,  ///< capture on "any"
+  kLinuxCooked2 = 276,
+};
+[[nodiscard]] std::optional<LinkType> link_type_of(int data_link);
+
+/// What a frame was.
+enum class FrameKind : std::uint8_t {
+  kPayload,     ///< a UDP payload to the wanted port
+  kCutPayload,  ///< the same, but the capture holds only its beginning
+  kOtherPort,
+  kOtherProtocol,  ///< ARP, TCP, IPv6, …
+  kFragment,       ///< a part of a datagram that is not yet complete
+  kMalformed,      ///< lengths contradict each other
+};
+
+/// Finds UDP payloads for one destination port in captured frames: VLAN tags (802.1Q, 802.1ad, stacked) are
+/// skipped, IPv4 fragments put together (RFC 791; first byte wins where they overlap). Every length is
+/// checked before use.
+class UdpExtractor {
+ public:
+  explicit UdpExtractor(std::uint16_t port) : port_(port) {}
+
+  /// payload: valid until the next call.
+  FrameKind extract(LinkType link, std::span<const std::uint8_t> frame,
+                    std::span<const std::uint8_t>& payload);
+
+  /// Datagrams given up because fragments did not arrive while kSlots others did.
+  [[nodiscard]] std::uint64_t incomplete() const { return incomplete_; }
+  [[nodiscard]] std::uint64_t reassembled() const { return reassembled_; }
+
+ private:
+  static constexpr std::size_t kSlots = 4;
+  static constexpr std::size_t kFragmentUnit = 8;
+  static constexpr std::size_t kMaxDatagram = 65'536;
+
+  struct Slot {
+    bool used = false;
+    std::uint64_t age = 0;
+    std::array<std::uint8_t, 10> key{};  // identification, source, destination
+    std::size_t length = 0;              // 0: the last fragment has not come
+    std::vector<std::uint8_t> bytes;
+    std::bitset<kMaxDatagram / kFragmentUnit> have;
+  };
+
+  FrameKind extract_ip(std::span<const std::uint8_t> ip, std::span<const std::uint8_t>& payload);
+  FrameKind extract_udp(std::span<const std::uint8_t> udp, bool cut,
+                        std::span<const std::uint8_t>& payload) const;
+  FrameKind add_fragment(std::span<const std::uint8_t> ip, std::span<const std::uint8_t> part,
+                         std::span<const std::uint8_t>& payload);
+  Slot& slot_for(std::span<const std::uint8_t> ip);
+
+  std::uint16_t port_;
+  std::uint64_t clock_ = 0;
+  std::uint64_t incomplete_ = 0;
+  std::uint64_t reassembled_ = 0;
+  std::array<Slot, kSlots> slots_;
+};
+
+}  // namespace isobar::recording
