@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `isobar echo`: what a DDS subscriber receives, one readable line a message.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/errors.hpp"
+#include "core/geometry.hpp"
+#include "ipc/dds/endpoints.hpp"
+#include "ipc/dds/messages.hpp"
+#include "tools/commands.hpp"
+
+namespace isobar::tools {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct EchoOptions {
+  std::vector<std::string> topics{"pose"};
+  int domain = 0;
+  std::string network_interface;
+  std::string ros_namespace;
+  double rate_hz = 1.0;
+  long count = 0;
+  double timeout_s = 10.0;
+};
+
+volatile std::sig_atomic_t g_stop = 0;
+
+double seconds(const dds::HeaderMessage& header) {
+  return static_cast<double>(header.stamp.sec) + 1e-9 * static_cast<double>(header.stamp.nanosec);
+}
+
+/// Rotation about z of a gravity-aligned frame [degrees].
+double yaw_deg(const geometry_msgs_msg_dds__Quaternion_& q) {
+  return std::atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z)) / kRadPerDeg;
+}
+
+// What a pointer of a received message shows if the sender left it empty.
+const char* shown(const char* value) { return value != nullptr ? value : ""; }
+
+void print(const char* topic, const dds::PoseMessage& message) {
+  const auto& [position, orientation] = message.pose.pose;
+  std::printf("%s  t %.3f s  x %8.3f  y %8.3f  z %7.3f m (+-%.3f)  yaw %7.2f deg\n", topic,
+              seconds(message.header), position.x, position.y, position.z,
+              std::sqrt(std::max(0.0, message.pose.covariance[14])), yaw_deg(orientation));
+}
+
+void print(const char* topic, const dds::OdometryMessage& message) {
+  const auto& [position, orientation] = message.pose.pose;
+  std::printf("%s  t %.3f s  x %8.3f  y %8.3f  z %7.3f m  yaw %7.2f deg  v %6.3f m/s  w %7.4f rad/s\n", topic,
+              seconds(message.header), position.x, position.y, position.z, yaw_deg(orientation),
+              message.twist.twist.linear.x, message.twist.twist.angular.z);
+}
+
+void print(const char* topic, const dds::AltitudeMessage& message) {
+  std::printf("%s  t %.3f s  height %7.3f m (+-%.3f)  %s\n", topic, seconds(message.header), message.height,
+              std::sqrt(std::max(0.0, message.variance)), shown(message.source));
+}
+
+void print(const char* topic, const dds::TfMessage& message) {
+  for (std::uint32_t i = 0; i < message.transforms._length; ++i) {
+    const auto& [header, child, transform] = message.transforms._buffer[i];
+    std::printf("%s  t %.3f s  %s -> %s  x %8.3f  y %8.3f  z %7.3f m  yaw %7.2f deg\n", topic,
+                seconds(header), shown(header.frame_id), shown(child), transform.translation.x,
+                transform.translation.y, transform.translation.z, yaw_deg(transform.rotation));
+  }
+}
+
+/// Only what is not well; a line that all is, otherwise.
+void print(const char* topic, const dds::DiagnosticsMessage& message) {
+  constexpr std::array<const char*, 4> kLevels{"ok", "warning", "error", "stale"};
+  std::uint32_t bad = 0;
+  for (std::uint32_t i = 0; i < message.status._length; ++i) {
+    const auto& status = message.status._buffer[i];
+    if (status.level == 0) {
+      continue;
+    }
+    ++bad;
+    const char* value = status.values._length > 0 ? shown(status.values._buffer[0].value) : "";
+    std::printf("%s  %s  %s  %s  %s\n", topic, kLevels[std::min<std::size_t>(status.level, 3)],
+                shown(status.name), shown(status.message), value);
+  }
+  if (bad == 0) {
+    std::printf("%s  t %.3f s  all %u entries ok\n", topic, seconds(message.header), message.status._length);
+  }
+}
+
+/// A topic that is listened to.
+class Echo {
+ public:
+  virtual ~Echo() = default;
+  Echo() = default;
+  Echo(const Echo&) = delete;
+  Echo& operator=(const Echo&) = delete;
+  [[nodiscard]] virtual dds_entity_t reader() const = 0;
+  struct Taken {
+    int received = 0;
+    int printed = 0;
+  };
+  /// Takes all that waits, prints what the rate allows.
+  virtual Taken take(Clock::time_point now) = 0;
+};
+
+template <class Message>
+class TopicEcho : public Echo {
+ public:
+  TopicEcho(dds_entity_t participant, const dds::DdsTopic<Message>& topic, const EchoOptions& options)
+      : name_(topic.name),
+        period_(std::chrono::duration_cast<Clock::duration>(
+            std::chrono::duration<double>(1.0 / options.rate_hz))),
+        reader_(participant, topic, options.ros_namespace) {}
+
+  [[nodiscard]] dds_entity_t reader() const override { return reader_.get(); }
+
+  Taken take(Clock::time_point now) override {
+    Taken taken;
+    taken.received = reader_.take([&](const Message& message) {
+      if (now < next_) {
+        return;
+      }
+      next_ = now + period_;
+      print(name_, message);
+      std::fflush(stdout);
+      ++taken.printed;
+    });
+    return taken;
+  }
+
+ private:
+  const char* name_;
+  Clock::duration period_;
+  Clock::time_point next_{};
+  dds::Reader<Message> reader_;
+};
+
+template <class Message>
+void add_if(const std::string& wanted, const dds::DdsTopic<Message>& topic, dds_entity_t participant,
+            const EchoOptions& options, std::vector<std::unique_ptr<Echo>>& echoes) {
+  if (wanted == topic.name) {
+    echoes.push_back(std::make_unique<TopicEcho<Message>>(participant, topic, options));
+  }
+}
+
+std::vector<std::unique_ptr<Echo>> make_echoes(dds_entity_t participant, const EchoOptions& options) {
+  std::vector<std::unique_ptr<Echo>> echoes;
+  for (const std::string& wanted : options.topics) {
+    add_if(wanted, dds::topics::kPose, participant, options, echoes);
+    add_if(wanted, dds::topics::kOdom, participant, options, echoes);
+    add_if(wanted, dds::topics::kAltitude, participant, options, echoes);
+    add_if(wanted, dds::topics::kTf, participant, options, echoes);
+    add_if(wanted, dds::topics::kTfStatic, participant, options, echoes);
+    add_if(wanted, dds::topics::kDiagnostics, participant, options, echoes);
+  }
+  return echoes;
+}
+
+void run(const EchoOptions& options) {
+  const dds::Participant participant({options.domain, options.network_interface});
+  const std::vector<std::unique_ptr<Echo>> echoes = make_echoes(participant.get(), options);
+  const dds::Entity waitset = dds::checked(dds_create_waitset(participant.get()), "no wait set");
+  for (const std::unique_ptr<Echo>& echo : echoes) {
+    dds_set_status_mask(echo->reader(), DDS_DATA_AVAILABLE_STATUS);
+    dds_waitset_attach(waitset.get(), echo->reader(), 0);
+  }
+  std::signal(SIGINT, [](int) { g_stop = 1; });
+  std::signal(SIGTERM, [](int) { g_stop = 1; });
+  const auto patience = std::chrono::duration<double>(options.timeout_s);
+  Clock::time_point last = Clock::now();
+  for (long printed = 0; g_stop == 0 && (options.count == 0 || printed < options.count);) {
+    // A signal does not wake the wait, hence its limit.
+    dds_waitset_wait(waitset.get(), nullptr, 0, DDS_MSECS(100));
+    const Clock::time_point now = Clock::now();
+    for (const std::unique_ptr<Echo>& echo : echoes) {
+      const Echo::Taken taken = echo->take(now);
+      last = taken.received > 0 ? now : last;
+      printed += taken.printed;
+    }
+    if (options.timeout_s > 0.0 && now - last > patience) {
+      throw ServiceError("nothing arrived for " + std::to_string(std::lround(options.timeout_s)) +
+                         " s on DDS domain " + std::to_string(options.domain) + "; is isobar-dds running?");
+    }
+  }
+}
+
+}  // namespace
+
+void add_echo_command(CLI::App& app) {
+  auto options = std::make_shared<EchoOptions>();
+  CLI::App* command = app.add_subcommand("echo", "Print what a DDS subscriber receives, one line a message");
+  command
+      ->add_option("TOPIC", options->topics,
+                   "pose, odom, altitude, tf, tf_static, diagnostics; several may be given")
+      ->check(CLI::IsMember({"pose", "odom", "altitude", "tf", "tf_static", "diagnostics"}))
+      ->capture_default_str();
+  command->add_option("--domain", options->domain, "DDS domain, as ROS_DOMAIN_ID")
+      ->check(CLI::Range(0, 232))
+      ->capture_default_str();
+  command->add_option("--interface", options->network_interface, "network interface; chosen if not given")
+      ->type_name("NAME");
+  command->add_option("--namespace", options->ros_namespace, "the robot's namespace, as dds.topic_prefix")
+      ->type_name("NAME");
+  command->add_option("--rate", options->rate_hz, "lines a second and topic at most [Hz]")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->capture_default_str();
+  command->add_option("--count", options->count, "end after so many lines; 0: never")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--timeout", options->timeout_s, "fail when nothing comes for so long [s]; 0: never")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace isobar::tools
