@@ -2,6 +2,7 @@
 #include "tools/report/evaluated_run.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -118,6 +119,24 @@ void default_names(std::vector<EstimateSource>& estimates) {
   for (EstimateSource& estimate : estimates) {
     if (uses[estimate.name] > 1) estimate.name = estimate.path.string();
   }
+}
+
+std::vector<double> floor_levels_m(const EvaluatedRun& run) {
+  std::vector<double> levels;
+  for (const EvaluatedMethod& method : run.methods) {
+    const auto& floors = method.evaluation.figures.floors;
+    if (floors.size() <= levels.size()) continue;
+    levels.clear();
+    for (const evaluation::FloorHeight& floor : floors) levels.push_back(floor.reference_m);
+  }
+  return levels;
+}
+
+const evaluation::FloorHeight* floor_at(const EvaluatedMethod& method, double level_m, double floor_gap_m) {
+  for (const evaluation::FloorHeight& floor : method.evaluation.figures.floors) {
+    if (std::abs(floor.reference_m - level_m) < floor_gap_m) return &floor;
+  }
+  return nullptr;
 }
 
 std::string display_name(const std::string& method) {

@@ -61,6 +61,12 @@ void default_names(std::vector<EstimateSource>& estimates);
 /// "3dof" as the paper writes it: "3-DOF"; other names as they are.
 std::string display_name(const std::string& method);
 
+/// Mean heights of the floors in the reference [m], lowest first; empty without flat segments.
+std::vector<double> floor_levels_m(const EvaluatedRun& run);
+
+/// The method's figures of the floor within `floor_gap_m` of that height; null if it never was there.
+const evaluation::FloorHeight* floor_at(const EvaluatedMethod& method, double level_m, double floor_gap_m);
+
 /// The main figures with their units, one method a row, and the height of each floor.
 void print_table(std::FILE* out, const EvaluatedRun& run);
 

@@ -19,7 +19,7 @@ void draw_bands(Picture& picture, const LineChart& chart, const Axes& axes) {
     const double from = axes.x.clamped(band.from);
     const double to = axes.x.clamped(band.to);
     if (to - from < 0.5) continue;
-    picture.rect({from, axes.frame.y, to - from, axes.frame.height}, kBandColour);
+    if (band.shaded) picture.rect({from, axes.frame.y, to - from, axes.frame.height}, kBandColour);
     if (to - from > text_width(band.label, 11.0) + 6.0) {
       picture.text({0.5 * (from + to), axes.frame.y + 14.0}, band.label, {11.0, "#6b7280", "middle"});
     }

@@ -17,11 +17,12 @@ struct Series {
   std::vector<double> y;
 };
 
-/// A shaded span of x.
+/// A labelled span of x.
 struct Band {
   double from = 0.0;
   double to = 0.0;
   std::string label;
+  bool shaded = true;
 };
 
 struct LineChart {

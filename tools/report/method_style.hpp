@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "tools/report/evaluated_run.hpp"
+#include "tools/report/svg.hpp"
+
+namespace isobar::report {
+
+/// Look of a method's lines and boxes: always the same for the six methods, from a list for other names. The
+/// colours are those of Okabe and Ito (2008), told apart with colour-blind eyes; dashes tell them apart
+/// without colour.
+Stroke method_stroke(const EvaluatedRun& run, const EvaluatedMethod& method);
+
+inline const Stroke kReferenceStroke{"#111827", 2.6};
+inline const Stroke kAltimeterStroke{"#56b4e9", 1.4, "1 3"};
+
+}  // namespace isobar::report
