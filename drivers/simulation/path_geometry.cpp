@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 namespace isobar::simulation {
 
@@ -36,7 +37,8 @@ PathGeometry::PathGeometry(const std::vector<Waypoint>& waypoints, double start_
     // Slight bends are driven in wide arcs, without slowing down.
     const double radius = std::abs(turn) < 0.3 ? 6.0 : limits.corner_radius_m;
     const double tangent = radius * std::tan(0.5 * std::abs(turn));
-    const double straight = std::max(0.0, way.norm() - tangent);
+    const double straight = way.norm() - tangent;
+    if (straight < -1e-9) throw std::logic_error("waypoints are too close for the corner between them");
     add_piece(at, yaw, 0.0, straight);
     s += straight;
     at += straight * heading(yaw);

@@ -30,7 +30,7 @@ struct LabelledSpan {
 struct PlatformLimits {
   double acceleration_m_s2 = 0.5;
   double turn_rate_rad_s = 0.6;
-  double corner_radius_m = 0.7;
+  double corner_radius_m = 0.65;
   double convex_blend_m = 0.20;   ///< half length over which it tips over an upper edge
   double concave_blend_m = 0.45;  ///< half length over which it rides out of a lower edge: half the tracks
 };

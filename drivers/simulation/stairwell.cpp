@@ -107,7 +107,7 @@ void Stairwell::route_up(std::vector<Waypoint>& way, double z_m, double speed_m_
   const double far_u = kLanding + run_m();
   const double half_z = z_m + sizes_.flight_m();
   const double top_z = z_m + sizes_.storey_m();
-  const double turn_u = far_u + 0.95;
+  const double turn_u = far_u + 1.05;
   way.push_back({plan(kLanding - sizes_.going_m - 0.5, 0.0), z_m, 0.6, "flat"});
   way.push_back({plan(kLanding - sizes_.going_m, 0.0), z_m, speed_m_s, "stairs"});
   way.push_back({plan(far_u, 0.0), half_z, speed_m_s, "stairs"});

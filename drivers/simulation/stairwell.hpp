@@ -46,7 +46,7 @@ class Stairwell {
   static constexpr double kLaneGap = 1.5;      // between the middles of the flights
   static constexpr double kHalfLane = 0.68;    // half the width of a flight
   static constexpr double kLanding = 2.5;      // depth of the landings of the storeys
-  static constexpr double kHalfLanding = 1.9;  // depth of the landing half way
+  static constexpr double kHalfLanding = 2.0;  // depth of the landing half way
 
   [[nodiscard]] Eigen::Vector2d plan(double u, double v) const;
   [[nodiscard]] Eigen::Vector3d point(double u, double v, double z) const;
