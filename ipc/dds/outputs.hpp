@@ -15,24 +15,26 @@
 
 namespace isobar::dds {
 
-/// Lets every n-th sample through, so that at most `rate_hz` come out.
+/// Lets so many samples through that `rate_hz` come out on average, or all if there are fewer.
 class RateLimit {
  public:
   explicit RateLimit(double rate_hz) : period_ns_(static_cast<std::int64_t>(1e9 / rate_hz)) {}
 
-  /// True when a message with this stamp is due. A stamp that went back starts over.
+  /// True when a message with this stamp is due. A stamp that goes back far starts over.
   bool due(std::int64_t stamp_ns) noexcept {
-    // A tenth of the period early, so that a source of just this rate with jitter is not halved.
-    if (stamp_ns >= last_ns_ && stamp_ns - last_ns_ < period_ns_ - period_ns_ / 10) {
+    // A source of just this rate jitters: it may be early by a tenth, which the next one makes good.
+    const std::int64_t early_ns = next_ns_ - stamp_ns;
+    if (early_ns > period_ns_ / 10 && early_ns <= 2 * period_ns_) {
       return false;
     }
-    last_ns_ = stamp_ns;
+    const bool on_time = early_ns <= period_ns_ / 10 && early_ns > -period_ns_;
+    next_ns_ = (on_time ? next_ns_ : stamp_ns) + period_ns_;
     return true;
   }
 
  private:
   std::int64_t period_ns_;
-  std::int64_t last_ns_ = INT64_MIN / 2;
+  std::int64_t next_ns_ = INT64_MIN / 2;
 };
 
 /// odom, pose, tf, tf_static, altitude, diagnostics. One thread.

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stands in for isobard: holds the broker and publishes what stand_in.hpp says, in real time, until SIGTERM.
+// Prints "ready" and then once a second how many priors went out.
+#include <signal.h>  // NOLINT(modernize-deprecated-headers)
+
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+
+#include "core/errors.hpp"
+#include "ipc/shared_memory.hpp"
+#include "tests/integration/dds/stand_in.hpp"
+
+namespace {
+
+using namespace isobar;  // NOLINT(google-build-using-namespace): a test's helper
+
+/// Waits for the next prior's time, or for SIGTERM (true).
+bool wait_until(std::chrono::steady_clock::time_point time, const sigset_t& stop) {
+  const auto left = time - std::chrono::steady_clock::now();
+  const auto left_ns = std::max<std::int64_t>(0, left / std::chrono::nanoseconds(1));
+  const timespec limit{left_ns / 1'000'000'000, left_ns % 1'000'000'000};
+  return sigtimedwait(&stop, nullptr, &limit) > 0;
+}
+
+void publish_scan(ipc::Publisher<RegisteredScan>& scans, const PoseEstimate& pose) {
+  RegisteredScan* scan = scans.loan();
+  if (scan == nullptr) {
+    return;
+  }
+  scan->pose = pose;
+  scan->point_count = stand_in::kScanPoints;
+  for (std::uint32_t i = 0; i < scan->point_count; ++i) {
+    scan->points[i] = stand_in::point_at(i);
+  }
+  scans.publish(scan);
+}
+
+void publish_map(ipc::Publisher<ipc::MapCloud>& maps, const PoseEstimate& pose) {
+  ipc::MapCloud* map = maps.loan();
+  if (map == nullptr) {
+    return;
+  }
+  map->stamp_ns = pose.stamp_ns;
+  map->point_count = stand_in::kMapPoints;
+  for (std::uint32_t i = 0; i < map->point_count; ++i) {
+    map->points[i] = stand_in::point_at(i);
+  }
+  maps.publish(map);
+}
+
+void publish_health(ipc::Publisher<ipc::HealthReport>& reports, std::int64_t stamp_ns) {
+  ipc::HealthReport* report = reports.loan();
+  if (report == nullptr) {
+    return;
+  }
+  report->stamp_ns = stamp_ns;
+  report->add("lidar/packets", ipc::HealthLevel::kOk, "", 754.0);
+  report->add("lidar/packets_lost", ipc::HealthLevel::kWarning, "gaps in time", 3.0);
+  reports.publish(report);
+}
+
+int run() {
+  sigset_t stop;
+  sigemptyset(&stop);
+  sigaddset(&stop, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &stop, nullptr);
+  const ipc::Broker broker;
+  ipc::Publisher<Prior> priors(ipc::topics::kPrior);
+  ipc::Publisher<PoseEstimate> poses(ipc::topics::kPose);
+  ipc::Publisher<RegisteredScan> scans(ipc::topics::kRegisteredScan);
+  ipc::Publisher<ipc::MapCloud> maps(ipc::topics::kMapCloud);
+  ipc::Publisher<ipc::HealthReport> reports(ipc::topics::kHealth);
+  const auto start = std::chrono::steady_clock::now();
+  const std::int64_t start_ns =
+      std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+  std::puts("ready");
+  for (std::uint64_t step = 0;; ++step) {
+    priors.send(stand_in::prior_at(start_ns, step));
+    if (step % stand_in::kPriorsPerScan == 0) {
+      const PoseEstimate pose = stand_in::pose_at(start_ns, step);
+      poses.send(pose);
+      publish_scan(scans, pose);
+    }
+    if (step % 200 == 0) {
+      publish_health(reports, stand_in::prior_at(start_ns, step).stamp_ns);
+      std::printf("priors %llu\n", static_cast<unsigned long long>(step));
+      std::fflush(stdout);
+    }
+    if (step % 400 == 0) {
+      publish_map(maps, stand_in::pose_at(start_ns, step));
+    }
+    const auto next = std::chrono::nanoseconds((step + 1) * stand_in::kPriorPeriodNs);
+    if (wait_until(start + next, stop)) {
+      return 0;
+    }
+  }
+}
+
+}  // namespace
+
+int main() {
+  try {
+    return run();
+  } catch (const Error& error) {
+    std::puts(error.what());
+    return error.exit_code();
+  }
+}
