@@ -6,10 +6,11 @@ namespace isobar {
 
 /// Size and density of the local map, and when it changes.
 struct MapConfig {
-  /// Edge of a plane cell [m], 0.1 … 1. Smaller follows finer indoor detail, larger needs fewer cells outdoors.
+  /// Edge of a plane cell [m], 0.1 … 1. Smaller follows finer indoor detail, larger needs fewer cells
+  /// outdoors.
   double cell_m = 0.25;
-  /// Tiles whose centre is farther than this from the robot leave memory [m], 20 … 200. Beyond the reach of the
-  /// registration nothing is matched.
+  /// Tiles whose centre is farther than this from the robot leave memory [m], 20 … 200. Beyond the reach of
+  /// the registration nothing is matched.
   double radius_m = 70.0;
   /// The map takes a scan when the robot moved this far since the last one it took [m], 0 … 2.
   double update_distance_m = 0.15;
@@ -19,11 +20,11 @@ struct MapConfig {
   double update_interval_s = 1.0;
   /// … or when less than this share of the scan found the map, 0 … 1: a door opened, the place is new.
   double update_overlap = 0.75;
-  /// Observations after which a cell's plane no longer changes, 8 … 1000. Enough to average the lidar's noise;
-  /// few enough that the oldest pose counts, which keeps drift out of places seen twice.
+  /// Observations after which a cell's plane no longer changes, 8 … 1000. Enough to average the lidar's
+  /// noise; few enough that the oldest pose counts, which keeps drift out of places seen twice.
   int freeze_observations = 80;
-  /// Largest thickness (standard deviation along the normal) of a cell that counts as a plane [m], 0.01 … 0.2.
-  /// The noise of a VLP-16 is 0.01 … 0.03 m.
+  /// Largest thickness (standard deviation along the normal) of a cell that counts as a plane [m], 0.01 …
+  /// 0.2. The noise of a VLP-16 is 0.01 … 0.03 m.
   double max_thickness_m = 0.05;
   /// Largest standard deviation of a normal's direction [deg], 0.5 … 15. Worse ones are not matched.
   double max_normal_deviation_deg = 4.0;

@@ -9,9 +9,10 @@ namespace isobar {
 
 /// One point of the map for files and viewers.
 struct MapPoint {
-  Eigen::Vector3d p_map = Eigen::Vector3d::Zero();       ///< position in the map frame [m]
-  Eigen::Vector3f normal_map = Eigen::Vector3f::Zero();  ///< unit normal towards the observer, zero if unknown
-  std::uint8_t intensity = 0;                            ///< calibrated reflectivity
+  Eigen::Vector3d p_map = Eigen::Vector3d::Zero();  ///< position in the map frame [m]
+  Eigen::Vector3f normal_map =
+      Eigen::Vector3f::Zero();  ///< unit normal towards the observer, zero if unknown
+  std::uint8_t intensity = 0;   ///< calibrated reflectivity
 };
 
 /// The plane of the map nearest to a query.

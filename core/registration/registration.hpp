@@ -31,24 +31,35 @@ class Registration {
   /// True where the priors reach the end of the scan, so that register_scan() need not extrapolate.
   [[nodiscard]] bool ready(const Scan& scan) const;
 
-  /// Estimates the pose at the end of `scan` against `map`; writes pose and deskewed, thinned points to `out`.
-  /// Never fails: what cannot be registered gets the prior's pose and mode kPriorOnly.
+  /// Estimates the pose at the end of `scan` against `map`; writes pose and deskewed, thinned points to
+  /// `out`. Never fails: what cannot be registered gets the prior's pose and mode kPriorOnly.
   void register_scan(const Scan& scan, const MapSnapshot& map, RegisteredScan& out);
 
   /// Pose at the newest prior, for the time between scans and without any. False before gravity is known.
   bool propagate(PoseEstimate& out) const;
 
-  /// Starts the next scan at this pose of base_link in the map (yaw and position are used; roll, pitch, and for
-  /// 3-DOF z, come from the prior).
+  /// Starts the next scan at this pose of base_link in the map (yaw and position are used; roll, pitch, and
+  /// for 3-DOF z, come from the prior).
   void set_pose(const Eigen::Isometry3d& T_map_base);
 
  private:
-  void solve(const MapSnapshot& map, const Prediction& prediction, PoseEstimate& pose);
+  // Wider than this a search finds the wrong wall more often than the right one.
+  static constexpr double kLargestSearchM = 2.0;
+
+  [[nodiscard]] const MethodTraits& traits_for(const Prior& prior) const;
+  void describe(const Prior& prior, const MethodTraits& traits, PoseEstimate& pose) const;
+  bool begin(const Scan& scan, Prior& end, PoseEstimate& pose);
+  [[nodiscard]] PairNoise pair_noise(const MethodTraits& traits, const Prior& prior) const;
+  bool solve(const MapSnapshot& map, const Prediction& prediction, const MethodTraits& traits,
+             const Prior& prior, PoseEstimate& pose, Matrix6d& twist_covariance);
   [[nodiscard]] bool acceptable(const PoseEstimate& pose, const Prediction& prediction) const;
-  void finish(const Prior& prior, const Prediction& prediction, PoseEstimate& pose);
+  void finish(const Prior& prior, const MethodTraits& traits, const Matrix6d& twist_covariance,
+              PoseEstimate& pose);
 
   RegistrationConfig config_;
-  MethodTraits method_;
+  Method asked_;
+  MethodTraits traits_;              // while there is no height
+  MethodTraits traits_with_height_;  // once there is
   Eigen::Isometry3d T_base_lidar_;
   PriorHistory history_;
   MotionModel motion_;
@@ -56,6 +67,7 @@ class Registration {
   Sampler sampler_;
   Correspondences correspondences_;
   PoseEstimate last_;
+  std::uint32_t waited_ = 0;  // scans before gravity was known
 };
 
 }  // namespace isobar

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which plane of the map each sampled point of the scan belongs to. Another way to match would replace this
+// file and MapSnapshot::nearest().
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/map/map_snapshot.hpp"
+
+namespace isobar {
+
+/// A point of the scan and its plane of the map.
+struct Pair {
+  Eigen::Vector3f p_robot;  ///< from the robot's position to the point, axes of the map [m]
+  Eigen::Vector3f normal;   ///< of the plane, axes of the map, unit
+  float residual_m;         ///< n^T (p - q), from the plane to the point
+};
+
+/// Finds pairs into memory of fixed size.
+class Correspondences {
+ public:
+  /// `capacity`: points at most.
+  explicit Correspondences(std::size_t capacity) { pairs_.reserve(capacity); }
+
+  /// Matches every `stride`-th of `p_base` placed at `T_map_base`, seen from `p_base_lidar`, to planes whose
+  /// point is within `max_distance_m`. The result is valid until the next call.
+  std::span<const Pair> find(const MapSnapshot& map, std::span<const Eigen::Vector3f> p_base,
+                             std::size_t stride, const Eigen::Isometry3d& T_map_base,
+                             const Eigen::Vector3d& p_base_lidar, double max_distance_m);
+
+ private:
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace isobar

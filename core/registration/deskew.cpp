@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/registration/deskew.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isobar {
+
+namespace {
+
+// The prior is asked every 2.048 ms, finer than an IMU's samples; between, matrices are blended linearly: at
+// 10 rad/s the error is below 1e-4. A knot every 256 us is off by half of it at most: 0.13 mrad at 1 rad/s.
+constexpr std::int64_t kUnitsPerKnot = 64;
+constexpr std::int64_t kKnotsPerPrior = 8;
+constexpr std::int64_t kPriorStepNs = kUnitsPerKnot * kKnotsPerPrior * kPointTimeUnitNs;
+constexpr std::size_t kMaxKnots = (std::size_t{1} << 16U) / kUnitsPerKnot + kKnotsPerPrior + 1;
+
+}  // namespace
+
+Deskewer::Deskewer(const Eigen::Isometry3d& T_base_lidar, double min_range_m, double max_range_m)
+    : T_base_lidar_(T_base_lidar),
+      squared_min_range_m2_(static_cast<float>(min_range_m * min_range_m)),
+      squared_max_range_m2_(static_cast<float>(max_range_m * max_range_m)),
+      knots_(kMaxKnots) {}
+
+Eigen::Isometry3d Deskewer::T_end_base(std::int64_t stamp_ns, const PriorHistory& history,
+                                       const ScanMotion& motion) const {
+  Prior prior = motion.end;
+  if (!history.at(stamp_ns, prior) && !history.empty() && stamp_ns <= history.oldest().stamp_ns) {
+    prior = history.oldest();
+  }
+  Eigen::Isometry3d T = motion.end.T_odom_base.inverse() * prior.T_odom_base;
+  if (!motion.from_wheels) {
+    T.translation() = motion.v_base_m_s * (static_cast<double>(stamp_ns - motion.end.stamp_ns) * 1e-9);
+  }
+  return T;
+}
+
+void Deskewer::fill_knots(const Scan& scan, const PriorHistory& history, const ScanMotion& motion) {
+  constexpr std::int64_t kLongestNs = std::int64_t{1 << 16} * kPointTimeUnitNs;
+  const std::int64_t span_ns = std::clamp<std::int64_t>(scan.end_stamp_ns - scan.stamp_ns, 0, kLongestNs);
+  const std::int64_t steps = span_ns / kPriorStepNs + 1;
+  Eigen::Isometry3d T_before = T_end_base(scan.stamp_ns, history, motion) * T_base_lidar_;
+  knot_count_ = 0;
+  for (std::int64_t step = 0; step < steps; ++step) {
+    const std::int64_t after_ns = scan.stamp_ns + (step + 1) * kPriorStepNs;
+    const Eigen::Isometry3d T_after = T_end_base(after_ns, history, motion) * T_base_lidar_;
+    for (std::int64_t k = 0; k < kKnotsPerPrior && knot_count_ < knots_.size(); ++k) {
+      // At the middle of the knot's span.
+      const double after = (static_cast<double>(k) + 0.5) / static_cast<double>(kKnotsPerPrior);
+      Knot& knot = knots_[knot_count_++];
+      knot.R_end_lidar = (T_before.linear() * (1.0 - after) + T_after.linear() * after).cast<float>();
+      knot.t_end_lidar =
+          (T_before.translation() * (1.0 - after) + T_after.translation() * after).cast<float>();
+    }
+    T_before = T_after;
+  }
+}
+
+void Deskewer::deskew(const Scan& scan, const PriorHistory& history, const ScanMotion& motion,
+                      RegisteredScan& out) {
+  fill_knots(scan, history, motion);
+  const std::uint32_t count = std::min(scan.point_count, Scan::kMaxPoints);
+  std::uint32_t kept = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const ScanPoint& point = scan.points[i];
+    const Eigen::Vector3f p_lidar(point.x_m, point.y_m, point.z_m);
+    const float squared_range = p_lidar.squaredNorm();
+    if (!(squared_range >= squared_min_range_m2_ && squared_range <= squared_max_range_m2_)) {
+      continue;
+    }
+    const Knot& knot = knots_[std::min<std::size_t>(point.time_4us / kUnitsPerKnot, knot_count_ - 1)];
+    const Eigen::Vector3f p_base = knot.R_end_lidar * p_lidar + knot.t_end_lidar;
+    ScanPoint& moved = out.points[kept++];
+    moved = point;
+    moved.x_m = p_base.x();
+    moved.y_m = p_base.y();
+    moved.z_m = p_base.z();
+  }
+  out.point_count = kept;
+}
+
+}  // namespace isobar
