@@ -164,6 +164,9 @@ bool VelodyneDecoder::seen(const Packet& packet) {
 DecodeResult VelodyneDecoder::add_in_order(const Packet& packet, bool stepped, std::int64_t offset_before_ns,
                                            Scan& current) {
   DecodeResult result;
+  if (const std::int64_t gap_ns = packet.device_ns - last_device_ns_; have_last_ && gap_ns > 0) {
+    shortest_gap_ns_ = shortest_gap_ns_ == 0 ? gap_ns : std::min(shortest_gap_ns_, gap_ns);
+  }
   const std::uint32_t lost = stepped ? 0 : lost_before(packet);
   counters_.lost += lost;
   const int cut = first_block_of_next_scan(packet, stepped, current);
@@ -234,7 +237,9 @@ std::uint32_t VelodyneDecoder::lost_before(const Packet& packet) const {
   if (!have_last_ || gap_ns <= 0 || gap_ns > kMaxCountedGapNs) {
     return 0;
   }
-  const std::int64_t duration_ns = traits_.packet_duration_ns(packet.dual);
+  // A sensor that says it is an HDL-32E but keeps a VLP-16's pace has been seen: no gap is shorter than the
+  // pace.
+  const std::int64_t duration_ns = std::max(traits_.packet_duration_ns(packet.dual), shortest_gap_ns_);
   const std::int64_t packets = (gap_ns + duration_ns / 2) / duration_ns;
   return packets > 1 ? static_cast<std::uint32_t>(packets - 1) : 0;
 }
@@ -298,24 +303,23 @@ void VelodyneDecoder::decode_block(const Packet& packet, int block, std::uint32_
       continue;
     }
     const std::int64_t firing_ns = traits_.firing_offset_ns(block, channel, packet.dual);
-    const double azimuth =
-        block_azimuth + azimuth_step * static_cast<double>(firing_ns - block_start_ns) / block_ns;
-    const auto whole = static_cast<std::uint32_t>(azimuth);
-    const std::size_t entry = whole % kFullTurn;
-    if ((entry + kFullTurn - mask_start_) % kFullTurn < mask_width_) {
+    // Rounded to the resolution of the sensor's own azimuths: at most 0.005 deg, 0.9 mm at 10 m.
+    const auto beyond = static_cast<std::uint32_t>(
+        azimuth_step * static_cast<double>(firing_ns - block_start_ns) / block_ns + 0.5);
+    const std::size_t azimuth = (block_azimuth + beyond) % kFullTurn;
+    if ((azimuth + kFullTurn - mask_start_) % kFullTurn < mask_width_) {
       continue;
     }
-    // First-order step from the table: the second order is below (0.01 deg)^2 / 2 = 1.5e-8.
-    const auto beyond = static_cast<float>((azimuth - whole) * kRadPerCount);
-    const float cos_azimuth = cos_azimuth_[entry] - beyond * sin_azimuth_[entry];
-    const float sin_azimuth = sin_azimuth_[entry] + beyond * cos_azimuth_[entry];
     const auto laser = static_cast<std::size_t>(channel % traits_.lasers);
     const float range = static_cast<float>(count) * static_cast<float>(kDistanceUnitM);
     const float across = range * cos_elevation_[laser];
     TimedPoint& point = points_[point_count_++];
-    point.point = {across * cos_azimuth,          -across * sin_azimuth,
-                   range * sin_elevation_[laser], 0,
-                   traits_.ring[laser],           at[2]};
+    point.point = {across * cos_azimuth_[azimuth],
+                   -across * sin_azimuth_[azimuth],
+                   range * sin_elevation_[laser],
+                   0,
+                   traits_.ring[laser],
+                   at[2]};
     point.device_ns = packet.device_ns + firing_ns;
   }
 }

@@ -140,9 +140,10 @@ class VelodyneDecoder {
   std::size_t recent_next_ = 0;
 
   bool have_last_ = false;
-  std::int64_t last_device_ns_ = 0;  // of the newest packet
-  std::uint32_t last_azimuth_ = 0;   // of its last block
-  double azimuth_rate_ = 0.0;        // [0.01 deg / ns]
+  std::int64_t last_device_ns_ = 0;   // of the newest packet
+  std::int64_t shortest_gap_ns_ = 0;  // between two packets, ever
+  std::uint32_t last_azimuth_ = 0;    // of its last block
+  double azimuth_rate_ = 0.0;         // [0.01 deg / ns]
 
   bool scan_open_ = false;
   std::int64_t scan_start_ns_ = 0;  // device time, unwrapped
