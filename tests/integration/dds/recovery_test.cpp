@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// isobar-dds when things around it die. The test itself is the DDS subscriber.
+#include <doctest/doctest.h>
+#include <signal.h>  // NOLINT(modernize-deprecated-headers)
+
+#include <chrono>
+#include <string>
+
+#include "ipc/dds/endpoints.hpp"
+#include "ipc/shared_memory.hpp"
+#include "tests/ipc/child_process.hpp"
+
+namespace isobar {
+namespace {
+
+using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
+using test::ChildProcess;
+
+/// A subscriber that waits for messages of one topic.
+template <class Message>
+class Listener {
+ public:
+  explicit Listener(const dds::DdsTopic<Message>& topic)
+      : participant_({}), reader_(participant_.get(), topic) {
+    waitset_ = dds::checked(dds_create_waitset(participant_.get()), "wait set");
+    dds_set_status_mask(reader_.get(), DDS_DATA_AVAILABLE_STATUS);
+    dds_waitset_attach(waitset_.get(), reader_.get(), 0);
+  }
+  /// Forgets what has come so far, then waits until `wanted` fitting messages have.
+  template <class Fits>
+  bool receive(int wanted, Fits&& fits, std::chrono::seconds timeout = 20s) {
+    reader_.take([](const Message&) {});
+    const auto deadline = std::chrono::steady_clock::now() + timeout;
+    while (wanted > 0 && std::chrono::steady_clock::now() < deadline) {
+      dds_waitset_wait(waitset_.get(), nullptr, 0, DDS_MSECS(100));
+      reader_.take([&](const Message& message) { wanted -= fits(message) ? 1 : 0; });
+    }
+    return wanted <= 0;
+  }
+  bool receive(int wanted) {
+    return receive(wanted, [](const Message&) { return true; });
+  }
+
+ private:
+  dds::Participant participant_;
+  dds::Reader<Message> reader_;
+  dds::Entity waitset_;
+};
+
+bool says(const dds::DiagnosticsMessage& message, const std::string& name, int level) {
+  for (std::uint32_t i = 0; i < message.status._length; ++i) {
+    const auto& status = message.status._buffer[i];
+    if (name == status.name && status.level == level) {
+      return true;
+    }
+  }
+  return false;
+}
+
+TEST_CASE("without isobard the bridge waits, says so once and in the diagnostics, and ends cleanly") {
+  Listener<dds::DiagnosticsMessage> listener(dds::topics::kDiagnostics);
+  ChildProcess bridge({ISOBAR_DDS_PROGRAM});
+  CHECK(listener.receive(2, [](const auto& message) { return says(message, "isobar: bridge/isobard", 2); }));
+  bridge.signal(SIGTERM);
+  CHECK(bridge.wait(10s) == 0);
+  std::string line;
+  int waiting_lines = 0;
+  while (bridge.read_line(line, 1s)) {
+    waiting_lines += line.find("waiting") != std::string::npos ? 1 : 0;
+  }
+  CHECK(waiting_lines == 1);
+}
+
+TEST_CASE("a killed bridge does not disturb isobard, and a new one goes on") {
+  Listener<dds::OdometryMessage> listener(dds::topics::kOdom);
+  ChildProcess stand_in({ISOBAR_STAND_IN});
+  REQUIRE(stand_in.read_until("ready", 10s));
+  {
+    ChildProcess bridge({ISOBAR_DDS_PROGRAM});
+    CHECK(listener.receive(100));
+    bridge.signal(SIGKILL);
+    CHECK(bridge.wait(10s) == 128 + SIGKILL);
+  }
+  CHECK(stand_in.read_until("priors", 5s));
+  CHECK(stand_in.read_until("priors", 5s));
+  ChildProcess bridge({ISOBAR_DDS_PROGRAM});
+  CHECK(listener.receive(100));
+  CHECK(stand_in.running());
+  bridge.signal(SIGINT);
+  CHECK(bridge.wait(10s) == 0);
+  stand_in.signal(SIGTERM);
+  CHECK(stand_in.wait(10s) == 0);
+}
+
+TEST_CASE("when isobard is killed or stopped and comes again, the bridge comes back by itself") {
+  Listener<dds::OdometryMessage> listener(dds::topics::kOdom);
+  ChildProcess bridge({ISOBAR_DDS_PROGRAM});
+  for (const int ending : {SIGKILL, SIGTERM, SIGKILL}) {
+    ChildProcess stand_in({ISOBAR_STAND_IN});
+    REQUIRE(stand_in.read_until("ready", 10s));
+    CHECK(listener.receive(20));
+    stand_in.signal(ending);
+    CHECK(stand_in.wait(10s) == (ending == SIGKILL ? 128 + SIGKILL : 0));
+  }
+  ChildProcess stand_in({ISOBAR_STAND_IN});
+  CHECK(listener.receive(20));
+  CHECK(bridge.running());  // the same process all along
+  bridge.signal(SIGTERM);
+  CHECK(bridge.wait(10s) == 0);
+}
+
+TEST_CASE("a bridge that was stopped for so long that isobard gave it up comes back") {
+  Listener<dds::OdometryMessage> listener(dds::topics::kOdom);
+  ChildProcess stand_in({ISOBAR_STAND_IN});
+  REQUIRE(stand_in.read_until("ready", 10s));
+  ChildProcess bridge({ISOBAR_DDS_PROGRAM});
+  CHECK(listener.receive(20));
+  bridge.signal(SIGSTOP);
+  for (int second = 0; second < 4; ++second) {  // iceoryx gives a process up after 1.5 s
+    CHECK(stand_in.read_until("priors", 5s));
+  }
+  bridge.signal(SIGCONT);
+  CHECK(listener.receive(200));
+  CHECK(stand_in.running());
+}
+
+TEST_CASE("while the bridge forwards, the end of isobard can be followed at once by its own") {
+  Listener<dds::OdometryMessage> listener(dds::topics::kOdom);
+  ChildProcess stand_in({ISOBAR_STAND_IN});
+  ChildProcess bridge({ISOBAR_DDS_PROGRAM});
+  CHECK(listener.receive(20));
+  stand_in.signal(SIGKILL);
+  bridge.signal(SIGTERM);
+  CHECK(bridge.wait(10s) == 0);
+}
+
+TEST_CASE("what cannot work is refused in words") {
+  ChildProcess no_interface({ISOBAR_DDS_PROGRAM, "--interface", "nope0"});
+  CHECK(no_interface.read_until("nope0", 10s));
+  CHECK(no_interface.wait(10s) == 69);
+  ChildProcess no_domain({ISOBAR_DDS_PROGRAM, "--domain", "233"});
+  CHECK(no_domain.read_until("domain", 10s));
+  CHECK(no_domain.wait(10s) == 78);
+  ChildProcess no_option({ISOBAR_DDS_PROGRAM, "--nonsense"});
+  CHECK(no_option.wait(10s) == 64);
+}
+
+}  // namespace
+}  // namespace isobar
