@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/altitude/stamp.hpp"
+
 namespace isobar {
 namespace {
 
-constexpr double kSecondsPerNs = 1e-9;
 constexpr double kLowestPlausibleC = -60.0;
 constexpr double kHighestPlausibleC = 100.0;
 // A thermometer silent for longer no longer says what the air is like now.
@@ -20,7 +21,7 @@ AirTemperatureTracker::AirTemperatureTracker(const AirTemperatureConfig& config)
 
 void AirTemperatureTracker::smooth(Thermometer& thermometer, std::int64_t stamp_ns,
                                    double temperature_c) const {
-  const double dt_s = static_cast<double>(stamp_ns - thermometer.stamp_ns) * kSecondsPerNs;
+  const double dt_s = seconds_between(thermometer.stamp_ns, stamp_ns);
   if (!thermometer.started || dt_s > kForgetSensorS) {
     thermometer = {stamp_ns, temperature_c, 0.0, true};
     return;
@@ -48,18 +49,24 @@ void AirTemperatureTracker::add(std::size_t sensor, std::int64_t stamp_ns, doubl
   smooth(thermometers_[sensor], stamp_ns, temperature_c);
   double lowest_c = kHighestPlausibleC;
   for (const Thermometer& thermometer : thermometers_) {
-    const double age_s = static_cast<double>(stamp_ns - thermometer.stamp_ns) * kSecondsPerNs;
+    const double age_s = seconds_between(thermometer.stamp_ns, stamp_ns);
     if (thermometer.started && age_s < kForgetSensorS) lowest_c = std::min(lowest_c, thermometer.smooth_c);
   }
   if (!started_) {
     start_ns_ = stamp_ns_ = stamp_ns;
     estimate_c_ = lowest_c;
-    started_ = true;
+    started_ = time_known_ = true;
+    return;
+  }
+  if (!time_known_) {
+    start_ns_ = stamp_ns - (stamp_ns_ - start_ns_);
+    stamp_ns_ = stamp_ns;
+    time_known_ = true;
     return;
   }
   if (stamp_ns <= stamp_ns_) return;
-  const double since_start_s = static_cast<double>(stamp_ns - start_ns_) * kSecondsPerNs;
-  const double dt_s = static_cast<double>(stamp_ns - stamp_ns_) * kSecondsPerNs;
+  const double since_start_s = seconds_between(start_ns_, stamp_ns);
+  const double dt_s = seconds_between(stamp_ns_, stamp_ns);
   stamp_ns_ = stamp_ns;
   if (since_start_s < config_.smoothing_time_s) {
     // The height is still zero: take the mean of the first seconds, of whichever sensor is colder, at once.

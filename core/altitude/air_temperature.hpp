@@ -31,6 +31,12 @@ class AirTemperatureTracker {
   /// do nothing.
   void add(std::size_t sensor, std::int64_t stamp_ns, double temperature_c);
 
+  /// The clock jumped: the next readings follow at once. The estimate stays.
+  void restart_clock() {
+    thermometers_ = {};
+    time_known_ = false;
+  }
+
   /// Estimate [degC]; the configured value until a thermometer has spoken.
   [[nodiscard]] double temperature_c() const { return estimate_c_; }
 
@@ -51,6 +57,7 @@ class AirTemperatureTracker {
   std::int64_t start_ns_ = 0;
   std::int64_t stamp_ns_ = 0;
   bool started_ = false;
+  bool time_known_ = false;
 };
 
 }  // namespace isobar

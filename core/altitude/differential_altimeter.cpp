@@ -6,11 +6,11 @@
 #include <limits>
 
 #include "core/altitude/hypsometry.hpp"
+#include "core/altitude/stamp.hpp"
 
 namespace isobar {
 namespace {
 
-constexpr double kSecondsPerNs = 1e-9;
 // A base station is smoothed this long before it becomes the reference: one noisy sample would shift all
 // heights.
 constexpr double kBaseSettlingS = 1.0;
@@ -18,10 +18,6 @@ constexpr double kBaseSettlingS = 1.0;
 constexpr double kWeatherRatePaS = 0.03;
 // Noise memory in samples: some seconds of a 32 Hz barometer.
 constexpr double kNoiseMemorySamples = 200.0;
-
-double seconds(std::int64_t from_ns, std::int64_t to_ns) {
-  return static_cast<double>(to_ns - from_ns) * kSecondsPerNs;
-}
 
 NoiseEstimator::Options noise_options(const AltimeterConfig& config) {
   return {config.initial_noise_pa, config.noise_floor_pa, config.noise_ceiling_pa, kNoiseMemorySamples};
@@ -46,6 +42,12 @@ double DifferentialAltimeter::scale_uncertainty() const {
   return config_.air.sigma_k / (air_.temperature_c() + kZeroCelsiusK);
 }
 
+void DifferentialAltimeter::restart_clock() {
+  robot_gate_.restart_clock();
+  base_gate_.restart_clock();
+  air_.restart_clock();
+}
+
 PressureStatus DifferentialAltimeter::add_base(const PressureSample& sample) {
   const bool first = !base_gate_.started();
   const std::int64_t before_ns = base_gate_.fresh_stamp_ns();
@@ -53,7 +55,8 @@ PressureStatus DifferentialAltimeter::add_base(const PressureSample& sample) {
   if (status == PressureStatus::kBadValue || status == PressureStatus::kBadTime) return status;
   air_.add(1, sample.stamp_ns, sample.temperature_c);
   if (status == PressureStatus::kRepeated) return status;
-  const double gap_s = first ? 0.0 : seconds(before_ns, sample.stamp_ns);
+  const double gap_s = first ? 0.0 : std::max(0.0, seconds_between(before_ns, sample.stamp_ns));
+  base_since_ns_ = std::min(base_since_ns_, sample.stamp_ns);
   if (first || gap_s > config_.base_timeout_s) {
     base_filter_.restart();
     base_noise_.restart();
@@ -66,7 +69,7 @@ PressureStatus DifferentialAltimeter::add_base(const PressureSample& sample) {
 
 bool DifferentialAltimeter::base_ready(std::int64_t now_ns) const {
   return !base_gate_.lost(now_ns, config_.base_timeout_s) &&
-         seconds(base_since_ns_, std::max(base_gate_.fresh_stamp_ns(), now_ns)) >= kBaseSettlingS;
+         seconds_between(base_since_ns_, std::max(base_gate_.fresh_stamp_ns(), now_ns)) >= kBaseSettlingS;
 }
 
 void DifferentialAltimeter::update_base_state(std::int64_t now_ns, AltimeterReading& out) {
@@ -93,13 +96,15 @@ void DifferentialAltimeter::fill_height(const PressureSample& sample, AltimeterR
   out.height_m = scale_m() * (reference_log_pa_ - std::log(sample.pressure_pa));
   out.noise_variance_m2 = metres_per_pa * metres_per_pa * robot_noise_.variance();
   out.source = base_ == Base::kPresent ? HeightSource::kDifferential : HeightSource::kSingleBarometer;
-  out.base_age_s = base_gate_.started() ? std::max(0.0, seconds(base_gate_.fresh_stamp_ns(), sample.stamp_ns))
-                                        : std::numeric_limits<double>::infinity();
+  out.base_age_s = base_gate_.started()
+                       ? std::max(0.0, seconds_between(base_gate_.fresh_stamp_ns(), sample.stamp_ns))
+                       : std::numeric_limits<double>::infinity();
   double reference_variance_pa2 = 0.0;
   if (base_ == Base::kPresent) {
     reference_variance_pa2 = base_filter_.variance_pa2(out.base_age_s);
   } else {
-    const double alone_s = base_ == Base::kLost ? out.base_age_s : seconds(first_stamp_ns_, sample.stamp_ns);
+    const double alone_s =
+        base_ == Base::kLost ? out.base_age_s : seconds_between(first_stamp_ns_, sample.stamp_ns);
     reference_variance_pa2 = std::pow(kWeatherRatePaS * alone_s, 2);
   }
   const double scale_error_m = out.height_m * scale_uncertainty();
@@ -113,7 +118,7 @@ PressureStatus DifferentialAltimeter::add_robot(const PressureSample& sample, Al
   if (status == PressureStatus::kBadValue || status == PressureStatus::kBadTime) return status;
   air_.add(0, sample.stamp_ns, sample.temperature_c);
   if (status == PressureStatus::kRepeated) return status;
-  if (started_ && seconds(before_ns, sample.stamp_ns) > 1.0) robot_noise_.restart();
+  if (started_ && seconds_between(before_ns, sample.stamp_ns) > 1.0) robot_noise_.restart();
   robot_noise_.add(sample.pressure_pa);
   out = AltimeterReading{};
   if (!started_) {

@@ -52,6 +52,9 @@ class DifferentialAltimeter {
   /// With kAccepted, and only then, `out` is filled.
   PressureStatus add_robot(const PressureSample& sample, AltimeterReading& out);
 
+  /// The robot's clock jumped: samples follow at once, whatever their stamps. Heights go on as they are.
+  void restart_clock();
+
   /// No usable robot sample for `timeout_s`, or a stuck value, at `now_ns`.
   [[nodiscard]] bool robot_lost(std::int64_t now_ns, double timeout_s) const {
     return robot_gate_.lost(now_ns, timeout_s);

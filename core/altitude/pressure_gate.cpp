@@ -4,21 +4,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/altitude/stamp.hpp"
+
 namespace isobar {
 namespace {
 
-constexpr double kSecondsPerNs = 1e-9;
 // A fast lift in a high building: 10 m/s are 120 Pa/s. What a sensor may move while nobody looked.
 constexpr double kFastestChangePaS = 120.0;
-
-double seconds(std::int64_t from_ns, std::int64_t to_ns) {
-  return static_cast<double>(to_ns - from_ns) * kSecondsPerNs;
-}
 
 }  // namespace
 
 bool PressureGate::is_spike(const PressureSample& sample) {
-  const double allowed_pa = config_.spike_pa + kFastestChangePaS * seconds(fresh_stamp_ns_, sample.stamp_ns);
+  const double allowed_pa =
+      config_.spike_pa + kFastestChangePaS * seconds_between(fresh_stamp_ns_, sample.stamp_ns);
   if (std::abs(sample.pressure_pa - pressure_pa_) <= allowed_pa) {
     agreeing_ = 0;
     return false;
@@ -36,6 +34,11 @@ PressureStatus PressureGate::check(const PressureSample& sample) {
   const bool plausible =
       sample.pressure_pa >= config_.min_pressure_pa && sample.pressure_pa <= config_.max_pressure_pa;
   if (!plausible) return PressureStatus::kBadValue;
+  if (!plausible_stamp(sample.stamp_ns)) return PressureStatus::kBadTime;
+  if (!time_known_) {
+    fresh_stamp_ns_ = alive_stamp_ns_ = sample.stamp_ns - 1;
+    time_known_ = true;
+  }
   if (started_) {
     if (sample.stamp_ns <= alive_stamp_ns_) return PressureStatus::kBadTime;
     if (sample.pressure_pa == pressure_pa_) {
@@ -52,8 +55,8 @@ PressureStatus PressureGate::check(const PressureSample& sample) {
 
 bool PressureGate::lost(std::int64_t now_ns, double timeout_s) const {
   if (!started_) return true;
-  return seconds(alive_stamp_ns_, now_ns) > timeout_s ||
-         seconds(fresh_stamp_ns_, now_ns) > std::max(config_.stuck_timeout_s, timeout_s);
+  return seconds_between(alive_stamp_ns_, now_ns) > timeout_s ||
+         seconds_between(fresh_stamp_ns_, now_ns) > std::max(config_.stuck_timeout_s, timeout_s);
 }
 
 }  // namespace isobar

@@ -27,6 +27,8 @@ class PressureGate {
   [[nodiscard]] std::int64_t fresh_stamp_ns() const { return fresh_stamp_ns_; }
   /// Time of the last sample that was at least plausible, repeats included.
   [[nodiscard]] std::int64_t alive_stamp_ns() const { return alive_stamp_ns_; }
+  /// The clock jumped: the next sample follows at once, whatever its stamp.
+  void restart_clock() { time_known_ = false; }
   [[nodiscard]] bool started() const { return started_; }
   /// Silent for `timeout_s`, or unchanged for the stuck time-out.
   [[nodiscard]] bool lost(std::int64_t now_ns, double timeout_s) const;
@@ -41,6 +43,7 @@ class PressureGate {
   std::int64_t fresh_stamp_ns_ = 0;
   std::int64_t alive_stamp_ns_ = 0;
   bool started_ = false;
+  bool time_known_ = false;
 };
 
 }  // namespace isobar

@@ -11,16 +11,17 @@ namespace isobar {
 
 /// Attitude and velocity from gyro, accelerometer and wheels (attitude_filter.hpp).
 struct AttitudeConfig {
-  /// Roll and pitch start from the mean specific force over this time [s], 0.1 … 10. Long enough to average vibration
-  /// (1 m/s^2 rms at 200 Hz over 0.5 s: 0.6 deg, which the filter then brings down), short enough to be ready soon.
+  /// Roll and pitch start from the mean specific force over this time [s], 0.1 … 10. Long enough to average
+  /// vibration (1 m/s^2 rms at 200 Hz over 0.5 s: 0.6 deg, which the filter then brings down), short enough
+  /// to be ready soon.
   double start_time_s = 0.5;
 
   /// Turn-on bias of each gyro axis, 1 sigma [rad/s], 0 … 0.5. 0.5 deg/s is a consumer-to-industrial MEMS.
   double gyro_bias_sigma_rad_s = 0.0087;
   /// Random walk of the gyro bias [rad/s/sqrt(s)], 0 … 0.01. 10 deg/h in-run stability over some minutes.
   double gyro_bias_walk_rad_s_sqrt_s = 3e-6;
-  /// Floor of the gyro's angle random walk [rad/sqrt(s)], 1e-6 … 0.1; raised online where the gyro is seen to be
-  /// noisier. 0.015 deg/s/sqrt(Hz) lies between a VN-100 (0.0035) and an MTi-10 (0.03).
+  /// Floor of the gyro's angle random walk [rad/sqrt(s)], 1e-6 … 0.1; raised online where the gyro is seen to
+  /// be noisier. 0.015 deg/s/sqrt(Hz) lies between a VN-100 (0.0035) and an MTi-10 (0.03).
   double gyro_noise_rad_sqrt_s = 2.6e-4;
 
   /// Bias of each accelerometer axis, 1 sigma [m/s^2], 0 … 1, and its walk [m/s^2/sqrt(s)]. 0.03 is 3 mg,
@@ -39,15 +40,16 @@ struct AttitudeConfig {
   double lateral_sigma_m_s = 0.05;
   double vertical_sigma_m_s = 0.1;
 
-  /// Without wheels the velocity is only known to be bounded: its rms [m/s], 0.05 … 20, and correlation time [s],
-  /// 0.1 … 60. A pendulum of 0.5 m amplitude on 10 to 30 m of rope swings with 0.3 to 0.5 m/s.
+  /// Without wheels the velocity is only known to be bounded: its rms [m/s], 0.05 … 20, and correlation time
+  /// [s], 0.1 … 60. A pendulum of 0.5 m amplitude on 10 to 30 m of rope swings with 0.3 to 0.5 m/s.
   double free_velocity_sigma_m_s = 0.5;
   double free_velocity_correlation_s = 3.0;
 
-  /// Use the IMU's own attitude: its roll and pitch as measurements, its rotation between samples instead of the gyro's.
-  /// Off by default: what a device's filter does in an elevator or on stairs is not documented.
+  /// Use the IMU's own attitude: its roll and pitch as measurements, its rotation between samples instead of
+  /// the gyro's. Off by default: what a device's filter does in an elevator or on stairs is not documented.
   bool use_imu_attitude = false;
-  /// Error of the IMU's own roll and pitch, 1 sigma [rad], 1e-4 … 0.5, and its correlation time [s], 0.01 … 60.
+  /// Error of the IMU's own roll and pitch, 1 sigma [rad], 1e-4 … 0.5, and its correlation time [s], 0.01
+  /// … 60.
   double imu_attitude_sigma_rad = 0.007;
   double imu_attitude_correlation_s = 2.0;
 };
@@ -79,8 +81,8 @@ struct DeadReckoningConfig {
 
 /// The vertical Kalman filter (height_filter.hpp).
 struct HeightConfig {
-  /// Bias of the vertical acceleration, 1 sigma [m/s^2], 0 … 1, and its walk [m/s^2/sqrt(s)]: accelerometer bias,
-  /// local gravity (9.780 … 9.832 against 9.80665) and tilt error together.
+  /// Bias of the vertical acceleration, 1 sigma [m/s^2], 0 … 1, and its walk [m/s^2/sqrt(s)]: accelerometer
+  /// bias, local gravity (9.780 … 9.832 against 9.80665) and tilt error together.
   double accel_bias_sigma_m_s2 = 0.05;
   double accel_bias_walk_m_s2_sqrt_s = 3e-4;
   /// Floor of the noise of the vertical acceleration [m/s/sqrt(s)], 1e-5 … 1; raised online by vibration.
@@ -90,24 +92,28 @@ struct HeightConfig {
   /// 1 sigma [rad], 0 … 0.2, and its walk [rad/sqrt(s)]. 0.3 deg of mounting and accelerometer bias.
   double slope_sigma_rad = 0.006;
   double slope_walk_rad_sqrt_s = 2e-5;
-  /// Error of the slope that comes and goes (attitude, suspension, uneven floor) [rad], 0 … 0.2, correlation [s].
+  /// Error of the slope that comes and goes (attitude, suspension, uneven floor) [rad], 0 … 0.2, correlation
+  /// [s].
   double slope_error_rad = 0.002;
   double slope_error_correlation_s = 3.0;
-  /// Error of the climb speed as a share of itself (slip on stairs), 0 … 1, and its correlation time [s], 0.1 … 60.
+  /// Error of the climb speed as a share of itself (slip on stairs), 0 … 1, and its correlation time [s], 0.1
+  /// … 60.
   double slip_share = 0.1;
   double slip_correlation_s = 3.0;
   /// Vertical speed of a standing robot's ground, 1 sigma [m/s/sqrt(Hz)], 1e-6 … 1.
   double rest_speed_m_s_sqrt_s = 3e-4;
 
-  /// Local slow pressure noise (turbulence, ventilation), as a height: rms [m], 0 … 10, and correlation time [s],
-  /// 0.1 … 600. 0.25 Pa over 15 s: what two good barometers still differ by after their white noise is averaged.
+  /// Local slow pressure noise (turbulence, ventilation), as a height: rms [m], 0 … 10, and correlation time
+  /// [s], 0.1 … 600. 0.25 Pa over 15 s: what two good barometers still differ by after their white noise is
+  /// averaged.
   double turbulence_sigma_m = 0.02;
   double turbulence_time_s = 15.0;
 
-  /// Random walk of the difference between the two barometers [m/sqrt(s)], 0 … 1: warm-up, ageing, 1 cm in 10 min.
+  /// Random walk of the difference between the two barometers [m/sqrt(s)], 0 … 1: warm-up, ageing, 1 cm in 10
+  /// min.
   double offset_walk_m_sqrt_s = 4e-4;
-  /// Random walk of the weather where no base station takes it out [m/sqrt(s)], 0 … 10. Fronts move 100 Pa an hour,
-  /// 2 mm/s, for hours: as a walk about 2.5 cm after 1 s-steps of that size over 100 s.
+  /// Random walk of the weather where no base station takes it out [m/sqrt(s)], 0 … 10. Fronts move 100 Pa an
+  /// hour, 2 mm/s, for hours: as a walk about 2.5 cm after 1 s-steps of that size over 100 s.
   double weather_walk_m_sqrt_s = 0.02;
 
   /// A pressure further off than this many sigmas is not used, 2 … 20 …
@@ -118,8 +124,8 @@ struct HeightConfig {
   /// A barometer silent for longer is lost [s], 0.2 … 60.
   double barometer_timeout_s = 1.0;
 
-  /// The ground moves (elevator) when acceleration says that the vertical speed differs from the wheels' by more than
-  /// this [m/s], 0.02 … 5, and by `moving_ground_sigma` standard deviations, 2 … 20; …
+  /// The ground moves (elevator) when acceleration says that the vertical speed differs from the wheels' by
+  /// more than this [m/s], 0.02 … 5, and by `moving_ground_sigma` standard deviations, 2 … 20; …
   double moving_ground_speed_m_s = 0.12;
   double moving_ground_sigma = 5.0;
   /// … and has stopped when both agree within this [m/s] for this long [s], 0.1 … 10.
@@ -129,13 +135,14 @@ struct HeightConfig {
 
 /// What arrives from outside is only believed within these limits.
 struct PriorLimits {
-  /// Largest angular rate [rad/s] and specific force [m/s^2] per axis: ranges of the sensors (2000 deg/s, 16 g).
+  /// Largest angular rate [rad/s] and specific force [m/s^2] per axis: ranges of the sensors (2000 deg/s, 16
+  /// g).
   double max_gyro_rad_s = 35.0;
   double max_accel_m_s2 = 160.0;
   /// A step of IMU time longer than this [s] is a gap: bridged, counted, uncertainty added.
   double imu_gap_s = 0.1;
-  /// A step longer than this [s], forwards or backwards, needs a second sample that agrees before it is believed;
-  /// after it the attitude starts anew.
+  /// A step longer than this [s], forwards or backwards, needs a second sample that agrees before it is
+  /// believed; after it the attitude starts anew.
   double imu_restart_s = 10.0;
   /// Samples of barometer, base and wheels whose time is this far ahead of the IMU [s] are refused.
   double max_ahead_s = 5.0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The prior stage: what inertial sensors, wheels and barometers say about the pose before the scan is looked at.
+// The prior stage: what inertial sensors, wheels and barometers say about the pose before the scan is looked
+// at.
 #pragma once
 
 #include <cstdint>
@@ -14,32 +15,32 @@ namespace isobar {
 /// What became of the samples. Refused samples change nothing else.
 struct PriorCounters {
   std::uint64_t imu_accepted = 0;
-  std::uint64_t imu_bad_value = 0;     ///< not finite, or beyond the sensor's range
-  std::uint64_t imu_bad_time = 0;      ///< not newer than the one before, or a jump not yet confirmed
-  std::uint64_t imu_gaps = 0;          ///< steps of time longer than PriorLimits::imu_gap_s
-  std::uint64_t imu_restarts = 0;      ///< clock jumps that were confirmed
+  std::uint64_t imu_bad_value = 0;  ///< not finite, or beyond the sensor's range
+  std::uint64_t imu_bad_time = 0;   ///< not newer than the one before, or a jump not yet confirmed
+  std::uint64_t imu_gaps = 0;       ///< steps of time longer than PriorLimits::imu_gap_s
+  std::uint64_t imu_restarts = 0;   ///< clock jumps that were confirmed
   std::uint64_t pressure_accepted = 0;
   std::uint64_t pressure_bad_value = 0;  ///< not finite, implausible, or a spike
   std::uint64_t pressure_bad_time = 0;
-  std::uint64_t pressure_repeated = 0;   ///< polled faster than the sensor converts: the same value again
-  std::uint64_t pressure_gated = 0;      ///< further from the prediction than the gate: a door
-  std::uint64_t pressure_steps = 0;      ///< gated for so long that they were believed
+  std::uint64_t pressure_repeated = 0;  ///< polled faster than the sensor converts: the same value again
+  std::uint64_t pressure_gated = 0;     ///< further from the prediction than the gate: a door
+  std::uint64_t pressure_steps = 0;     ///< gated for so long that they were believed
   std::uint64_t base_accepted = 0;
   std::uint64_t base_bad_value = 0;
   std::uint64_t base_bad_time = 0;
   std::uint64_t base_repeated = 0;
-  std::uint64_t base_lost = 0;           ///< times the base station fell silent
+  std::uint64_t base_lost = 0;  ///< times the base station fell silent
   std::uint64_t wheel_accepted = 0;
   std::uint64_t wheel_bad_value = 0;
   std::uint64_t wheel_bad_time = 0;
-  std::uint64_t moving_ground = 0;       ///< times the ground was seen to move (elevator rides)
+  std::uint64_t moving_ground = 0;  ///< times the ground was seen to move (elevator rides)
 };
 
 /// Takes samples in order of arrival, gives one Prior an accepted IMU sample. No clock, no allocation after
 /// construction, deterministic: the same samples in the same order give the same bits. One thread.
 ///
-/// Prior.v_base_m_s is the wheels' (vx, vy, 0): it is the derivative of T_odom_base, not of height_m (an elevator moves
-/// the height alone). Before attitude_valid, T_odom_base is the identity.
+/// Prior.v_base_m_s is the wheels' (vx, vy, 0): it is the derivative of T_odom_base, not of height_m (an
+/// elevator moves the height alone). Before attitude_valid, T_odom_base is the identity.
 class PriorEstimator {
  public:
   explicit PriorEstimator(const PriorConfig& config);

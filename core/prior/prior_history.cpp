@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/prior/rotation.hpp"
+
 namespace isobar {
 namespace {
 
@@ -11,13 +13,6 @@ constexpr double kSecondsPerNs = 1e-9;
 double lerp(double a, double b, double f) { return a + f * (b - a); }
 
 Eigen::Vector3d lerp(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double f) { return a + f * (b - a); }
-
-/// Rotation by the angle |w| about w (Rodrigues).
-Eigen::Quaterniond rotation_of(const Eigen::Vector3d& angle_rad) {
-  const double angle = angle_rad.norm();
-  if (angle < 1e-12) return Eigen::Quaterniond::Identity();
-  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, angle_rad / angle));
-}
 
 }  // namespace
 

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/prior/attitude_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/prior/rotation.hpp"
+#include "core/samples.hpp"
+
+namespace isobar {
+namespace {
+
+constexpr int kAngle = 0;
+constexpr int kVelocity = 3;
+constexpr int kGyroBias = 6;
+constexpr int kAccelBias = 9;
+
+constexpr double kWheelGate = 5.0;
+constexpr double kAttitudeGate = 5.0;
+// Wheels that disagree for this long are right about the velocity: the filter's own was off.
+constexpr double kGatedLimitS = 1.0;
+// Vibration and sensor noise are white only down to the time over which they were measured.
+constexpr double kNoiseCorrelationS = 0.005;
+
+double squared(double x) { return x * x; }
+
+}  // namespace
+
+AttitudeFilter::AttitudeFilter(const AttitudeConfig& config, const Eigen::Vector3d& p_base_imu)
+    : config_(config), p_base_imu_(p_base_imu) {}
+
+void AttitudeFilter::start(const Eigen::Vector3d& mean_force_m_s2, double yaw_rad, double sigma_rad) {
+  const Eigen::Quaterniond tilt =
+      Eigen::Quaterniond::FromTwoVectors(mean_force_m_s2, Eigen::Vector3d::UnitZ());
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(yaw_rad - yaw_of(tilt), Eigen::Vector3d::UnitZ()));
+  q_world_base_ = (turn * tilt).normalized();
+  velocity_.setZero();
+  P_.topRows<6>().setZero();
+  P_.leftCols<6>().setZero();
+  P_(0, 0) = P_(1, 1) = squared(sigma_rad);
+  P_.diagonal().segment<3>(kVelocity).setConstant(1.0);
+  if (!biases_started_) {
+    P_.diagonal().segment<3>(kGyroBias).setConstant(squared(config_.gyro_bias_sigma_rad_s));
+    P_.diagonal().segment<3>(kAccelBias).setConstant(squared(config_.accel_bias_sigma_m_s2));
+    biases_started_ = true;
+  }
+  gated_s_ = 0.0;
+  started_ = true;
+}
+
+void AttitudeFilter::propagate_covariance(const Eigen::Vector3d& force_world, double dt_s) {
+  // d(angle)/dt = -R d(gyro bias); d(velocity)/dt = -[R f]x angle - R d(accel bias). First order in dt.
+  const Eigen::Matrix3d R = q_world_base_.toRotationMatrix();
+  Covariance F = Covariance::Identity();
+  F.block<3, 3>(kAngle, kGyroBias) = -dt_s * R;
+  F.block<3, 3>(kVelocity, kAngle) = -dt_s * skew(force_world);
+  F.block<3, 3>(kVelocity, kAccelBias) = -dt_s * R;
+  const Covariance FP = F * P_;
+  P_.noalias() = FP * F.transpose();
+}
+
+void AttitudeFilter::predict(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& force_m_s2,
+                             double dt_s, double gyro_variance, double accel_variance) {
+  rate_rad_s_ = gyro_rad_s - gyro_bias_;
+  force_m_s2_ = force_m_s2 - accel_bias_;
+  const Eigen::Quaterniond half = rotation_of(rate_rad_s_ * (0.5 * dt_s));
+  const Eigen::Vector3d force_world = (q_world_base_ * half) * force_m_s2_;
+  propagate_covariance(force_world, dt_s);
+  q_world_base_ = (q_world_base_ * half * half).normalized();
+  velocity_ += (force_world - Eigen::Vector3d(0.0, 0.0, kGravity)) * dt_s;
+
+  const double correlation_s = std::max(dt_s, kNoiseCorrelationS);
+  const double gyro_density = std::max(squared(config_.gyro_noise_rad_sqrt_s), gyro_variance * dt_s);
+  const double accel_density =
+      std::max(squared(config_.accel_noise_m_s_sqrt_s), accel_variance * correlation_s);
+  P_.diagonal().segment<3>(kAngle).array() += gyro_density * dt_s;
+  P_.diagonal().segment<3>(kVelocity).array() += accel_density * dt_s;
+  P_.diagonal().segment<3>(kGyroBias).array() += squared(config_.gyro_bias_walk_rad_s_sqrt_s) * dt_s;
+  P_.diagonal().segment<3>(kAccelBias).array() += squared(config_.accel_bias_walk_m_s2_sqrt_s) * dt_s;
+  rate_noise_variance_ = gyro_density / 0.1;  // of the mean over one scan
+}
+
+void AttitudeFilter::bridge(const Eigen::Vector3d& turn_rad, double dt_s, double turn_sigma_rad) {
+  q_world_base_ = (q_world_base_ * rotation_of(turn_rad)).normalized();
+  P_.diagonal().segment<3>(kAngle).array() += squared(turn_sigma_rad);
+  P_.diagonal().segment<3>(kVelocity).array() += squared(std::min(dt_s, 1.0));
+}
+
+void AttitudeFilter::update_wheels(double vx_m_s, double vy_m_s, double dt_s, bool use_vertical) {
+  const Eigen::Vector3d measured(vx_m_s, vy_m_s, 0.0);
+  const double speed = std::hypot(vx_m_s, vy_m_s);
+  const double share = squared(config_.wheel_sigma_share * speed);
+  const Eigen::Vector3d variance(squared(config_.wheel_sigma_m_s) + share,
+                                 squared(config_.lateral_sigma_m_s) + share,
+                                 squared(config_.vertical_sigma_m_s) + share);
+  // A correlated error of variance s^2 and correlation time c is as good as white noise of density 2 c s^2.
+  const double white = std::max(1.0, 2.0 * config_.wheel_correlation_s / dt_s);
+  bool agreed = true;
+  for (int axis = 0; axis < (use_vertical ? 3 : 2); ++axis) {
+    // v_base = R^T v - rate x r; both change with the updates before.
+    const Eigen::Matrix3d R_now = q_world_base_.toRotationMatrix().transpose();
+    const Eigen::Vector3d predicted = R_now * velocity_ - rate_rad_s_.cross(p_base_imu_);
+    Row H = Row::Zero();
+    H.segment<3>(kAngle) = (R_now * skew(velocity_)).row(axis);
+    H.segment<3>(kVelocity) = R_now.row(axis);
+    H.segment<3>(kGyroBias) = -skew(p_base_imu_).row(axis);
+    const bool used = update(H, measured[axis] - predicted[axis], variance[axis] * white, kWheelGate);
+    agreed = agreed && (used || axis == 2);
+  }
+  gated_s_ = agreed ? 0.0 : gated_s_ + dt_s;
+  if (gated_s_ > kGatedLimitS) {
+    P_.diagonal().segment<3>(kVelocity).array() += 1.0;
+    gated_s_ = 0.0;
+  }
+}
+
+void AttitudeFilter::update_bounded_velocity(double dt_s) {
+  const double variance = squared(config_.free_velocity_sigma_m_s) *
+                          std::max(1.0, 2.0 * config_.free_velocity_correlation_s / dt_s);
+  for (int axis = 0; axis < 3; ++axis) {
+    Row H = Row::Zero();
+    H(kVelocity + axis) = 1.0;
+    update(H, -velocity_[axis], variance, 1e3);
+  }
+}
+
+void AttitudeFilter::update_zero_rate(const Eigen::Vector3d& mean_gyro_rad_s, double dt_s,
+                                      double gyro_variance_of_mean) {
+  // A standing robot still rocks a little: 1e-4 rad/s that stays for about a second.
+  const double variance = gyro_variance_of_mean + squared(1e-4) * std::max(1.0, 2.0 / dt_s);
+  update_gyro_bias(mean_gyro_rad_s, std::sqrt(variance));
+}
+
+void AttitudeFilter::update_gyro_bias(const Eigen::Vector3d& bias_rad_s, double sigma_rad_s) {
+  for (int axis = 0; axis < 3; ++axis) {
+    Row H = Row::Zero();
+    H(kGyroBias + axis) = 1.0;
+    update(H, bias_rad_s[axis] - gyro_bias_[axis], squared(sigma_rad_s), kAttitudeGate);
+  }
+}
+
+void AttitudeFilter::update_up_direction(const Eigen::Vector3d& up_base, double dt_s) {
+  const double variance = squared(config_.imu_attitude_sigma_rad) *
+                          std::max(1.0, 2.0 * config_.imu_attitude_correlation_s / dt_s);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Matrix3d R_base_world = q_world_base_.toRotationMatrix().transpose();
+    // up = R^T e_z: an error of angle a changes it by R^T (e_z x a).
+    Row H = Row::Zero();
+    H.segment<3>(kAngle) = (R_base_world * skew(Eigen::Vector3d::UnitZ())).row(axis);
+    update(H, up_base[axis] - R_base_world(axis, 2), variance, 1e3);
+  }
+}
+
+bool AttitudeFilter::update(const Row& H, double residual, double variance, double gate_sigma) {
+  const Eigen::Matrix<double, kStates, 1> PH = P_ * H.transpose();
+  const double S = (H * PH)(0) + variance;
+  if (!(residual * residual <= gate_sigma * gate_sigma * S)) return false;
+  const Eigen::Matrix<double, kStates, 1> K = PH / S;
+  apply(K * residual);
+  P_.noalias() -= K * PH.transpose();
+  // Rounding must not make the matrix lopsided or a variance negative.
+  P_ = (0.5 * (P_ + P_.transpose())).eval();
+  P_.diagonal() = P_.diagonal().cwiseMax(0.0);
+  return true;
+}
+
+void AttitudeFilter::apply(const Eigen::Matrix<double, kStates, 1>& error) {
+  q_world_base_ = (rotation_of(error.segment<3>(kAngle)) * q_world_base_).normalized();
+  velocity_ += error.segment<3>(kVelocity);
+  gyro_bias_ += error.segment<3>(kGyroBias);
+  accel_bias_ += error.segment<3>(kAccelBias);
+}
+
+}  // namespace isobar

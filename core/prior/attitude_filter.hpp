@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Roll and pitch from gravity: a multiplicative (error-state) extended Kalman filter.
+//
+// Lefferts, Markley, Shuster, "Kalman filtering for spacecraft attitude estimation", 1982; error states as in
+// Sola, "Quaternion kinematics for the error-state Kalman filter", 2017, with the angular error in the world
+// frame.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "core/prior/prior_config.hpp"
+
+namespace isobar {
+
+/// State: rotation world <- base, velocity of the IMU's place in the world, bias of gyro and accelerometer.
+///
+/// Gravity is not compared with single accelerations: the specific force is integrated to a velocity, and
+/// that is compared with the wheels' (rotated by the attitude; lever arm of the IMU included), so that the
+/// accelerations of the motion cancel by themselves. Without wheels the velocity is only known to be bounded,
+/// which a pendulum's is: the tilt then comes from the mean over seconds. All inputs are in base_link's axes,
+/// already rotated from the IMU's.
+///
+/// World: z up, yaw 0 at the start. Error state: [angle (world), velocity (world), gyro bias, accel bias]
+/// (base axes).
+class AttitudeFilter {
+ public:
+  static constexpr int kStates = 12;
+  using Covariance = Eigen::Matrix<double, kStates, kStates>;
+
+  /// `p_base_imu`: place of the IMU in base_link [m].
+  AttitudeFilter(const AttitudeConfig& config, const Eigen::Vector3d& p_base_imu);
+
+  /// Roll and pitch from a mean specific force [m/s^2], yaw as given [rad]; `sigma_rad` of roll and of pitch.
+  /// Keeps the biases and their covariance if it ran before.
+  void start(const Eigen::Vector3d& mean_force_m_s2, double yaw_rad, double sigma_rad);
+  [[nodiscard]] bool started() const { return started_; }
+  /// Gravity must be found anew; biases are kept.
+  void stop() { started_ = false; }
+
+  /// Moves on by `dt_s` (> 0) at the measured rate and specific force. Variances are of one sample, white.
+  void predict(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& force_m_s2, double dt_s,
+               double gyro_variance, double accel_variance);
+
+  /// Bridges `dt_s` without samples, turning by `turn_rad` (base axes); uncertainty of the turn as given.
+  void bridge(const Eigen::Vector3d& turn_rad, double dt_s, double turn_sigma_rad);
+
+  /// Wheel twist of base_link over the last `dt_s`. `use_vertical`: the robot does not leave its x-y plane;
+  /// false where the ground itself may move.
+  void update_wheels(double vx_m_s, double vy_m_s, double dt_s, bool use_vertical);
+
+  /// No wheels: velocity zero on average, over the last `dt_s`.
+  void update_bounded_velocity(double dt_s);
+
+  /// The robot stands: its mean gyro reading over the last `dt_s` is the bias.
+  void update_zero_rate(const Eigen::Vector3d& mean_gyro_rad_s, double dt_s, double gyro_variance_of_mean);
+
+  /// The IMU's own idea of up, as a unit vector in base axes, over the last `dt_s`.
+  void update_up_direction(const Eigen::Vector3d& up_base, double dt_s);
+
+  /// The gyro bias as the IMU's own filter sees it: gyro minus the rate of its attitude [rad/s].
+  void update_gyro_bias(const Eigen::Vector3d& bias_rad_s, double sigma_rad_s);
+
+  [[nodiscard]] const Eigen::Quaterniond& q_world_base() const { return q_world_base_; }
+  [[nodiscard]] const Eigen::Vector3d& rate_rad_s() const { return rate_rad_s_; }  ///< bias taken out
+  [[nodiscard]] const Eigen::Vector3d& force_m_s2() const { return force_m_s2_; }  ///< bias taken out
+  [[nodiscard]] const Eigen::Vector3d& gyro_bias_rad_s() const { return gyro_bias_; }
+  [[nodiscard]] const Eigen::Vector3d& accel_bias_m_s2() const { return accel_bias_; }
+  [[nodiscard]] const Eigen::Vector3d& velocity_m_s() const { return velocity_; }
+  [[nodiscard]] double roll_pitch_variance_rad2() const { return 0.5 * (P_(0, 0) + P_(1, 1)); }
+  [[nodiscard]] double yaw_rate_variance() const { return P_(8, 8) + rate_noise_variance_; }
+  [[nodiscard]] double gyro_bias_variance(int axis) const { return P_(6 + axis, 6 + axis); }
+
+ private:
+  using Row = Eigen::Matrix<double, 1, kStates>;
+
+  /// Scalar measurement `residual` = H x + noise. False if it lies outside the gate.
+  bool update(const Row& H, double residual, double variance, double gate_sigma);
+  void apply(const Eigen::Matrix<double, kStates, 1>& error);
+  void propagate_covariance(const Eigen::Vector3d& force_world, double dt_s);
+
+  AttitudeConfig config_;
+  Eigen::Vector3d p_base_imu_;
+  Eigen::Quaterniond q_world_base_ = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d gyro_bias_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d accel_bias_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rate_rad_s_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d force_m_s2_ = Eigen::Vector3d::Zero();
+  Covariance P_ = Covariance::Zero();
+  double rate_noise_variance_ = 0.0;
+  double gated_s_ = 0.0;  // time for which the wheels have disagreed
+  bool started_ = false;
+  bool biases_started_ = false;
+};
+
+}  // namespace isobar

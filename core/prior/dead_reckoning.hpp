@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Position by wheels and attitude.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+
+#include "core/prior/prior_config.hpp"
+#include "core/samples.hpp"
+
+namespace isobar {
+
+/// What became of a wheel sample.
+enum class WheelStatus : std::uint8_t { kAccepted, kBadValue, kBadTime };
+
+/// Distance rolled, as a function of time. Keeps the account straight when samples arrive late: what was
+/// extrapolated too far or too short is made good with the next step.
+class WheelOdometer {
+ public:
+  explicit WheelOdometer(const DeadReckoningConfig& config) : config_(config) {}
+
+  WheelStatus add(const WheelSample& sample);
+
+  /// Displacement in base_link since the call before, up to `stamp_ns` [m]; zero where wheels are not valid.
+  Eigen::Vector2d take_displacement(std::int64_t stamp_ns);
+
+  /// Wheels are present and fresh at `stamp_ns`.
+  [[nodiscard]] bool valid(std::int64_t stamp_ns) const;
+  /// The last accepted sample, only where valid().
+  [[nodiscard]] const WheelSample& last() const { return last_; }
+  /// Time between the last two samples [s].
+  [[nodiscard]] double interval_s() const { return interval_s_; }
+
+ private:
+  [[nodiscard]] bool plausible(const WheelSample& sample, double dt_s);
+
+  DeadReckoningConfig config_;
+  WheelSample last_;
+  Eigen::Vector2d rolled_ = Eigen::Vector2d::Zero();  // up to last_
+  Eigen::Vector2d taken_ = Eigen::Vector2d::Zero();
+  double interval_s_ = 0.0;
+  int refused_in_a_row_ = 0;
+  bool started_ = false;
+};
+
+}  // namespace isobar

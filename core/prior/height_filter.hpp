@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Policy around the vertical filter: which measurement is believed when.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/altitude/differential_altimeter.hpp"
+#include "core/prior/prior_config.hpp"
+#include "core/prior/vertical_filter.hpp"
+
+namespace isobar {
+
+/// What became of a pressure.
+enum class PressureUse : std::uint8_t {
+  kUsed,
+  kGated,  ///< too far off, for not yet long enough
+  kStep,   ///< too far off for so long that the height was moved to it
+};
+
+/// Height of the IMU's place from acceleration, wheels and pressure.
+///
+/// Wheels and attitude tell the climb well over seconds, pressure tells the height well over minutes; each
+/// enters with its own noise. Two things break the model, and are watched for:
+///
+/// - *The ground moves* (elevator): the wheels stand, the robot rises. Two copies of the filter run along
+/// without the
+///   wheels, forked one to three seconds ago. Where such a fork's vertical speed leaves the wheels', the fork
+///   becomes the filter (it has not been held down since before the ride began) and the wheels are left out
+///   until both agree again.
+/// - *The pressure jumps* (door): it is left out for gate_time_s. If it then still stands elsewhere, the
+/// height follows: by a
+///   step where the pressure stepped, by a vertical speed where it ramps (a ride whose start was not felt).
+class HeightFilter {
+ public:
+  explicit HeightFilter(const HeightConfig& config);
+
+  void start(double z_m, double vz_sigma_m_s);
+  [[nodiscard]] bool started() const { return started_; }
+
+  /// `accel_density`: noise of the vertical acceleration [m^2/s^3].
+  void predict(double up_accel_m_s2, double dt_s, double accel_density);
+
+  /// Nothing was known for `dt_s`: the height may have moved.
+  void bridge(double dt_s);
+
+  /// Mean climb speed of the IMU's place over the last `dt_s` as the wheels have it [m/s]; `forward_m_s`
+  /// along the ground; `attitude_variance` of pitch [rad^2].
+  void update_climb(double climb_m_s, double forward_m_s, double dt_s, double attitude_variance);
+
+  /// Neither wheels nor pressure over the last `dt_s`: the vertical speed is only known to be bounded.
+  void update_bounded_speed(double dt_s);
+
+  /// `lever_m`: height of the pressure port above the IMU's place. `now_ns`: time of the last predict().
+  PressureUse update_pressure(const AltimeterReading& reading, double lever_m, std::int64_t now_ns);
+
+  [[nodiscard]] double z_m() const { return filter_.value(VerticalFilter::kZ); }
+  [[nodiscard]] double vz_m_s() const { return filter_.value(VerticalFilter::kVz); }
+  [[nodiscard]] double variance_m2() const { return filter_.variance(VerticalFilter::kZ); }
+  [[nodiscard]] bool ground_moves() const { return ground_moves_; }
+  [[nodiscard]] const VerticalFilter& filter() const { return filter_; }
+
+ private:
+  struct Fork {
+    VerticalFilter filter;
+    double age_s = 0.0;
+  };
+
+  void handle_event(const AltimeterReading& reading);
+  PressureUse gate(const AltimeterReading& reading, const VerticalFilter::Innovation& innovation);
+  void believe(const VerticalFilter::Innovation& innovation);
+  void watch_ground(double climb_m_s, double forward_m_s, double dt_s, double speed_variance);
+  void restart_forks();
+  [[nodiscard]] Fork& older_fork() { return forks_[0].age_s >= forks_[1].age_s ? forks_[0] : forks_[1]; }
+
+  HeightConfig config_;
+  VerticalFilter filter_;
+  std::array<Fork, 2> forks_;
+  double accel_m_s2_ = 0.0;  // vertical, low-passed
+  double agreeing_s_ = 0.0;  // how long wheels and filter have agreed again
+  double disagreeing_s_ = 0.0;
+  double first_gated_m_ = 0.0;
+  std::int64_t gated_since_ns_ = 0;
+  bool gated_ = false;
+  bool ground_moves_ = false;
+  bool weather_moves_ = true;
+  bool started_ = false;
+};
+
+}  // namespace isobar

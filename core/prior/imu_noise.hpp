@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How noisy the IMU is right now, vibration included.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/altitude/noise_estimator.hpp"
+
+namespace isobar {
+
+/// White noise of gyro, accelerometer and vertical acceleration, each from its own second differences over
+/// about 10 ms.
+class ImuNoise {
+ public:
+  void add_sample(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& force_m_s2, double dt_s) {
+    interval_s_ += (dt_s - interval_s_) * 0.02;
+    const auto lag = static_cast<std::size_t>(std::max(1.0, std::round(kLagS / interval_s_)));
+    for (int axis = 0; axis < 3; ++axis) {
+      gyro_[axis].set_lag(lag);
+      gyro_[axis].add(gyro_rad_s[axis]);
+      accel_[axis].set_lag(lag);
+      accel_[axis].add(force_m_s2[axis]);
+    }
+    up_accel_.set_lag(lag);
+  }
+  void add_up_accel(double up_accel_m_s2) { up_accel_.add(up_accel_m_s2); }
+
+  /// Differences across a gap mean nothing.
+  void restart() {
+    for (auto& axis : gyro_) axis.restart();
+    for (auto& axis : accel_) axis.restart();
+    up_accel_.restart();
+  }
+
+  /// Of one sample, mean over the axes [rad^2/s^2].
+  [[nodiscard]] double gyro_variance() const {
+    return (gyro_[0].variance() + gyro_[1].variance() + gyro_[2].variance()) / 3.0;
+  }
+  /// Of one sample, mean over the axes [m^2/s^4].
+  [[nodiscard]] double accel_variance() const {
+    return (accel_[0].variance() + accel_[1].variance() + accel_[2].variance()) / 3.0;
+  }
+  /// Spectral density of the vertical acceleration [m^2/s^3]: white down to 5 ms, where an anti-alias filter
+  /// ends it.
+  [[nodiscard]] double up_accel_density(double dt_s) const {
+    return up_accel_.variance() * std::max(dt_s, 0.005);
+  }
+
+ private:
+  static constexpr double kLagS = 0.01;
+  static constexpr NoiseEstimator::Options kGyro{0.005, 0.0, 10.0, 400.0};
+  static constexpr NoiseEstimator::Options kAccel{0.1, 0.0, 50.0, 400.0};
+
+  std::array<NoiseEstimator, 3> gyro_{NoiseEstimator(kGyro), NoiseEstimator(kGyro), NoiseEstimator(kGyro)};
+  std::array<NoiseEstimator, 3> accel_{NoiseEstimator(kAccel), NoiseEstimator(kAccel),
+                                       NoiseEstimator(kAccel)};
+  NoiseEstimator up_accel_{kAccel};
+  double interval_s_ = 0.005;
+};
+
+}  // namespace isobar

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/prior/vertical_filter.hpp"
+
+#include <cmath>
+
+namespace isobar {
+namespace {
+
+// Nothing is known of the offset between two barometers before the first sample: DPS310 differ by up to 100
+// Pa, 8 m.
+constexpr double kOffsetSigmaM = 10.0;
+// The height at the start is zero by definition.
+constexpr double kStartSigmaM = 1e-3;
+
+double squared(double x) { return x * x; }
+
+}  // namespace
+
+VerticalFilter::VerticalFilter(const HeightConfig& config) : config_(config) {}
+
+void VerticalFilter::start(double z_m, double vz_sigma_m_s) {
+  x_.setZero();
+  x_[kZ] = z_m;
+  P_.setZero();
+  P_(kZ, kZ) = squared(kStartSigmaM);
+  P_(kVz, kVz) = squared(vz_sigma_m_s);
+  P_(kAccelBias, kAccelBias) = squared(config_.accel_bias_sigma_m_s2);
+  P_(kSlope, kSlope) = squared(config_.slope_sigma_rad);
+  P_(kOffset, kOffset) = squared(kOffsetSigmaM);
+  P_(kTurbulence, kTurbulence) = squared(config_.turbulence_sigma_m);
+}
+
+void VerticalFilter::predict(double up_accel_m_s2, double dt_s, double accel_density, bool weather_moves) {
+  const double accel = up_accel_m_s2 - x_[kAccelBias];
+  const double keep = std::exp(-dt_s / config_.turbulence_time_s);
+  x_[kZ] += dt_s * (x_[kVz] + 0.5 * dt_s * accel);
+  x_[kVz] += dt_s * accel;
+  x_[kTurbulence] *= keep;
+
+  // F differs from the identity in z <- vz, z <- b_a, vz <- b_a and the decay of n: P = F P F^T row by row.
+  const double half_square = 0.5 * dt_s * dt_s;
+  P_.row(kZ) += dt_s * P_.row(kVz) - half_square * P_.row(kAccelBias);
+  P_.row(kVz) -= dt_s * P_.row(kAccelBias);
+  P_.row(kTurbulence) *= keep;
+  P_.col(kZ) += dt_s * P_.col(kVz) - half_square * P_.col(kAccelBias);
+  P_.col(kVz) -= dt_s * P_.col(kAccelBias);
+  P_.col(kTurbulence) *= keep;
+
+  P_(kZ, kZ) += accel_density * dt_s * dt_s * dt_s / 3.0;
+  P_(kZ, kVz) += accel_density * half_square;
+  P_(kVz, kZ) += accel_density * half_square;
+  P_(kVz, kVz) += accel_density * dt_s;
+  P_(kAccelBias, kAccelBias) += squared(config_.accel_bias_walk_m_s2_sqrt_s) * dt_s;
+  P_(kSlope, kSlope) += squared(config_.slope_walk_rad_sqrt_s) * dt_s;
+  P_(kOffset, kOffset) += squared(config_.offset_walk_m_sqrt_s) * dt_s;
+  P_(kTurbulence, kTurbulence) += squared(config_.turbulence_sigma_m) * (1.0 - keep * keep);
+  if (weather_moves) P_(kWeather, kWeather) += squared(config_.weather_walk_m_sqrt_s) * dt_s;
+}
+
+VerticalFilter::Vector VerticalFilter::pressure_row(double delay_s) const {
+  Vector h = Vector::Zero();
+  h[kZ] = h[kOffset] = h[kTurbulence] = h[kWeather] = 1.0;
+  h[kVz] = -delay_s;
+  return h;
+}
+
+VerticalFilter::Vector VerticalFilter::climb_row(double forward_m_s) const {
+  Vector h = Vector::Zero();
+  h[kVz] = 1.0;
+  h[kSlope] = -forward_m_s;
+  return h;
+}
+
+VerticalFilter::Innovation VerticalFilter::innovation(const Vector& h, double measured,
+                                                      double variance) const {
+  return {measured - h.dot(x_), h.dot(P_ * h) + variance};
+}
+
+VerticalFilter::Innovation VerticalFilter::pressure_innovation(double height_m, double delay_s,
+                                                               double variance_m2) const {
+  return innovation(pressure_row(delay_s), height_m, variance_m2);
+}
+
+void VerticalFilter::update_pressure(double height_m, double delay_s, double variance_m2) {
+  update(pressure_row(delay_s), height_m, variance_m2);
+}
+
+VerticalFilter::Innovation VerticalFilter::climb_innovation(double climb_m_s, double forward_m_s,
+                                                            double variance) const {
+  return innovation(climb_row(forward_m_s), climb_m_s, variance);
+}
+
+void VerticalFilter::update_climb(double climb_m_s, double forward_m_s, double variance) {
+  update(climb_row(forward_m_s), climb_m_s, variance);
+}
+
+void VerticalFilter::settle_weather(double weather_m, double variance_m2) {
+  Vector h = Vector::Zero();
+  h[kWeather] = 1.0;
+  update(h, weather_m, variance_m2);
+  x_[kWeather] = 0.0;
+  P_.row(kWeather).setZero();
+  P_.col(kWeather).setZero();
+}
+
+void VerticalFilter::fold_weather_into_offset() {
+  x_[kOffset] += x_[kWeather];
+  P_.row(kOffset) += P_.row(kWeather);
+  P_.col(kOffset) += P_.col(kWeather);
+  x_[kWeather] = 0.0;
+  P_.row(kWeather).setZero();
+  P_.col(kWeather).setZero();
+}
+
+void VerticalFilter::update(const Vector& h, double measured, double variance) {
+  const Vector Ph = P_ * h;
+  const double S = h.dot(Ph) + variance;
+  const Vector K = Ph / S;
+  x_ += K * (measured - h.dot(x_));
+  P_.noalias() -= K * Ph.transpose();
+  // Rounding must not make the matrix lopsided or a variance negative.
+  P_ = (0.5 * (P_ + P_.transpose())).eval();
+  P_.diagonal() = P_.diagonal().cwiseMax(0.0);
+}
+
+}  // namespace isobar

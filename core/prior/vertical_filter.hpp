@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The vertical Kalman filter itself: equations without policy.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/prior/prior_config.hpp"
+
+namespace isobar {
+
+/// Height of one point of the robot (the IMU's) in a gravity-aligned world.
+///
+/// States: z [m], vz [m/s], b_a bias of the vertical acceleration [m/s^2], s slope error of the wheels [rad],
+/// b_p offset between the barometers [m], n slow local pressure noise (Gauss-Markov) [m],
+/// w weather since the base station was lost (random walk) [m].
+///
+///   dz/dt = vz,  dvz/dt = a_up - b_a,  barometer = z + b_p + n + w (+ lever arm),  wheels' climb = vz - s
+///   v_forward
+class VerticalFilter {
+ public:
+  enum State { kZ, kVz, kAccelBias, kSlope, kOffset, kTurbulence, kWeather, kStates };
+  using Vector = Eigen::Matrix<double, kStates, 1>;
+  using Matrix = Eigen::Matrix<double, kStates, kStates>;
+
+  explicit VerticalFilter(const HeightConfig& config);
+
+  /// Starts at height `z_m`, exactly, with the vertical speed known to `vz_sigma_m_s`.
+  void start(double z_m, double vz_sigma_m_s);
+
+  /// `accel_density`: [m^2/s^3], spectral density of the acceleration's noise. `weather_moves`: no base
+  /// station.
+  void predict(double up_accel_m_s2, double dt_s, double accel_density, bool weather_moves);
+
+  struct Innovation {
+    double value = 0.0;
+    double variance = 1.0;
+  };
+
+  /// A barometer's height of the IMU's place, measured `delay_s` ago.
+  [[nodiscard]] Innovation pressure_innovation(double height_m, double delay_s, double variance_m2) const;
+  void update_pressure(double height_m, double delay_s, double variance_m2);
+
+  /// Vertical speed as wheels and attitude see it, at forward speed `forward_m_s`.
+  [[nodiscard]] Innovation climb_innovation(double climb_m_s, double forward_m_s, double variance) const;
+  void update_climb(double climb_m_s, double forward_m_s, double variance);
+
+  /// The weather since the base station was lost is known now: `weather_m`. The state is zero afterwards.
+  void settle_weather(double weather_m, double variance_m2);
+  /// The weather so far becomes part of the constant offset (a base station has joined).
+  void fold_weather_into_offset();
+
+  void inflate(State state, double variance) { P_(state, state) += variance; }
+
+  [[nodiscard]] double value(State state) const { return x_[state]; }
+  [[nodiscard]] double variance(State state) const { return P_(state, state); }
+  [[nodiscard]] const Matrix& covariance() const { return P_; }
+
+ private:
+  [[nodiscard]] Vector pressure_row(double delay_s) const;
+  [[nodiscard]] Vector climb_row(double forward_m_s) const;
+  [[nodiscard]] Innovation innovation(const Vector& h, double measured, double variance) const;
+  void update(const Vector& h, double measured, double variance);
+
+  HeightConfig config_;
+  Vector x_ = Vector::Zero();
+  Matrix P_ = Matrix::Zero();
+};
+
+}  // namespace isobar
