@@ -202,16 +202,11 @@ void LocalMap::fit_touched() {
       continue;
     }
     Plane plane;
-    const bool good = fit_cell(*touched.tile, cell, plane);
-    if (good) {
-      cell.normal = plane.normal.dot(cell.toward) < 0.0F ? (-plane.normal).eval() : plane.normal;
-      cell.q_tile = plane.mean;
-      cell.fitted_count = cell.moments.count;
+    if (fit_cell(*touched.tile, cell, plane)) {
+      touched.tile->set_plane(cell, plane);
+    } else {
+      touched.tile->clear_plane(cell);
     }
-    if (good || cell.has_plane) {
-      touched.tile->mark_changed();
-    }
-    cell.has_plane = good;
   }
   touched_.clear();
 }

@@ -142,7 +142,29 @@ const Moments& MapTile::coarse_at(const Eigen::Vector3f& p_tile, Eigen::Vector3f
 
 bool MapTile::unknown_at(const Eigen::Vector3f& p_tile) const {
   Eigen::Vector3f centre;
-  return coarse_at(p_tile, centre).count == 0.0F;
+  return coarse_planes_[coarse_index(p_tile, centre)] == 0;
+}
+
+void MapTile::set_plane(MapCell& cell, const Plane& plane) {
+  if (!cell.has_plane) {
+    Eigen::Vector3f coarse_centre;
+    ++coarse_planes_[coarse_index(cell_centre_tile(cell.key), coarse_centre)];
+  }
+  cell.has_plane = true;
+  cell.normal = plane.normal.dot(cell.toward) < 0.0F ? (-plane.normal).eval() : plane.normal;
+  cell.q_tile = plane.mean;
+  cell.fitted_count = cell.moments.count;
+  changed_ = true;
+}
+
+void MapTile::clear_plane(MapCell& cell) {
+  if (!cell.has_plane) {
+    return;
+  }
+  Eigen::Vector3f coarse_centre;
+  --coarse_planes_[coarse_index(cell_centre_tile(cell.key), coarse_centre)];
+  cell.has_plane = false;
+  changed_ = true;
 }
 
 const MapCell* MapTile::cell_at(int x, int y, int z, int side) const {
@@ -170,6 +192,7 @@ std::size_t MapTile::remove_seen_through(std::uint16_t limit) {
     if (coarse.count < 0.5F) {
       coarse = Moments{};
     }
+    clear_plane(cell);
     const std::uint32_t key = cell.key;
     cell = MapCell{};
     cell.key = key;

@@ -42,7 +42,7 @@ class MapTile {
   std::ptrdiff_t observe(const Eigen::Vector3f& p_tile, const Eigen::Vector3f& toward, std::uint8_t intensity,
                          float freeze);
 
-  /// True if no point was seen within the coarse cell of `p_tile`.
+  /// True if no plane is known within the coarse cell of `p_tile`.
   [[nodiscard]] bool unknown_at(const Eigen::Vector3f& p_tile) const;
 
   /// Cell `x, y, z` (0 … cells_per_edge-1), first or second side; null if empty.
@@ -66,7 +66,9 @@ class MapTile {
   [[nodiscard]] const std::vector<MapCell>& cells() const { return cells_; }
   [[nodiscard]] const std::shared_ptr<const TileIndex>& index() const { return index_; }
   [[nodiscard]] int cells_per_edge() const { return cells_per_edge_; }
-  void mark_changed() { changed_ = true; }
+  /// Sets or takes away a cell's plane.
+  void set_plane(MapCell& cell, const Plane& plane);
+  void clear_plane(MapCell& cell);
 
  private:
   struct KeptPoint {
@@ -90,6 +92,7 @@ class MapTile {
   std::vector<std::int32_t> table_;  // open addressing on the cell key; -1 is empty
   std::vector<KeptPoint> points_;
   std::array<Moments, kCoarsePerEdge * kCoarsePerEdge * kCoarsePerEdge> coarse_{};
+  std::array<std::uint16_t, kCoarsePerEdge * kCoarsePerEdge * kCoarsePerEdge> coarse_planes_{};
   std::shared_ptr<const TileIndex> index_;
   bool changed_ = false;
 };

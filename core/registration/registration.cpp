@@ -19,6 +19,8 @@ constexpr double kSmallStepRad = 0.3 * kRadPerDeg;
 constexpr double kDistanceShrink = 0.5;
 // Scans that wait for gravity before the map is started without it.
 constexpr std::uint32_t kPatience = 30;
+// Scans that start the map before it must be good for registration.
+constexpr std::uint32_t kMostStartingScans = 20;
 
 // Twist (omega, r) about the robot applied to a pose, axes of the map.
 Eigen::Isometry3d apply(const Vector6d& twist, const Eigen::Isometry3d& T_map_base) {
@@ -128,12 +130,13 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
   PoseEstimate& pose = out.pose;
   pose.T_map_base = prediction.T_map_base;
   Matrix6d twist_covariance = prediction.deviation.cwiseAbs2().asDiagonal();
-  const bool first = map.empty() && last_.mode == PoseMode::kInitializing;
-  bool good = first && out.point_count > 0;
+  bool good = false;
   if (traits.registers && !map.empty()) {
     good = solve(map, prediction, traits, end, pose, twist_covariance) && acceptable(pose, prediction);
   }
-  pose.mode = first ? PoseMode::kInitializing : (good ? PoseMode::kRegistered : PoseMode::kPriorOnly);
+  // Until the map knows the place the scans go into it where the prior says. The first revolution may be cut.
+  starting_ = starting_ && !good && traits.registers && started_scans_++ < kMostStartingScans;
+  pose.mode = good ? PoseMode::kRegistered : (starting_ ? PoseMode::kInitializing : PoseMode::kPriorOnly);
   if (good) {
     motion_.correct(end, pose.T_map_base);
   } else {

@@ -67,7 +67,9 @@ class Registration {
   Sampler sampler_;
   Correspondences correspondences_;
   PoseEstimate last_;
-  std::uint32_t waited_ = 0;  // scans before gravity was known
+  std::uint32_t waited_ = 0;         // scans before gravity was known
+  bool starting_ = true;             // no scan was registered yet
+  std::uint32_t started_scans_ = 0;  // scans since the map was started
 };
 
 }  // namespace isobar
