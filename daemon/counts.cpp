@@ -6,7 +6,8 @@
 
 namespace isobar {
 
-std::vector<RunCount> counts_of(const velodyne::VelodyneCounters& counters, const std::string& wrong_model_message) {
+std::vector<RunCount> counts_of(const velodyne::VelodyneCounters& counters,
+                                const std::string& wrong_model_message) {
   return {
       {"lidar packets", counters.packets, ""},
       {"lidar packets truncated", counters.truncated, ""},

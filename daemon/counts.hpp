@@ -12,7 +12,8 @@
 
 namespace isobar {
 
-std::vector<RunCount> counts_of(const velodyne::VelodyneCounters& counters, const std::string& wrong_model_message);
+std::vector<RunCount> counts_of(const velodyne::VelodyneCounters& counters,
+                                const std::string& wrong_model_message);
 std::vector<RunCount> counts_of(const PriorCounters& counters);
 std::vector<RunCount> counts_of(const datagram::Counters& counters);
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/health.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "tools/report/replay_output.hpp"
 
@@ -16,31 +17,27 @@ using ipc::HealthReport;
 
 constexpr std::int64_t kSilenceNs = 1'000'000'000;
 
-std::string text(const char* format, double value) {
-  char buffer[96];  // NOLINT(modernize-avoid-c-arrays): snprintf's
-  std::snprintf(buffer, sizeof(buffer), format, value);
-  return buffer;
-}
-
 double per_second(std::uint64_t now, std::uint64_t before, double elapsed_s) {
   return elapsed_s > 0.0 ? static_cast<double>(now - before) / elapsed_s : 0.0;
 }
 
 /// An entry for a count that should be zero.
-void add_count(HealthReport& report, const char* name, std::uint64_t now, std::uint64_t before, const char* sentence) {
+void add_count(HealthReport& report, const char* name, std::uint64_t now, std::uint64_t before,
+               const char* sentence) {
   if (now == 0) return;
-  report.add(name, now > before ? HealthLevel::kWarning : HealthLevel::kOk, sentence, static_cast<double>(now));
+  report.add(name, now > before ? HealthLevel::kWarning : HealthLevel::kOk, sentence,
+             static_cast<double>(now));
 }
 
-void add_stream(HealthReport& report, const std::string& name, std::int64_t last_ns, std::int64_t now_ns, double rate_hz,
-                const std::string& where) {
+void add_stream(HealthReport& report, const std::string& name, std::int64_t last_ns, std::int64_t now_ns,
+                double rate_hz, const std::string& where) {
   if (last_ns == 0) {
     report.add(name, HealthLevel::kStale, "nothing received yet on " + where, 0.0);
   } else if (now_ns - last_ns > kSilenceNs) {
     const double silent_s = static_cast<double>(now_ns - last_ns) * 1e-9;
-    report.add(name, HealthLevel::kError, text("silent for %.0f s", silent_s) + " on " + where, 0.0);
+    report.add(name, HealthLevel::kError, fmt::format("silent for {:.0f} s on {}", silent_s, where), 0.0);
   } else {
-    report.add(name, HealthLevel::kOk, text("%.1f per second", rate_hz), rate_hz);
+    report.add(name, HealthLevel::kOk, fmt::format("{:.1f} per second", rate_hz), rate_hz);
   }
 }
 
@@ -67,13 +64,16 @@ void HealthMonitor::fill_lidar(const StatusSnapshot& now, double elapsed_s, Heal
              per_second(counters.scans, before.scans, elapsed_s),
              "UDP port " + std::to_string(config_.lidar.port));
   if (counters.wrong_model > before.wrong_model) {
-    report.add("lidar/model", HealthLevel::kError, now.lidar.wrong_model_message.data(), static_cast<double>(counters.wrong_model));
+    report.add("lidar/model", HealthLevel::kError, now.lidar.wrong_model_message.data(),
+               static_cast<double>(counters.wrong_model));
   }
-  add_count(report, "lidar/packets_lost", counters.lost, before.lost, "packets missing, by the sensor's own time");
+  add_count(report, "lidar/packets_lost", counters.lost, before.lost,
+            "packets missing, by the sensor's own time");
   add_count(report, "lidar/garbage", counters.garbage + counters.truncated + counters.oversized,
-            before.garbage + before.truncated + before.oversized, "packets that are none of the lidar's, refused");
-  add_count(report, "lidar/reordered", counters.reordered + counters.duplicated, before.reordered + before.duplicated,
-            "packets that came twice or out of order");
+            before.garbage + before.truncated + before.oversized,
+            "packets that are none of the lidar's, refused");
+  add_count(report, "lidar/reordered", counters.reordered + counters.duplicated,
+            before.reordered + before.duplicated, "packets that came twice or out of order");
   add_count(report, "lidar/dropped_by_kernel", now.lidar.dropped_by_kernel, last_.lidar.dropped_by_kernel,
             "datagrams dropped by the kernel: the machine is too busy");
   add_count(report, "lidar/no_memory", now.lidar.scans_without_memory, last_.lidar.scans_without_memory,
@@ -81,7 +81,8 @@ void HealthMonitor::fill_lidar(const StatusSnapshot& now, double elapsed_s, Heal
 }
 
 void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, HealthReport& report) const {
-  constexpr const char* kNames[] = {"imu", "barometer", "base_station", "wheels"};  // NOLINT(modernize-avoid-c-arrays)
+  constexpr const char* kNames[] = {"imu", "barometer", "base_station",
+                                    "wheels"};  // NOLINT(modernize-avoid-c-arrays)
   const std::string where = "UDP port " + std::to_string(config_.input.port);
   const auto& counters = now.inertial.counters;
   const auto& before = last_.inertial.counters;
@@ -92,7 +93,8 @@ void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, He
               "samples missing, by their numbers");
   }
   add_count(report, "input/refused", counters.malformed + counters.implausible + counters.unknown_kind,
-            before.malformed + before.implausible + before.unknown_kind, "lines malformed or implausible, refused");
+            before.malformed + before.implausible + before.unknown_kind,
+            "lines malformed or implausible, refused");
 }
 
 void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& report) const {
@@ -100,17 +102,20 @@ void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& repor
   report.add("attitude", prior.attitude_valid ? HealthLevel::kOk : HealthLevel::kStale,
              prior.attitude_valid ? "gravity found" : "waiting for the IMU to find gravity", 0.0);
   const bool height_good = prior.height_source == HeightSource::kDifferential;
-  const std::string source(report::height_source_name(prior.height_source));
   report.add("height", height_good ? HealthLevel::kOk : HealthLevel::kWarning,
-             "source: " + source + text(", sd %.3f m", std::sqrt(prior.height_variance_m2)), prior.height_m);
+             fmt::format("source: {}, sd {:.3f} m", report::height_source_name(prior.height_source),
+                         std::sqrt(prior.height_variance_m2)),
+             prior.height_m);
 
   const RegistrationStatus& registration = now.registration;
   const bool good = registration.mode == PoseMode::kRegistered;
-  const HealthLevel level = registration.scans == 0 ? HealthLevel::kStale : good ? HealthLevel::kOk : HealthLevel::kWarning;
+  const HealthLevel level = registration.scans == 0 ? HealthLevel::kStale
+                            : good                  ? HealthLevel::kOk
+                                                    : HealthLevel::kWarning;
   report.add("registration", level,
-             "mode: " + std::string(report::mode_name(registration.mode)) + ", method: " +
-                 std::string(report::method_name(registration.effective_method)) +
-                 text(", overlap %.2f", registration.overlap) + (registration.degenerate ? ", degenerate" : ""),
+             fmt::format("mode: {}, method: {}, overlap {:.2f}{}", report::mode_name(registration.mode),
+                         report::method_name(registration.effective_method), registration.overlap,
+                         registration.degenerate ? ", degenerate" : ""),
              registration.overlap);
   report.add("registration/ms", HealthLevel::kOk, "CPU time of the last scan", registration.registration_ms);
   add_count(report, "registration/refused", registration.from_prior, last_.registration.from_prior,
@@ -121,7 +126,8 @@ void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& repor
             "poses without a scan: the lidar was silent");
   report.add("map", HealthLevel::kOk, "cells in memory", static_cast<double>(now.map.cells));
   report.add("map/ms", HealthLevel::kOk, "CPU time of the last update", now.map.update_ms);
-  add_count(report, "map/dropped", now.map.dropped_scans, last_.map.dropped_scans, "scans that the map did not get");
+  add_count(report, "map/dropped", now.map.dropped_scans, last_.map.dropped_scans,
+            "scans that the map did not get");
 }
 
 std::vector<std::string> HealthMonitor::news(const HealthReport& report) {
@@ -130,7 +136,8 @@ std::vector<std::string> HealthMonitor::news(const HealthReport& report) {
   for (std::uint32_t i = 0; i < report.entry_count; ++i) {
     const ipc::HealthEntry& entry = report.entries[i];
     const std::string name = entry.name;
-    auto known = std::find_if(levels_.begin(), levels_.end(), [&](const auto& pair) { return pair.first == name; });
+    auto known =
+        std::find_if(levels_.begin(), levels_.end(), [&](const auto& pair) { return pair.first == name; });
     if (known == levels_.end()) {
       levels_.emplace_back(name, HealthLevel::kOk);
       known = levels_.end() - 1;

@@ -13,7 +13,9 @@ InertialThread::InertialThread(const std::string& address, std::uint16_t port, T
 
 InertialThread::~InertialThread() { stop(); }
 
-void InertialThread::start() { thread_ = std::thread([this] { loop(); }); }
+void InertialThread::start() {
+  thread_ = std::thread([this] { loop(); });
+}
 
 void InertialThread::stop() noexcept {
   receiver_.stop();

@@ -3,8 +3,8 @@
 
 namespace isobar {
 
-LidarThread::LidarThread(const velodyne::VelodyneConfig& config, const std::string& address, std::uint16_t port,
-                         ThreadSettings settings)
+LidarThread::LidarThread(const velodyne::VelodyneConfig& config, const std::string& address,
+                         std::uint16_t port, ThreadSettings settings)
     : settings_(std::move(settings)),
       receiver_(address, port),
       decoder_(config),
@@ -15,7 +15,9 @@ LidarThread::~LidarThread() {
   if (loaned_ != nullptr) publisher_.discard(loaned_);
 }
 
-void LidarThread::start() { thread_ = std::thread([this] { loop(); }); }
+void LidarThread::start() {
+  thread_ = std::thread([this] { loop(); });
+}
 
 void LidarThread::stop() noexcept {
   receiver_.stop();

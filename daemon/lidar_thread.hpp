@@ -19,7 +19,8 @@ struct LidarStatus {
   std::uint64_t dropped_by_kernel = 0;
   std::uint64_t scans_without_memory = 0;  ///< complete scans that found no chunk in shared memory
   std::int64_t last_packet_ns = 0;         ///< robot clock, 0: none yet
-  std::array<char, 120> wrong_model_message{};  ///< names both models; empty while all packets are of the right one
+  std::array<char, 120>
+      wrong_model_message{};  ///< names both models; empty while all packets are of the right one
 };
 
 /// UDP packets of the lidar in, scans out.

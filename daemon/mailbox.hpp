@@ -9,9 +9,9 @@
 
 namespace isobar {
 
-/// The newest value of one writer thread for any reader thread: a sequence lock. The writer never waits; a reader
-/// that meets a write tries again. (H.-J. Boehm, "Can seqlocks get along with programming language memory
-/// models?", 2012: the words are atomics, so that there is no data race.)
+/// The newest value of one writer thread for any reader thread: a sequence lock. The writer never waits; a
+/// reader that meets a write tries again. (H.-J. Boehm, "Can seqlocks get along with programming language
+/// memory models?", 2012: the words are atomics, so that there is no data race.)
 template <class T>
 class Mailbox {
   static_assert(std::is_trivially_copyable_v<T>);

@@ -7,9 +7,10 @@
 //   wheel┤                               ▲                 └─▶ registered scans ─▶ map
 //   base ┘                               └────────────────────── snapshots ─────────┘
 //
-// Every arrow is a topic in shared memory (ipc/topics.hpp); only the snapshot is handed over inside the process.
-#include <CLI/CLI.hpp>
+// Every arrow is a topic in shared memory (ipc/topics.hpp); only the snapshot is handed over inside the
+// process.
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <chrono>
 #include <memory>
@@ -49,10 +50,12 @@ Scheduling scheduling_of(const RealtimeSettings& realtime) {
   };
 }
 
-/// What the system refuses of the scheduling, for the health report: a robot drives without it, only less evenly.
+/// What the system refuses of the scheduling, for the health report: a robot drives without it, only less
+/// evenly.
 std::vector<std::string> refusals_of(const Scheduling& scheduling, bool realtime) {
-  std::vector<std::string> refusals = try_settings({scheduling.lidar, scheduling.inertial, scheduling.prior,
-                                                    scheduling.registration, scheduling.map, scheduling.output});
+  std::vector<std::string> refusals =
+      try_settings({scheduling.lidar, scheduling.inertial, scheduling.prior, scheduling.registration,
+                    scheduling.map, scheduling.output});
   if (realtime) {
     if (std::string refusal = lock_memory(); !refusal.empty()) refusals.push_back(std::move(refusal));
   }
@@ -121,17 +124,21 @@ void run(const Config& config, Service& service) {
     append(counts, counts_of(last.inertial.counters));
     append(counts, counts_of(last.prior.counters));
     output->close(counts);
-    spdlog::info("{} poses and {} map points in {}", output->poses(), output->map_points(), config.output.directory);
+    spdlog::info("{} poses and {} map points in {}", output->poses(), output->map_points(),
+                 config.output.directory);
   }
 }
 
 int main_with_errors(int argc, char** argv) {
-  CLI::App app{"isobard: pose of a robot from lidar, IMU, wheels and air pressure.\n"
-               "Exit codes: 0 stopped by a signal, 64 usage, 69 service unavailable, 78 bad configuration."};
+  CLI::App app{
+      "isobard: pose of a robot from lidar, IMU, wheels and air pressure.\n"
+      "Exit codes: 0 stopped by a signal, 64 usage, 69 service unavailable, 78 bad configuration."};
   std::string config_file;
   std::string output_directory;
-  app.add_option("--config", config_file, "TOML file; `isobar config show` prints every key with its default");
-  app.add_option("--output", output_directory, "folder for trajectory.tum, map.ply, status.csv; overrides [output]");
+  app.add_option("--config", config_file,
+                 "TOML file; `isobar config show` prints every key with its default");
+  app.add_option("--output", output_directory,
+                 "folder for trajectory.tum, map.ply, status.csv; overrides [output]");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

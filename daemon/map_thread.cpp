@@ -23,7 +23,9 @@ MapThread::MapThread(const MapConfig& config, const Eigen::Isometry3d& T_base_li
 
 MapThread::~MapThread() { stop(); }
 
-void MapThread::start() { thread_ = std::thread([this] { loop(); }); }
+void MapThread::start() {
+  thread_ = std::thread([this] { loop(); });
+}
 
 void MapThread::stop() noexcept {
   waiter_.stop();

@@ -25,8 +25,8 @@ struct MapStatus {
   double update_ms = 0.0;  ///< CPU time of the last update
 };
 
-/// Registered scans in; immutable snapshots for the registration and clouds for viewers out. Not real-time: it
-/// allocates, and it is the one that frees old snapshots.
+/// Registered scans in; immutable snapshots for the registration and clouds for viewers out. Not real-time:
+/// it allocates, and it is the one that frees old snapshots.
 class MapThread {
  public:
   /// `output` may be null; else it gets the points that leave the local map, from this thread only.

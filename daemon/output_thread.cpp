@@ -16,7 +16,9 @@ OutputThread::OutputThread(RunOutput& output, ThreadSettings settings)
 
 OutputThread::~OutputThread() { stop(); }
 
-void OutputThread::start() { thread_ = std::thread([this] { loop(); }); }
+void OutputThread::start() {
+  thread_ = std::thread([this] { loop(); });
+}
 
 void OutputThread::stop() noexcept {
   waiter_.stop();

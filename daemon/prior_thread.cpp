@@ -15,7 +15,9 @@ PriorThread::PriorThread(const PriorConfig& config, ThreadSettings settings)
 
 PriorThread::~PriorThread() { stop(); }
 
-void PriorThread::start() { thread_ = std::thread([this] { loop(); }); }
+void PriorThread::start() {
+  thread_ = std::thread([this] { loop(); });
+}
 
 void PriorThread::stop() noexcept {
   waiter_.stop();
@@ -43,7 +45,8 @@ void PriorThread::drain() noexcept {
 void PriorThread::report(const Prior& prior) noexcept {
   PriorStatus status;
   status.counters = estimator_.counters();
-  status.dropped_samples = imu_.dropped() + barometer_.dropped() + base_barometer_.dropped() + wheel_.dropped();
+  status.dropped_samples =
+      imu_.dropped() + barometer_.dropped() + base_barometer_.dropped() + wheel_.dropped();
   status.stamp_ns = prior.stamp_ns;
   status.height_m = prior.height_m;
   status.height_variance_m2 = prior.height_variance_m2;

@@ -9,17 +9,17 @@ namespace isobar {
 
 /// How one thread of the pipeline is scheduled.
 struct ThreadSettings {
-  std::string name;        ///< as `top -H` shows it, 15 characters at most
-  int fifo_priority = 0;   ///< SCHED_FIFO 1 … 99; 0 leaves the thread to the ordinary scheduler
-  std::vector<int> cpus{}; ///< cores that it may run on; empty: all
+  std::string name;         ///< as `top -H` shows it, 15 characters at most
+  int fifo_priority = 0;    ///< SCHED_FIFO 1 … 99; 0 leaves the thread to the ordinary scheduler
+  std::vector<int> cpus{};  ///< cores that it may run on; empty: all
 };
 
-/// Applies the settings to the calling thread. Returns an empty string, or what was refused and how to allow it
-/// (a robot still drives without real-time rights; the health report says so).
+/// Applies the settings to the calling thread. Returns an empty string, or what was refused and how to allow
+/// it (a robot still drives without real-time rights; the health report says so).
 [[nodiscard]] std::string apply_to_this_thread(const ThreadSettings& settings) noexcept;
 
-/// Applies each of the settings to a thread that ends at once; returns what was refused. A thread of the pipeline
-/// then meets no surprise.
+/// Applies each of the settings to a thread that ends at once; returns what was refused. A thread of the
+/// pipeline then meets no surprise.
 [[nodiscard]] std::vector<std::string> try_settings(const std::vector<ThreadSettings>& settings);
 
 /// Keeps all present and future pages of the process in memory. Returns an empty string or what was refused.

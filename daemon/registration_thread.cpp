@@ -22,7 +22,9 @@ RegistrationThread::RegistrationThread(const RegistrationConfig& config, Method 
 
 RegistrationThread::~RegistrationThread() { stop(); }
 
-void RegistrationThread::start() { thread_ = std::thread([this] { loop(); }); }
+void RegistrationThread::start() {
+  thread_ = std::thread([this] { loop(); });
+}
 
 void RegistrationThread::stop() noexcept {
   waiter_.stop();

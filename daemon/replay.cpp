@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "config/config_io.hpp"
+#include "core/errors.hpp"
 #include "daemon/counts.hpp"
 #include "daemon/lock_step.hpp"
 #include "daemon/stage_settings.hpp"
@@ -39,14 +40,16 @@ class OutputSink : public EstimateSink {
 void say_what_is_missing(const recording::Manifest& manifest, ReplaySummary& summary) {
   if (!manifest.barometer) summary.warnings.emplace_back("no [barometer]: 3-DOF runs as 4-DOF");
   if (manifest.barometer && !manifest.base_barometer) {
-    summary.warnings.emplace_back("no [base_barometer]: the height is against the robot's own start, weather moves it");
+    summary.warnings.emplace_back(
+        "no [base_barometer]: the height is against the robot's own start, weather moves it");
   }
   if (!manifest.wheel) summary.warnings.emplace_back("no [wheel]: constant velocity between scans");
 }
 
 std::vector<RunCount> collect_counts(const recording::RecordingReader& reader, const LockStep& pipeline) {
   std::vector<RunCount> counts;
-  for (const recording::Count& count : reader.counts()) counts.push_back({count.name, count.count, count.first_message});
+  for (const recording::Count& count : reader.counts())
+    counts.push_back({count.name, count.count, count.first_message});
   append(counts, counts_of(pipeline.decoder().counters(), pipeline.decoder().wrong_model_message()));
   append(counts, counts_of(pipeline.prior_estimator().counters()));
   counts.push_back({"map cells seen through", pipeline.map().seen_through_count(), ""});
@@ -54,7 +57,8 @@ std::vector<RunCount> collect_counts(const recording::RecordingReader& reader, c
 }
 
 /// A scan that nobody could decode must not end in an empty trajectory without a word.
-void refuse_empty_run(const ReplaySummary& summary, const LockStep& pipeline, const std::filesystem::path& recording) {
+void refuse_empty_run(const ReplaySummary& summary, const LockStep& pipeline,
+                      const std::filesystem::path& recording) {
   if (summary.scans > 0) return;
   const auto& lidar = pipeline.decoder().counters();
   std::string why = "no lidar scan could be decoded";
@@ -64,8 +68,8 @@ void refuse_empty_run(const ReplaySummary& summary, const LockStep& pipeline, co
 
 }  // namespace
 
-ReplaySummary replay(const std::filesystem::path& recording, const Config& config, const std::filesystem::path& out,
-                     const std::function<void(double)>& progress) {
+ReplaySummary replay(const std::filesystem::path& recording, const Config& config,
+                     const std::filesystem::path& out, const std::function<void(double)>& progress) {
   const auto started = std::chrono::steady_clock::now();
   recording::RecordingReader reader(recording);
   const Config used = with_sensors_of(reader.manifest(), config);

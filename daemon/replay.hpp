@@ -21,14 +21,14 @@ struct ReplaySummary {
   std::uint64_t map_points = 0;
   double recorded_s = 0.0;  ///< span of the samples
   double wall_s = 0.0;
-  std::string base_clock;             ///< how the base station's clock was tied to the robot's; empty: no base
+  std::string base_clock;  ///< how the base station's clock was tied to the robot's; empty: no base
   std::vector<std::string> warnings;  ///< of the manifest, and of what the run could not do
   std::vector<RunCount> counts;
 };
 
 /// Runs the pipeline in lock step over a recording and writes the folder of the run (run_output.hpp).
 /// `progress` gets 0 … 1. Throws DataError, ConfigError, ServiceError.
-ReplaySummary replay(const std::filesystem::path& recording, const Config& config, const std::filesystem::path& out,
-                     const std::function<void(double)>& progress);
+ReplaySummary replay(const std::filesystem::path& recording, const Config& config,
+                     const std::filesystem::path& out, const std::function<void(double)>& progress);
 
 }  // namespace isobar

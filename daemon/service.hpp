@@ -5,8 +5,8 @@
 
 namespace isobar {
 
-/// A program that runs until SIGTERM or SIGINT and keeps the service manager informed (sd_notify(3); silent where
-/// there is none).
+/// A program that runs until SIGTERM or SIGINT and keeps the service manager informed (sd_notify(3); silent
+/// where there is none).
 class Service {
  public:
   /// Blocks both signals for this thread and all that it starts later: make it before the first thread.

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,7 @@ struct EvaluateArguments {
   std::string reference;
   std::vector<std::string> estimates;
   std::string segments;
-  std::vector<std::string> names;
+  std::string names;  ///< separated by commas
   std::string title;
   std::string report;
   std::string picture;
@@ -30,14 +31,22 @@ struct EvaluateArguments {
   evaluation::Alignment alignment = evaluation::Alignment::kStart;
 };
 
+std::vector<std::string> split_names(const std::string& text) {
+  std::vector<std::string> names;
+  std::istringstream stream(text);
+  for (std::string name; std::getline(stream, name, ',');) names.push_back(name);
+  return names;
+}
+
 std::vector<report::EstimateSource> sources_of(const EvaluateArguments& arguments) {
-  if (!arguments.names.empty() && arguments.names.size() != arguments.estimates.size()) {
-    throw UsageError("--names: " + std::to_string(arguments.names.size()) + " names for " +
+  const std::vector<std::string> names = split_names(arguments.names);
+  if (!names.empty() && names.size() != arguments.estimates.size()) {
+    throw UsageError("--names: " + std::to_string(names.size()) + " names for " +
                      std::to_string(arguments.estimates.size()) + " estimates");
   }
   std::vector<report::EstimateSource> sources;
   for (std::size_t i = 0; i < arguments.estimates.size(); ++i) {
-    sources.push_back({arguments.names.empty() ? "" : arguments.names[i], arguments.estimates[i]});
+    sources.push_back({names.empty() ? "" : names[i], arguments.estimates[i]});
   }
   return sources;
 }
@@ -53,11 +62,7 @@ std::string typed_command(const EvaluateArguments& arguments) {
   std::string command = "isobar evaluate " + quoted(arguments.reference);
   for (const std::string& estimate : arguments.estimates) command += " " + quoted(estimate);
   if (!arguments.segments.empty()) command += " --segments " + quoted(arguments.segments);
-  if (!arguments.names.empty()) {
-    std::string names;
-    for (const std::string& name : arguments.names) names += (names.empty() ? "" : ",") + name;
-    command += " --names " + quoted(names);
-  }
+  if (!arguments.names.empty()) command += " --names " + quoted(arguments.names);
   if (arguments.alignment == evaluation::Alignment::kYawTranslation) command += " --align yaw";
   if (arguments.alignment == evaluation::Alignment::kRigid) command += " --align rigid";
   if (!arguments.title.empty()) command += " --title " + quoted(arguments.title);
@@ -99,9 +104,7 @@ void add_evaluate_command(CLI::App& app) {
   command->add_option("ESTIMATE", arguments->estimates, "A .tum file, or the folder of a replay; one or more")
       ->required();
   command->add_option("--segments", arguments->segments, "segments.csv to use instead of the recording's");
-  command->add_option("--names", arguments->names, "Names of the estimates, separated by commas")
-      ->delimiter(',')
-      ->expected(1);
+  command->add_option("--names", arguments->names, "Names of the estimates, separated by commas");
   command
       ->add_option(
           "--align", arguments->alignment,

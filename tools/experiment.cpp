@@ -85,8 +85,8 @@ void replay_all(const ExperimentOptions& options, const std::filesystem::path& r
           for (const double f : fractions) sum += f;
           progress.update(sum / static_cast<double>(methods.size()));
         };
-        const ReplaySummary summary =
-            replay(recording, own, options.out / std::string(report::method_name(methods[i])), report_progress);
+        const ReplaySummary summary = replay(
+            recording, own, options.out / std::string(report::method_name(methods[i])), report_progress);
         const std::lock_guard lock(mutex);
         std::printf("%-14s %6.1f s of recording in %5.1f s (%zu at a time)\n",
                     std::string(report::method_name(methods[i])).c_str(), summary.recorded_s, summary.wall_s,
@@ -150,16 +150,21 @@ void run(const ExperimentOptions& options) {
 
 void add_experiment_command(CLI::App& app) {
   auto options = std::make_shared<ExperimentOptions>();
-  CLI::App* command =
-      app.add_subcommand("experiment", "One of the paper's experiments: simulate, run all methods, table, report");
-  command->add_option("SCENARIO", options->scenario, "three-floors, elevator, moulin; `isobar simulate --list` names all")
+  CLI::App* command = app.add_subcommand(
+      "experiment", "One of the paper's experiments: simulate, run all methods, table, report");
+  command
+      ->add_option("SCENARIO", options->scenario,
+                   "three-floors, elevator, moulin; `isobar simulate --list` names all")
       ->required();
-  command->add_option("--seed", options->seed, "draws the world and the errors of all sensors")->capture_default_str();
+  command->add_option("--seed", options->seed, "draws the world and the errors of all sensors")
+      ->capture_default_str();
   command->add_flag("--short", options->short_form, "the short form of the scenario");
-  command->add_option("--out", options->out, "folder for recording, runs and report (default: out/SCENARIO-SEED)");
+  command->add_option("--out", options->out,
+                      "folder for recording, runs and report (default: out/SCENARIO-SEED)");
   command->add_option("--config", options->config, "TOML file for the algorithm's settings");
   command->add_option("--methods", options->methods, method_names() + " (default: all)")->delimiter(',');
-  command->add_option("--jobs", options->jobs, "methods replayed at the same time")->capture_default_str()
+  command->add_option("--jobs", options->jobs, "methods replayed at the same time")
+      ->capture_default_str()
       ->check(CLI::Range(1, 64));
   command->callback([options] {
     if (options->out.empty()) {

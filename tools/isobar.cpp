@@ -10,8 +10,9 @@
 namespace {
 
 int run(int argc, char** argv) {
-  CLI::App app{"Isobar: lidar localisation that keeps its height, with air pressure.\n"
-               "Exit codes: 0 done, 64 usage, 65 bad data, 69 service unavailable, 78 bad configuration."};
+  CLI::App app{
+      "Isobar: lidar localisation that keeps its height, with air pressure.\n"
+      "Exit codes: 0 done, 64 usage, 65 bad data, 69 service unavailable, 78 bad configuration."};
   app.require_subcommand(1);
   app.set_version_flag("--version", ISOBAR_VERSION);
   app.get_formatter()->column_width(32);

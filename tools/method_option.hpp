@@ -12,8 +12,9 @@
 namespace isobar::tools {
 
 /// All methods, in the order of the paper's comparison.
-inline constexpr std::array<Method, 6> kAllMethods = {Method::k6Dof,         Method::k6DofAltitude, Method::kOdometry,
-                                                      Method::k4DofAltitude, Method::k4Dof,         Method::k3Dof};
+inline constexpr std::array<Method, 6> kAllMethods = {Method::k6Dof,     Method::k6DofAltitude,
+                                                      Method::kOdometry, Method::k4DofAltitude,
+                                                      Method::k4Dof,     Method::k3Dof};
 
 /// The method of a name as the command line spells it; nothing for any other word.
 inline std::optional<Method> method_of(std::string_view name) {

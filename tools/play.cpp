@@ -81,7 +81,8 @@ class Player {
 };
 
 /// Writes reference and segments at the times at which they were played, for an evaluation of the live run.
-void write_shifted_reference(const PlayOptions& options, const recording::Manifest& manifest, std::int64_t shift_ns) {
+void write_shifted_reference(const PlayOptions& options, const recording::Manifest& manifest,
+                             std::int64_t shift_ns) {
   if (!manifest.reference) throw DataError(options.recording.string() + ": has no reference to shift");
   std::filesystem::create_directories(options.reference_out);
   auto poses = recording::read_tum(options.recording / manifest.reference->file);
@@ -93,7 +94,8 @@ void write_shifted_reference(const PlayOptions& options, const recording::Manife
   report::OutputFile file(options.reference_out / recording::kSegmentsFile);
   file.write("t_start_ns,t_end_ns,label\n");
   for (const auto& segment : segments) {
-    file.write(std::to_string(segment.start_ns + shift_ns) + "," + std::to_string(segment.end_ns + shift_ns) + "," + segment.label + "\n");
+    file.write(std::to_string(segment.start_ns + shift_ns) + "," + std::to_string(segment.end_ns + shift_ns) +
+               "," + segment.label + "\n");
   }
   file.close();
 }
@@ -127,8 +129,10 @@ void add_play_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("play", "Send a recording as live UDP traffic, in real time");
   command->add_option("RECORDING", options->recording, "recording folder")->required();
   command->add_option("--address", options->address, "where isobard listens")->capture_default_str();
-  command->add_option("--lidar-port", options->lidar_port, "UDP port of the lidar packets (default: the recording's)");
-  command->add_option("--input-port", options->input_port, "UDP port of the sample datagrams")->capture_default_str();
+  command->add_option("--lidar-port", options->lidar_port,
+                      "UDP port of the lidar packets (default: the recording's)");
+  command->add_option("--input-port", options->input_port, "UDP port of the sample datagrams")
+      ->capture_default_str();
   command->add_option("--reference-out", options->reference_out,
                       "folder for reference.tum and segments.csv, shifted to the time of playing");
   command->callback([options] { play(*options); });

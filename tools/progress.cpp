@@ -33,7 +33,8 @@ void Progress::draw(double fraction) {
   const auto filled = static_cast<int>(fraction * kWidth);
   const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
                           std::string(static_cast<std::size_t>(kWidth - filled), '.');
-  std::fprintf(stderr, "\r%-22s [%s] %3.0f %%  %5.1f s", label_.c_str(), bar.c_str(), 100.0 * fraction, elapsed_s);
+  std::fprintf(stderr, "\r%-22s [%s] %3.0f %%  %5.1f s", label_.c_str(), bar.c_str(), 100.0 * fraction,
+               elapsed_s);
   std::fflush(stderr);
 }
 

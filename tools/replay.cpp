@@ -27,9 +27,9 @@ struct ReplayOptions {
 
 /// Counters that always move; the others are worth a line when they are not zero.
 bool is_ordinary(const std::string& name) {
-  return name == "lidar packets" || name == "lidar returns" || name == "lidar scans" || name == "imu samples" ||
-         name == "barometer samples" || name == "base samples" || name == "wheel samples" ||
-         name == "lidar position packets" || name == "map cells seen through";
+  return name == "lidar packets" || name == "lidar returns" || name == "lidar scans" ||
+         name == "imu samples" || name == "barometer samples" || name == "base samples" ||
+         name == "wheel samples" || name == "lidar position packets" || name == "map cells seen through";
 }
 
 void print_summary(const ReplaySummary& summary, const std::filesystem::path& out) {
@@ -41,8 +41,10 @@ void print_summary(const ReplaySummary& summary, const std::filesystem::path& ou
                 count.first_message.empty() ? "" : "; first: ", count.first_message.c_str());
   }
   std::printf("%llu scans: %llu poses registered, %llu from the prior; %llu map points\n",
-              static_cast<unsigned long long>(summary.scans), static_cast<unsigned long long>(summary.registered),
-              static_cast<unsigned long long>(summary.from_prior), static_cast<unsigned long long>(summary.map_points));
+              static_cast<unsigned long long>(summary.scans),
+              static_cast<unsigned long long>(summary.registered),
+              static_cast<unsigned long long>(summary.from_prior),
+              static_cast<unsigned long long>(summary.map_points));
   std::printf("%.1f s of recording in %.1f s, %.1f times real time\n", summary.recorded_s, summary.wall_s,
               summary.wall_s > 0.0 ? summary.recorded_s / summary.wall_s : 0.0);
   std::printf("written: %s/trajectory.tum map.ply status.csv counters.csv settings.toml\n", out.c_str());
@@ -70,7 +72,8 @@ void add_replay_command(CLI::App& app) {
   command->add_option("RECORDING", options->recording, "recording folder")->required();
   command->add_option("--config", options->config, "TOML file; sensors and mounts come from the recording");
   command->add_option("--method", options->method, method_names() + " (default: the configuration's)");
-  command->add_option("--out", options->out, "folder for trajectory.tum, map.ply, status.csv, settings.toml")->required();
+  command->add_option("--out", options->out, "folder for trajectory.tum, map.ply, status.csv, settings.toml")
+      ->required();
   command->callback([options] { run(*options); });
 }
 
