@@ -52,7 +52,7 @@ AirErrors AirErrors::draw(Random random) {
   errors.walk_pa_rts = random.uniform(0.05, 0.2);
   errors.turbulence_pa = random.uniform(0.5, 2.0);
   // Indoors, a few metres apart; what the paper's static pair of sensors leaves after filtering (0.7 cm).
-  errors.local_turbulence_pa = random.uniform(0.03, 0.10);
+  errors.local_turbulence_pa = random.uniform(0.08, 0.16);
   errors.zone_sigma_pa = random.uniform(0.3, 1.0);
   errors.pulse_pa = random.uniform(3.0, 15.0);
   return errors;

@@ -9,6 +9,19 @@ namespace isobar::simulation {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+namespace {
+
+/// Least distance from the corners, where the robot turns.
+double margin_m(const Corridor& corridor) { return 0.5 * corridor.width_m + 1.0; }
+
+double span_m(const Corridor& corridor, std::size_t leg) {
+  return (corridor.corners_m[leg + 1] - corridor.corners_m[leg]).norm() - 2.0 * margin_m(corridor);
+}
+
+}  // namespace
+
+bool can_walk(const Corridor& corridor, std::size_t leg) { return span_m(corridor, leg) > 1.0; }
+
 MovingBody make_walker(const Corridor& corridor, std::size_t leg, double floor_z_m, std::size_t samples,
                        Random& random) {
   const double height = random.uniform(1.55, 1.90);
@@ -22,8 +35,8 @@ MovingBody make_walker(const Corridor& corridor, std::size_t leg, double floor_z
   const Vector2d way = corridor.corners_m[leg + 1] - from;
   const Vector2d along = way.normalized();
   const Vector2d left(-along.y(), along.x());
-  const double margin = 0.5 * corridor.width_m + 1.0;  // the robot turns in the corners
-  const double span = std::max(0.5, way.norm() - 2.0 * margin);
+  const double margin = margin_m(corridor);
+  const double span = span_m(corridor, leg);
   const double lateral = random.sign() * (0.5 * corridor.width_m - 0.30);
   double s = random.uniform(0.0, span);
   double direction = random.sign();

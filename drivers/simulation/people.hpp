@@ -8,6 +8,9 @@
 
 namespace isobar::simulation {
 
+/// Whether a leg is long enough that a walker and a robot that turns at its ends do not meet.
+[[nodiscard]] bool can_walk(const Corridor& corridor, std::size_t leg);
+
 /// Someone who walks to and fro along one leg, near one wall, for `samples` steps of the time grid.
 [[nodiscard]] MovingBody make_walker(const Corridor& corridor, std::size_t leg, double floor_z_m,
                                      std::size_t samples, Random& random);

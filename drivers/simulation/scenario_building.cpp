@@ -124,6 +124,7 @@ void finish(Scenario& scenario, const Building& building, Route route, int store
     const int count = static_cast<int>(people_a_storey + random.uniform());
     for (int i = 0; i < count; ++i) {
       const auto leg = static_cast<std::size_t>(random.integer(0, static_cast<int>(corridor.legs()) - 1));
+      if (!can_walk(corridor, leg)) continue;
       people.push_back(make_walker(corridor, leg, building.floor_m(storey), scenario.raw.size(), random));
     }
   }

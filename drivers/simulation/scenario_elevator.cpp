@@ -55,11 +55,11 @@ Mesh make_cabin() {
   return mesh;
 }
 
-/// One leaf of a sliding door; side -1 or +1, shut at its origin.
+/// One leaf of a sliding door; side -1 or +1, shut at its origin, overlapping the other by 2 cm.
 Mesh make_leaf(double side) {
   Mesh mesh;
-  mesh.box({-0.02, std::min(0.0, side * 0.5 * kDoorWidth_m), 0.0},
-           {0.02, std::max(0.0, side * 0.5 * kDoorWidth_m), kDoorHeight_m}, Surface::kMetal);
+  mesh.box({-0.02, std::min(-side * 0.01, side * 0.5 * kDoorWidth_m), 0.0},
+           {0.02, std::max(-side * 0.01, side * 0.5 * kDoorWidth_m), kDoorHeight_m}, Surface::kMetal);
   return mesh;
 }
 

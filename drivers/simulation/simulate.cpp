@@ -65,7 +65,7 @@ struct Run {
   Clock robot;
   RecordingWriter& writer;
 
-  [[nodiscard]] double duration_s() const { return scenario.trajectory.duration_s(); }
+  double duration_s;
   [[nodiscard]] Random random(std::string_view name) const { return Random(seed, name); }
 };
 
@@ -85,7 +85,7 @@ void write_imu(const Run& run) {
   ImuModel imu(run.scenario.trajectory, bolted(run.scenario.mounts.imu, run.random("imu mount"), 0.1),
                ImuErrors::draw(run.random("imu errors"), tracked), run.random("imu noise"));
   Random jitter = run.random("imu stamps");
-  for (double t = 0.0; t <= run.duration_s(); t += 1.0 / ImuModel::kRate_hz) {
+  for (double t = 0.0; t <= run.duration_s; t += 1.0 / ImuModel::kRate_hz) {
     ImuSample sample = imu.sample(t);
     sample.stamp_ns = run.robot.stamp_ns(t + stamp_jitter_s(jitter));
     run.writer.add_imu(sample);
@@ -96,7 +96,7 @@ void write_wheels(const Run& run) {
   WheelModel wheels(run.scenario.trajectory, WheelErrors::draw(run.random("wheel errors")),
                     run.random("wheel noise"));
   Random jitter = run.random("wheel stamps");
-  for (double t = 0.003; t <= run.duration_s(); t += 1.0 / WheelModel::kRate_hz) {
+  for (double t = 0.003; t <= run.duration_s; t += 1.0 / WheelModel::kRate_hz) {
     WheelSample sample = wheels.sample(t);
     sample.stamp_ns = run.robot.stamp_ns(t + stamp_jitter_s(jitter));
     run.writer.add_wheel(sample);
@@ -115,7 +115,7 @@ void write_pressure(const Run& run) {
   base_clock.offset_s = random.sign() * std::pow(10.0, random.uniform(-2.3, 0.3));
   base_clock.drift = random.normal(20e-6);
   const double phase_s = random.uniform(0.0, 1.0 / BarometerModel::kRate_hz);
-  for (double t = 0.01; t <= run.duration_s(); t += 1.0 / BarometerModel::kRate_hz) {
+  for (double t = 0.01; t <= run.duration_s; t += 1.0 / BarometerModel::kRate_hz) {
     const double middle_s = t - 0.5 * BarometerModel::kConversion_s;
     const MotionState state = scenario.trajectory.at(middle_s);
     const double height_m = (state.p_world + state.q_world_base * scenario.mounts.pressure_port_m).z();
@@ -131,7 +131,7 @@ void write_pressure(const Run& run) {
 }
 
 void write_truth(const Run& run) {
-  for (double t = 0.0; t <= run.duration_s(); t += 0.01) {
+  for (double t = 0.0; t <= run.duration_s; t += 0.01) {
     const MotionState state = run.scenario.trajectory.at(t);
     Eigen::Isometry3d T_world_base = Eigen::Isometry3d::Identity();
     T_world_base.linear() = state.q_world_base.toRotationMatrix();
@@ -139,7 +139,9 @@ void write_truth(const Run& run) {
     run.writer.add_reference(run.robot.stamp_ns(t), T_world_base);
   }
   for (const LabelledSpan& span : run.scenario.labels) {
-    run.writer.add_segment({run.robot.stamp_ns(span.start_s), run.robot.stamp_ns(span.end_s), span.label});
+    if (span.start_s >= run.duration_s) break;
+    const double end_s = std::min(span.end_s, run.duration_s);
+    run.writer.add_segment({run.robot.stamp_ns(span.start_s), run.robot.stamp_ns(end_s), span.label});
   }
 }
 
@@ -148,7 +150,7 @@ void write_lidar(const Run& run, const std::function<void(double)>& progress) {
   const LidarModel lidar(run.scenario.world, run.scenario.trajectory,
                          bolted(run.scenario.mounts.lidar, run.random("lidar mount"), 0.05),
                          LidarErrors::draw(run.random("lidar errors")), run.seed);
-  const auto total = static_cast<std::uint64_t>(run.duration_s() / LidarModel::packet_time_s(1));
+  const auto total = static_cast<std::uint64_t>(run.duration_s / LidarModel::packet_time_s(1));
   const std::uint64_t workers = std::clamp(std::thread::hardware_concurrency(), 1U, 16U);
   constexpr std::uint64_t kBatch = 512;
   std::vector<ReceivedPacket> batch(kBatch);
@@ -193,7 +195,8 @@ void simulate(const ScenarioRequest& request, const std::filesystem::path& out_d
   const Scenario scenario = find_entry(request.name).make(request.seed, request.short_form);
   RecordingWriter writer(out_dir, make_manifest(request, scenario));
   Random random(request.seed, "start");
-  Run run{scenario, request.seed, {}, writer};
+  Run run{
+      scenario, request.seed, {}, writer, std::min(request.stop_after_s, scenario.trajectory.duration_s())};
   run.robot.start_ns = 1'700'000'000'000'000'000 + std::llround(random.uniform(0.0, 3e7) * 1e9);
   write_imu(run);
   if (scenario.has_wheels) write_wheels(run);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct ScenarioRequest {
   std::string name;         ///< one of scenarios()
   std::uint64_t seed = 1;   ///< draws the world, the path and every sensor's errors
   bool short_form = false;  ///< 30 to 60 s instead of the whole run
+  double stop_after_s = std::numeric_limits<double>::infinity();  ///< cuts the run short
 };
 
 /// A scenario that simulate() knows.
