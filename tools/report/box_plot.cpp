@@ -28,8 +28,10 @@ Scale scale_of(const BoxPlot& plot, double px_low, double px_high) {
   }
   const bool is_log = std::isfinite(smallest_quartile) && largest > kLogarithmicFrom * smallest_median;
   if (is_log) {
-    // Whiskers may reach down to nothing; the axis ends a little below the smallest box.
-    return Scale::logarithmic({0.4 * smallest_quartile, 1.3 * largest}, px_low, px_high);
+    // Whiskers may reach down to nothing; the axis ends a little below the smallest box, at most five decades
+    // down.
+    return Scale::logarithmic({std::max(0.4 * smallest_quartile, 1e-5 * largest), 1.3 * largest}, px_low,
+                              px_high);
   }
   return Scale::linear({0.0, largest > 0.0 ? 1.06 * largest : 1.0}, px_low, px_high, 90.0);
 }

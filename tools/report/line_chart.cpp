@@ -12,6 +12,7 @@ constexpr double kLeft = 68.0;
 constexpr double kRight = 14.0;
 constexpr double kBottom = 50.0;
 constexpr double kLegendGap = 8.0;
+constexpr double kBandLabelHeight = 22.0;
 constexpr const char* kBandColour = "#eef2f7";
 
 void draw_bands(Picture& picture, const LineChart& chart, const Axes& axes) {
@@ -20,8 +21,8 @@ void draw_bands(Picture& picture, const LineChart& chart, const Axes& axes) {
     const double to = axes.x.clamped(band.to);
     if (to - from < 0.5) continue;
     if (band.shaded) picture.rect({from, axes.frame.y, to - from, axes.frame.height}, kBandColour);
-    if (to - from > text_width(band.label, 11.0) + 6.0) {
-      picture.text({0.5 * (from + to), axes.frame.y + 14.0}, band.label, {11.0, "#6b7280", "middle"});
+    if (to - from > text_width(band.label, 12.0) + 6.0) {
+      picture.text({0.5 * (from + to), axes.frame.y - 5.0}, band.label, {12.0, "#4b5563", "middle"});
     }
   }
 }
@@ -29,14 +30,16 @@ void draw_bands(Picture& picture, const LineChart& chart, const Axes& axes) {
 void draw_series(Picture& picture, const Series& series, const Axes& axes) {
   std::vector<Point> run;
   const std::size_t count = std::min(series.x.size(), series.y.size());
-  for (std::size_t i = 0; i <= count; ++i) {
-    if (i < count && std::isfinite(series.x[i]) && std::isfinite(series.y[i])) {
-      run.push_back({axes.x(series.x[i]), axes.y(series.y[i])});
+  for (std::size_t i = 0; i < count; ++i) {
+    const Point point{axes.x(series.x[i]), axes.y(series.y[i])};
+    if (std::isfinite(point.x) && std::isfinite(point.y)) {
+      run.push_back(point);
       continue;
     }
     picture.polyline(thinned(run), series.stroke);
     run.clear();
   }
+  picture.polyline(thinned(run), series.stroke);
 }
 
 Range data_range(const LineChart& chart, const std::vector<double> Series::*values) {
@@ -51,7 +54,7 @@ Range data_range(const LineChart& chart, const std::vector<double> Series::*valu
 std::vector<Point> thinned(const std::vector<Point>& points) {
   std::vector<Point> kept;
   for (std::size_t begin = 0; begin < points.size();) {
-    std::size_t end = begin;
+    std::size_t end = begin + 1;
     while (end < points.size() && std::floor(points[end].x) == std::floor(points[begin].x)) ++end;
     std::size_t low = begin;
     std::size_t high = begin;
@@ -74,7 +77,8 @@ Picture draw(const LineChart& chart) {
     if (!series.name.empty()) legend.push_back({series.name, series.stroke});
   }
   const double inner_width = chart.width - kLeft - kRight;
-  const double top = draw_legend(picture, {kLeft, 0.0}, inner_width, legend) + kLegendGap;
+  const double top = draw_legend(picture, {kLeft, 0.0}, inner_width, legend) +
+                     (chart.bands.empty() ? kLegendGap : kBandLabelHeight);
   const Box frame{kLeft, top, inner_width, chart.height - top - kBottom};
   const Range x = chart.x_range.value_or(data_range(chart, &Series::x));
   const Range y = chart.y_range.value_or(padded(data_range(chart, &Series::y), 0.06, chart.min_y_width));
@@ -86,7 +90,11 @@ Picture draw(const LineChart& chart) {
   if (chart.zero_line) {
     picture.line({frame.x, axes.y(0.0)}, {frame.right(), axes.y(0.0)}, {"#6b7280", 1.0});
   }
-  for (const Series& series : chart.series) draw_series(picture, series, axes);
+  for (const bool on_top : {false, true}) {
+    for (const Series& series : chart.series) {
+      if (series.on_top == on_top) draw_series(picture, series, axes);
+    }
+  }
   picture.end_clip();
   return picture;
 }

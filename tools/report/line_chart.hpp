@@ -15,6 +15,7 @@ struct Series {
   Stroke stroke;
   std::vector<double> x;
   std::vector<double> y;
+  bool on_top = false;  ///< drawn after the others
 };
 
 /// A labelled span of x.

@@ -131,6 +131,12 @@ double readable_exaggeration(const MapView& map) {
   return 10.0;
 }
 
+/// A signed length in words: centimetres below a metre.
+std::string length_label(double length_m) {
+  if (std::abs(length_m) < 1.0) return fixed_signed(kCmPerM * length_m, 1) + " cm";
+  return fixed_signed(length_m, 2) + " m";
+}
+
 MapView side_map(const EvaluatedRun& run, const EvaluatedMethod& method, const View& view) {
   MapView map;
   map.u_label = view.u_label;
@@ -140,8 +146,7 @@ MapView side_map(const EvaluatedRun& run, const EvaluatedMethod& method, const V
   map.paths.push_back(seen_path(run, method, view));
   for (const double level_m : floor_levels_m(run)) {
     const evaluation::FloorHeight* floor = floor_at(method, level_m, run.options.floor_gap_m);
-    if (floor != nullptr)
-      map.levels.push_back({level_m, fixed_signed(kCmPerM * floor->mean_error_m, 1) + " cm"});
+    if (floor != nullptr) map.levels.push_back({level_m, length_label(floor->mean_error_m)});
   }
   map.max_height = 560.0;
   return map;
@@ -171,7 +176,7 @@ std::vector<SideView> side_view_pictures(const EvaluatedRun& run) {
     const bool is_tall = map.v.high - map.v.low > 0.8 * (map.u.high - map.u.low);
     map.width = is_tall ? 510.0 : 1040.0;  // tall ones stand side by side
     map.id = "side" + std::to_string(i);
-    pictures.push_back({display_name(methods[i]->name), draw(map)});
+    pictures.push_back({display_name(methods[i]->name), draw(map), is_tall});
   }
   return pictures;
 }

@@ -14,6 +14,6 @@ namespace isobar::report {
 Stroke method_stroke(const EvaluatedRun& run, const EvaluatedMethod& method);
 
 inline const Stroke kReferenceStroke{"#111827", 2.6};
-inline const Stroke kAltimeterStroke{"#56b4e9", 1.4, "1 3"};
+inline const Stroke kAltimeterStroke{"#38a3dd", 1.8, "2 3"};
 
 }  // namespace isobar::report

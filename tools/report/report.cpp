@@ -35,7 +35,8 @@ figure { margin: 14px 0 0; break-inside: avoid; }
 figure svg { display: block; max-width: 100%; height: auto; }
 figcaption { font-size: 14px; color: #4b5563; margin-top: 4px; max-width: 92ch; }
 .pair { display: flex; flex-wrap: wrap; gap: 14px; }
-.pair > div { flex: 1 1 480px; }
+.pair > div { flex: 1 1 100%; }
+.pair > .half { flex: 1 1 480px; }
 .pair h3 { font-size: 15px; margin: 10px 0 4px; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 14.5px; font-variant-numeric: tabular-nums; margin-top: 12px; }
@@ -49,8 +50,10 @@ td.lost { color: #b91c1c; font-weight: 700; }
 .notes li { margin: 3px 0; max-width: 92ch; }
 dl { max-width: 92ch; font-size: 15px; } dt { font-weight: 600; margin-top: 10px; } dd { margin: 0; }
 @page { size: A4; margin: 14mm; }
-@media print { main { padding: 0; max-width: none; } h2 { break-after: avoid; } body { font-size: 11pt; }
-  table { font-size: 8.5pt; } tr { break-inside: avoid; } .tiles li { flex-basis: 30%; } }
+@media print { main { padding: 0; max-width: none; } h2, .before-table { break-after: avoid; } body { font-size: 11pt; }
+  table { font-size: 8pt; } th, td { padding: 3px 9px 3px 0; } th { white-space: normal; } .scroll { overflow: visible; }
+  tr { break-inside: avoid; } .tiles { gap: 8px; } .tiles li { flex-basis: 22%; padding: 8px 10px; }
+  .tiles .value { font-size: 20px; } }
 )css";
 
 std::string figure(const Picture& picture, const std::string& title, const std::string& caption) {
@@ -87,7 +90,7 @@ std::string tiles(const EvaluatedRun& run) {
   }
   const evaluation::Distribution time = evaluation::summarize(std::move(times_ms));
   std::string html = "<ul class=\"tiles\">\n";
-  html += tile(display_name(method.name) + ", relative error on z, median",
+  html += tile(display_name(method.name) + ": error on z, median",
                fixed(100.0 * figures.z_rpe.median, 2) + " %", z_rpe_comparison(run));
   html += tile("Largest height error", fixed_signed(figures.largest_height_error_m, 2) + " m",
                "at the end " + fixed_signed(figures.final_height_error_m, 2) + " m");
@@ -114,7 +117,8 @@ std::string height_section(const EvaluatedRun& run) {
   std::string html =
       heading("Height along the way") +
       figure(height_picture(run, {1040.0, 380.0}, "height"), "Height against travelled distance",
-             "Heights after the start poses were laid over each other. Shaded: flat segments.") +
+             "Heights after the start poses were laid over each other." +
+                 std::string(floor_levels_m(run).empty() ? "" : " Shaded: flat segments.")) +
       heading("Height error along the way") +
       figure(height_error_picture(run, {1040.0, 320.0}, std::nullopt, "error"),
              "Height error against travelled distance", "Estimate minus reference.");
@@ -132,8 +136,8 @@ std::string side_section(const EvaluatedRun& run) {
   if (views.empty()) return "";
   std::string html = heading("The map from the side") + "<figure><div class=\"pair\">\n";
   for (const SideView& view : views) {
-    html += "<div><h3>" + escaped(view.method) + "</h3>\n" +
-            view.picture.svg("Side elevation of the map of " + view.method) + "</div>\n";
+    html += std::string(view.is_half ? "<div class=\"half\">" : "<div>") + "<h3>" + escaped(view.method) +
+            "</h3>\n" + view.picture.svg("Side elevation of the map of " + view.method) + "</div>\n";
   }
   return html +
          "</div><figcaption>Points of the map, darker where there are more, with the path of the estimate "
@@ -147,7 +151,8 @@ std::string top_section(const EvaluatedRun& run) {
   const std::string what = has_map ? "Map of " + display_name(main_method(run).name) + " and paths" : "Paths";
   return heading(has_map ? "The map from above" : "The paths from above") +
          figure(top_view_picture(run), what + " from above",
-                what + ", to scale" + (has_map ? ". All floors lie over each other." : "."));
+                what + ", to scale." +
+                    (floor_levels_m(run).size() > 1 ? " All floors lie over each other." : ""));
 }
 
 std::string time_section(const EvaluatedRun& run) {

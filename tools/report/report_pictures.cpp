@@ -23,7 +23,7 @@ double height_error_m(const PosePair& pair) {
 
 Series method_series(const EvaluatedRun& run, const EvaluatedMethod& method,
                      double (*value)(const PosePair&)) {
-  Series series{display_name(method.name), method_stroke(run, method), {}, {}};
+  Series series{display_name(method.name), method_stroke(run, method), {}, {}, &method == &main_method(run)};
   for (const PosePair& pair : method.evaluation.pairs) {
     series.x.push_back(pair.distance_m);
     series.y.push_back(value(pair));
@@ -80,6 +80,10 @@ std::vector<Band> segment_bands(const EvaluatedRun& run) {
   return bands;
 }
 
+Range travelled_range(const EvaluatedRun& run) {
+  return {0.0, std::max(0.1, evaluation::travelled_distance_m(run.reference.trajectory.poses).back())};
+}
+
 double largest_height_error_m(const EvaluatedMethod& method) {
   return std::abs(method.evaluation.figures.largest_height_error_m);
 }
@@ -123,6 +127,7 @@ Picture height_picture(const EvaluatedRun& run, const PictureSize& size, const s
   chart.height = size.height;
   chart.id = id;
   chart.bands = segment_bands(run);
+  chart.x_range = travelled_range(run);
   chart.min_y_width = 1.0;
   chart.series.push_back(reference_series(run));
   Series altimeter = altimeter_series(run);
@@ -143,6 +148,7 @@ Picture height_error_picture(const EvaluatedRun& run, const PictureSize& size, s
   chart.height = size.height;
   chart.id = id;
   chart.bands = segment_bands(run);
+  chart.x_range = travelled_range(run);
   chart.zero_line = true;
   if (limit_m) chart.y_range = Range{-*limit_m, *limit_m};
   for (const EvaluatedMethod& method : run.methods) {

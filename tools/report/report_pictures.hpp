@@ -39,6 +39,7 @@ std::optional<double> close_up_limit_m(const EvaluatedRun& run);
 struct SideView {
   std::string method;
   Picture picture;
+  bool is_half = false;  ///< two of them fit beside each other
 };
 std::vector<SideView> side_view_pictures(const EvaluatedRun& run);
 

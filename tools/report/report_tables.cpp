@@ -103,7 +103,8 @@ std::string floors_table(const EvaluatedRun& run) {
   const std::vector<double> levels = floor_levels_m(run);
   if (levels.empty()) return "";
   std::string html =
-      "<p>Mean of estimate minus reference [m] over the flat segments of each floor; in brackets the visit "
+      "<p class=\"before-table\">Mean of estimate minus reference [m] over the flat segments of each floor; "
+      "in brackets the visit "
       "that is furthest off, where there was more than one.</p>\n" +
       table_head(run, "Floor at [m]", "");
   for (const double level_m : levels) {

@@ -15,6 +15,8 @@ constexpr double kTickSize = 12.0;
 constexpr double kLegendRow = 20.0;
 constexpr double kLegendSample = 26.0;
 constexpr double kLegendGap = 20.0;
+constexpr std::size_t kMaxTicks = 60;  // ends the loop where numbers are too large to be counted up
+constexpr double kDecadesWithAllTicks = 3.0;
 
 /// The step 1, 2 or 5 times a power of ten next above `rough`.
 double round_step(double rough) {
@@ -81,7 +83,7 @@ Scale Scale::linear(const Range& values, double px_low, double px_high, double t
   const double step = round_step(width / count);
   const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 9);
   const double first = std::ceil(values.low / step - 1e-6);
-  for (double i = first; i * step <= values.high + 1e-6 * step; i += 1.0) {
+  for (double i = first; i * step <= values.high + 1e-6 * step && scale.ticks_.size() < kMaxTicks; i += 1.0) {
     scale.ticks_.push_back({i * step, tick_label(i * step, decimals)});
   }
   return scale;
@@ -89,9 +91,11 @@ Scale Scale::linear(const Range& values, double px_low, double px_high, double t
 
 Scale Scale::logarithmic(const Range& values, double px_low, double px_high) {
   Scale scale(values, px_low, px_high, true);
+  const bool is_wide = std::log10(values.high / values.low) > kDecadesWithAllTicks;
   for (int exponent = static_cast<int>(std::floor(std::log10(values.low))); exponent < 12; ++exponent) {
     for (const double factor : {1.0, 2.0, 5.0}) {
       const double value = factor * std::pow(10.0, exponent);
+      if (is_wide && factor != 1.0) continue;
       if (value < values.low * (1.0 - 1e-9) || value > values.high * (1.0 + 1e-9)) continue;
       scale.ticks_.push_back({value, tick_label(value, std::max(0, -exponent))});
     }

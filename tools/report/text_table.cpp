@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/report/evaluated_run.hpp"
@@ -23,6 +24,16 @@ using Cells = std::vector<std::string>;
 std::size_t length(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+/// Minus sign and dash as plain hyphens: other programs read the terminal's table too.
+std::string plain(std::string text) {
+  for (const std::string_view sign : {"\u2212", "\u2013"}) {
+    for (std::size_t at = text.find(sign); at != std::string::npos; at = text.find(sign, at)) {
+      text.replace(at, sign.size(), "-");
+    }
+  }
+  return text;
 }
 
 /// The first column stands left, the others right.
@@ -55,7 +66,7 @@ void print_figures(std::FILE* out, const EvaluatedRun& run) {
   for (const EvaluatedMethod& method : run.methods) {
     Cells cells{display_name(method.name)};
     for (const FigureRow& row : figure_rows()) {
-      if (row.heading != nullptr) cells.push_back(shown(row, method.evaluation.figures));
+      if (row.heading != nullptr) cells.push_back(plain(shown(row, method.evaluation.figures)));
     }
     cells.emplace_back(method.evaluation.figures.lost ? "LOST" : "ok");
     table.push_back(std::move(cells));
@@ -74,7 +85,7 @@ void print_floors(std::FILE* out, const EvaluatedRun& run) {
     Cells cells{display_name(method.name)};
     for (const double level_m : floors) {
       const evaluation::FloorHeight* floor = floor_at(method, level_m, run.options.floor_gap_m);
-      cells.push_back(floor == nullptr ? fixed(kNone, 3) : fixed_signed(floor->mean_error_m, 3));
+      cells.push_back(plain(fixed_signed(floor == nullptr ? kNone : floor->mean_error_m, 3)));
     }
     table.push_back(std::move(cells));
   }

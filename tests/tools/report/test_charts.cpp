@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/tools/report/well_formed.hpp"
+#include "tools/report/box_plot.hpp"
+#include "tools/report/histogram.hpp"
+#include "tools/report/line_chart.hpp"
+
+using namespace isobar::report;
+using isobar::evaluation::summarize;
+using isobar::report::test::is_well_formed;
+
+TEST_CASE("numbers have a dot, no negative zero, and a dash where there is none") {
+  CHECK(fixed(3.14159, 2) == "3.14");
+  CHECK(fixed(-0.001, 2) == "0.00");
+  CHECK(fixed(NAN, 2) == "\u2013");
+  CHECK(fixed_signed(1.5, 1) == "+1.5");
+  CHECK(fixed_signed(-1.5, 1) == "\u22121.5");
+  CHECK(fixed_signed(-0.001, 2) == "0.00");
+}
+
+TEST_CASE("text cannot leave its tag") {
+  CHECK(escaped("<a href=\"x\">'&") == "&lt;a href=&quot;x&quot;&gt;&#39;&amp;");
+  CHECK(escaped(std::string("a\x01\x1b") + "b") == "ab");
+}
+
+TEST_CASE("ticks are round, inside of the range, and as many as fit") {
+  for (const Range range : {Range{0.0, 1.0}, Range{-3.7, 12.2}, Range{0.001, 0.0042}, Range{1e6, 1.0003e6}}) {
+    const Scale scale = Scale::linear(range, 0.0, 900.0, 90.0);
+    REQUIRE(scale.ticks().size() >= 4);
+    CHECK(scale.ticks().size() <= 11);
+    const double step = scale.ticks()[1].value - scale.ticks()[0].value;
+    const double mantissa = step / std::pow(10.0, std::floor(std::log10(step) + 1e-6));
+    CHECK((std::abs(mantissa - 1) < 1e-3 || std::abs(mantissa - 2) < 1e-3 || std::abs(mantissa - 5) < 1e-3));
+    for (const Tick& tick : scale.ticks()) {
+      CHECK(tick.value >= range.low - 1e-6 * step);
+      CHECK(tick.value <= range.high + 1e-6 * step);
+    }
+  }
+  CHECK(Scale::linear({0.0, 0.5}, 0, 900, 90).ticks()[1].label == "0.05");
+  CHECK(Scale::linear({-5.0, 0.0}, 0, 900, 200).ticks()[0].label == "\u22124");
+}
+
+TEST_CASE("a scale maps its range onto its pixels, evenly or by ratio") {
+  const Scale linear = Scale::linear({10.0, 20.0}, 400.0, 100.0, 90.0);
+  CHECK(linear(10.0) == doctest::Approx(400.0));
+  CHECK(linear(15.0) == doctest::Approx(250.0));
+  CHECK(linear.clamped(99.0) == doctest::Approx(100.0));
+  const Scale logarithmic = Scale::logarithmic({0.1, 10.0}, 0.0, 200.0);
+  CHECK(logarithmic(1.0) == doctest::Approx(100.0));
+  CHECK(logarithmic.ticks().size() == 7);  // 0.1 0.2 0.5 1 2 5 10
+}
+
+TEST_CASE("thinning keeps the lowest and the highest of every pixel column, and the ends") {
+  std::vector<Point> points;
+  for (int i = 0; i < 100'000; ++i)
+    points.push_back({i * 0.005, 100.0 * std::sin(i * 0.7) + (i == 54'321 ? 500.0 : 0.0)});
+  const std::vector<Point> kept = thinned(points);
+  CHECK(kept.size() <= 4 * 501);
+  CHECK(kept.front().x == points.front().x);
+  CHECK(kept.back().x == points.back().x);
+  double highest = 0.0;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    highest = std::max(highest, kept[i].y);
+    if (i > 0) CHECK(kept[i].x >= kept[i - 1].x);
+  }
+  CHECK(highest > 400.0);
+  CHECK(thinned({}).empty());
+}
+
+TEST_CASE("charts stay well-formed whatever the numbers are") {
+  const double inf = std::numeric_limits<double>::infinity();
+  const std::vector<std::vector<double>> awkward{{},
+                                                 {NAN, NAN},
+                                                 {0.0},
+                                                 {5.0, 5.0, 5.0},
+                                                 {-1e-300, 1e-300},
+                                                 {-inf, 1.0, inf},
+                                                 {1e17, 1e17 + 16},
+                                                 {-1e308, 1e308},
+                                                 {1, NAN, 3}};
+  for (const std::vector<double>& values : awkward) {
+    LineChart lines;
+    lines.series = {{"a <b>", {}, values, values}};
+    lines.bands = {{0.0, 1.0, "flat & even"}};
+    lines.id = "lines";
+    CHECK(is_well_formed(draw(lines).svg("title <&>")));
+    CHECK(is_well_formed(draw(HistogramChart{"x", "ms", {{"a", "#000", values}}}).svg("t")));
+    BoxPlot boxes{"x", "%", 2, {{"a", "#000", summarize(values)}, {"b", "#000", summarize({1.0, 2.0, 3.0})}}};
+    CHECK(is_well_formed(draw(boxes).svg("t")));
+  }
+}
+
+TEST_CASE("the box plot turns logarithmic only when the methods lie far apart") {
+  const auto has_tick = [](const std::vector<double>& a, const std::vector<double>& b,
+                           const std::string& label) {
+    const BoxPlot plot{"x", "%", 2, {{"a", "#000", summarize(a)}, {"b", "#000", summarize(b)}}};
+    return draw(plot).svg("t").find(">" + label + "</text>") != std::string::npos;
+  };
+  CHECK(has_tick({1.0, 1.1, 1.2}, {2.0, 2.5, 3.0}, "0.0"));             // from zero
+  CHECK_FALSE(has_tick({0.01, 0.011, 0.012}, {2.0, 2.5, 3.0}, "0.0"));  // ratios
+  CHECK(has_tick({0.01, 0.011, 0.012}, {2.0, 2.5, 3.0}, "0.1"));
+}

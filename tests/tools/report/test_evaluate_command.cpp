@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "core/errors.hpp"
+#include "tests/tools/report/temporary_folder.hpp"
+#include "tools/commands.hpp"
+#include "tools/report/text_file.hpp"
+
+using namespace isobar;
+using isobar::report::test::TemporaryFolder;
+
+namespace {
+
+/// The exit code that `isobar` gives: 0, the error's, or 64 for what the parser refuses.
+int exit_code(std::vector<std::string> words) {
+  CLI::App app;
+  app.require_subcommand(1);
+  tools::add_evaluate_command(app);
+  std::vector<std::string> reversed(words.rbegin(), words.rend());
+  try {
+    app.parse(reversed);
+  } catch (const CLI::ParseError&) {
+    return 64;
+  } catch (const Error& error) {
+    return error.exit_code();
+  }
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "isobar evaluate writes report, picture and figures, and ends with the right code on each mistake") {
+  const TemporaryFolder folder;
+  const auto path = [&](const char* name) { return (folder.path() / name).string(); };
+  std::string walk;
+  for (int i = 0; i < 100; ++i) walk += std::to_string(i) + " " + std::to_string(0.2 * i) + " 0 0 0 0 0 1\n";
+  report::write_text_file(path("r.tum"), walk);
+  report::write_text_file(path("bad.tum"), "1 2 3\n");
+  report::write_text_file(path("bad.csv"), "t_start_ns,label\n");
+
+  CHECK(exit_code({"evaluate", path("r.tum"), path("r.tum"), "--names", "walk", "--report", path("out.html"),
+                   "--json", path("out.json"), "--picture", path("out.svg"), "--align", "rigid"}) == 0);
+  const std::string html = report::read_text_file(path("out.html"));
+  CHECK(html.find("--align rigid") != std::string::npos);
+  CHECK(html.find("walk") != std::string::npos);
+  CHECK(report::read_text_file(path("out.json")).find("\"name\": \"walk\"") != std::string::npos);
+  CHECK(report::read_text_file(path("out.svg")).starts_with("<svg "));
+
+  CHECK(exit_code({"evaluate"}) == 64);
+  CHECK(exit_code({"evaluate", path("r.tum")}) == 64);
+  CHECK(exit_code({"evaluate", path("r.tum"), path("r.tum"), "--names", "a,b"}) == 64);
+  CHECK(exit_code({"evaluate", path("r.tum"), path("r.tum"), "--align", "sideways"}) == 64);
+  CHECK(exit_code({"evaluate", path("r.tum"), path("none.tum")}) == 65);
+  CHECK(exit_code({"evaluate", path("bad.tum"), path("r.tum")}) == 65);
+  CHECK(exit_code({"evaluate", folder.path().string(), path("r.tum")}) == 65);
+  CHECK(exit_code({"evaluate", path("r.tum"), path("r.tum"), "--segments", path("bad.csv")}) == 65);
+  CHECK(exit_code({"evaluate", path("r.tum"), path("r.tum"), "--report", path("no/such/folder.html")}) == 69);
+}
