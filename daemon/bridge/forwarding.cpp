@@ -38,10 +38,11 @@ Forwarding::Forwarding(dds::PoseOutputs& poses, dds::CloudOutputs& clouds, bool 
       clouds_(clouds),
       prior_in_(ipc::topics::kPrior),
       pose_in_(ipc::topics::kPose),
+      barometer_in_(ipc::topics::kBarometer),
       health_in_(ipc::topics::kHealth),
       scan_in_(ipc::topics::kRegisteredScan),
       map_in_(ipc::topics::kMapCloud),
-      pose_waiter_({&prior_in_.raw(), &pose_in_.raw(), &health_in_.raw()}),
+      pose_waiter_({&prior_in_.raw(), &pose_in_.raw(), &barometer_in_.raw(), &health_in_.raw()}),
       cloud_waiter_({&scan_in_.raw(), &map_in_.raw()}),
       last_report_ns_(steady_ns()) {
   pose_thread_ = std::thread([this] { forward_poses(); });
@@ -78,8 +79,16 @@ void Forwarding::forward_poses() noexcept {
       note_data();
       poses_.on_pose(*pose);
     }
+    while (const auto sample = barometer_in_.take()) {
+      poses_.on_pressure(*sample);
+    }
     forward_health();
   }
+}
+
+void Forwarding::note_received(const ReceivedCounts& counts) noexcept {
+  received_refused_.store(counts.refused, std::memory_order_relaxed);
+  received_early_.store(counts.too_early, std::memory_order_relaxed);
 }
 
 void Forwarding::forward_health() {
@@ -90,6 +99,7 @@ void Forwarding::forward_health() {
   last_report_ns_ = steady_ns();
   if (report) {
     note_data();
+    clock_.note(report->stamp_ns);
     diagnostics_.start(report->stamp_ns);
     const std::uint32_t count = std::min(report->entry_count, ipc::HealthReport::kMaxEntries);
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -100,20 +110,25 @@ void Forwarding::forward_health() {
     diagnostics_.start(wall_ns());
     diagnostics_.add("bridge/isobard", HealthLevel::kStale, "isobard runs but says nothing", 0.0);
   }
-  const std::uint64_t dropped = prior_in_.dropped() + pose_in_.dropped();
-  const std::uint64_t failures = poses_.failures();
-  const std::uint64_t cloud_failures = cloud_failures_.load(std::memory_order_relaxed);
-  const std::uint64_t clouds_dropped = clouds_dropped_.load(std::memory_order_relaxed);
+  add_own_health();
+  poses_.write_diagnostics(diagnostics_);
+}
+
+void Forwarding::add_own_health() {
   const auto add = [this](const char* name, std::uint64_t count, const char* message) {
     diagnostics_.add(name, warn_if(count > 0), count > 0 ? message : "", static_cast<double>(count));
   };
-  add("bridge/samples_lost", dropped, "the bridge was too slow for isobard");
-  add("bridge/clouds_lost", clouds_dropped, "the bridge was too slow for isobard");
-  add("bridge/messages_unsent", failures, "a DDS reader is too slow");
-  add("bridge/clouds_unsent", cloud_failures, "a DDS reader is too slow");
+  const auto value = [](const std::atomic<std::uint64_t>& count) {
+    return count.load(std::memory_order_relaxed);
+  };
+  add("bridge/samples_lost", prior_in_.dropped() + pose_in_.dropped(), "the bridge was too slow for isobard");
+  add("bridge/clouds_lost", value(clouds_dropped_), "the bridge was too slow for isobard");
+  add("bridge/messages_unsent", poses_.failures(), "a DDS reader is too slow");
+  add("bridge/clouds_unsent", value(cloud_failures_), "a DDS reader is too slow");
   add("bridge/samples_refused", prior_in_.rejected() + pose_in_.rejected() + health_in_.rejected(),
       "isobard and isobar-dds are of different builds");
-  poses_.write_diagnostics(diagnostics_);
+  add("bridge/received_implausible", value(received_refused_), "a DDS writer sends values that cannot be");
+  add("bridge/received_too_early", value(received_early_), "came before isobard was ready for it");
 }
 
 void Forwarding::forward_clouds() noexcept {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <thread>
 
+#include "daemon/bridge/receiving.hpp"
 #include "ipc/dds/outputs.hpp"
 #include "ipc/shared_memory.hpp"
 
@@ -25,6 +26,9 @@ class Forwarding {
   Forwarding(const Forwarding&) = delete;
   Forwarding& operator=(const Forwarding&) = delete;
 
+  /// What came the other way, to be told in the diagnostics.
+  void note_received(const ReceivedCounts& counts) noexcept;
+  [[nodiscard]] const RobotClock& clock() const noexcept { return clock_; }
   /// Rounds of the pose thread: it stands still only if that thread hangs.
   [[nodiscard]] std::uint64_t rounds() const noexcept { return rounds_.load(std::memory_order_relaxed); }
   /// Time since the last message of isobard; zero before the first.
@@ -34,12 +38,14 @@ class Forwarding {
   void forward_poses() noexcept;
   void forward_clouds() noexcept;
   void forward_health();
+  void add_own_health();
   void note_data() noexcept;
 
   dds::PoseOutputs& poses_;
   dds::CloudOutputs& clouds_;
   ipc::Subscriber<Prior> prior_in_;
   ipc::Subscriber<PoseEstimate> pose_in_;
+  ipc::Subscriber<PressureSample> barometer_in_;
   ipc::Subscriber<ipc::HealthReport> health_in_;
   ipc::Subscriber<RegisteredScan> scan_in_;
   ipc::Subscriber<ipc::MapCloud> map_in_;
@@ -50,6 +56,9 @@ class Forwarding {
   std::atomic<std::int64_t> last_data_ns_{0};  ///< steady clock, 0: never
   std::atomic<std::uint64_t> clouds_dropped_{0};
   std::atomic<std::uint64_t> cloud_failures_{0};
+  std::atomic<std::uint64_t> received_refused_{0};
+  std::atomic<std::uint64_t> received_early_{0};
+  RobotClock clock_;
   std::int64_t last_report_ns_ = 0;  ///< steady clock; pose thread
   std::thread pose_thread_;
   std::thread cloud_thread_;

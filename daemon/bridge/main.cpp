@@ -11,10 +11,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/errors.hpp"
 #include "daemon/bridge/forwarding.hpp"
 #include "daemon/bridge/process.hpp"
+#include "daemon/bridge/receiving.hpp"
 #include "daemon/bridge/settings.hpp"
 #include "ipc/dds/discovery.hpp"
 #include "ipc/dds/outputs.hpp"
@@ -43,11 +45,16 @@ struct Network {
         poses(participant.get(), settings.dds, settings.mounts),
         clouds(participant.get(), settings.dds),
         announcement(participant.get(), settings.dds.ros_gid_bytes) {
+    announce(settings, {});
+  }
+
+  /// Tells ROS 2 tools what belongs to this node.
+  void announce(const Settings& settings, const std::vector<dds_entity_t>& readers) {
     std::vector<dds_entity_t> writers = poses.writers();
     for (const dds_entity_t writer : clouds.writers()) {
       writers.push_back(writer);
     }
-    announcement.announce(settings.dds.ros_namespace, settings.dds.node_name, writers, {});
+    announcement.announce(settings.dds.ros_namespace, settings.dds.node_name, writers, readers);
   }
 };
 
@@ -89,18 +96,21 @@ std::optional<std::string> reason_to_restart(const ipc::Attachment& attachment, 
 /// Returns when told to end; starts over when it must.
 void forward(Network& network, const Settings& settings, const ipc::Attachment& attachment,
              StopSignals& signals, const ServiceManager& manager) {
-  auto forwarding = std::make_unique<Forwarding>(network.poses, network.clouds, settings.dds.publish_clouds);
+  Forwarding forwarding(network.poses, network.clouds, settings.dds.publish_clouds);
+  const Receiving receiving(network.participant.get(), settings.dds, forwarding.clock());
+  network.announce(settings, receiving.readers());
   manager.status("forwarding");
   spdlog::info("attached to isobard");
   const bool on_lonely_loopback =
       settings.dds.network_interface.empty() && !network.participant.network_interface().empty();
   std::uint64_t rounds = 0;
   while (!signals.wait_for(manager.interval())) {
-    if (forwarding->rounds() != rounds) {
-      rounds = forwarding->rounds();
+    if (forwarding.rounds() != rounds) {
+      rounds = forwarding.rounds();
       manager.alive();
     }
-    if (const auto reason = reason_to_restart(attachment, *forwarding, on_lonely_loopback)) {
+    forwarding.note_received(receiving.counts());
+    if (const auto reason = reason_to_restart(attachment, forwarding, on_lonely_loopback)) {
       spdlog::warn("{}; starting over", *reason);
       // The readers learn that this participant ends. Nothing of shared memory is cleaned up: with isobard
       // gone it cannot be, and the new program starts without it.

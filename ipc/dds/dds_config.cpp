@@ -53,7 +53,7 @@ void validate(const DdsConfig& config) {
   require_name(config.lidar_frame, "lidar_frame");
   require_name(config.imu_frame, "imu_frame");
   require_name(config.barometer_frame, "barometer_frame");
-  require(is_within(config.odom_rate_hz, 1.0, 200.0), "odom_rate_hz", "must be 1 to 200 Hz");
+  require(is_within(config.odom_rate_hz, 1.0, 1000.0), "odom_rate_hz", "must be 1 to 1000 Hz");
   require(is_within(config.altitude_rate_hz, 0.1, 200.0), "altitude_rate_hz", "must be 0.1 to 200 Hz");
   require(is_within(config.propagator.slew_time_s, 0.01, 10.0), "propagator.slew_time_s",
           "must be 0.01 to 10 s");

@@ -34,12 +34,20 @@ struct DdsConfig {
   std::string imu_frame = "imu";
   std::string barometer_frame = "barometer";
 
-  /// Rate of odom and tf [Hz], 1 … 200; the IMU's rate if that is lower. 100 serves controllers.
+  /// Rate of odom and tf [Hz], 1 … 1000; the IMU's rate if that is lower. 100 serves controllers.
   double odom_rate_hz = 100.0;
   /// Rate of altitude [Hz], 0.1 … 200. Air pressure is filtered to a few hertz anyway.
   double altitude_rate_hz = 10.0;
   /// Publish each registered scan and the map. Off saves most of the bridge's load.
   bool publish_clouds = true;
+
+  /// Take the base station's pressure from base/fluid_pressure.
+  bool receive_base_pressure = true;
+  /// Take the robot's own sensors from imu/data and wheel/odom, for robots whose drivers are ROS 2 nodes.
+  /// Off, because a sensor must not reach isobard in two ways.
+  bool receive_sensors = false;
+  /// This is a base station: publish the barometer as base/fluid_pressure, and receive none.
+  bool is_base_station = false;
 
   /// How corrections of the registration enter odom.
   PosePropagatorConfig propagator;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "ipc/dds/samples.hpp"
+
 namespace isobar::dds {
 namespace {
 
@@ -27,6 +29,9 @@ PoseOutputs::PoseOutputs(dds_entity_t participant, const DdsConfig& config, cons
       tf_static_(participant, topics::kTfStatic),
       altitude_(participant, topics::kAltitude, config.ros_namespace),
       diagnostics_(participant, topics::kDiagnostics) {
+  if (config.is_base_station) {
+    base_pressure_.emplace(participant, topics::kBasePressure, config.ros_namespace);
+  }
   write_static_transforms(mounts);
 }
 
@@ -53,6 +58,14 @@ void PoseOutputs::on_pose(const PoseEstimate& pose) {
   pose_.write(message);
 }
 
+void PoseOutputs::on_pressure(const PressureSample& sample) {
+  if (base_pressure_) {
+    PressureMessage message{};
+    fill_pressure(sample, config_.barometer_frame, message);
+    base_pressure_->write(message);
+  }
+}
+
 void PoseOutputs::write_transforms(const Odometry& odometry) {
   std::array<TransformStampedMessage, 2> transforms{};
   fill_transform(odometry.stamp_ns, config_.map_frame, config_.odom_frame, odometry.T_map_odom,
@@ -74,7 +87,12 @@ void PoseOutputs::write_static_transforms(const SensorMounts& mounts) {
 }
 
 std::vector<dds_entity_t> PoseOutputs::writers() const {
-  return {odom_.get(), pose_.get(), tf_.get(), tf_static_.get(), altitude_.get(), diagnostics_.get()};
+  std::vector<dds_entity_t> writers{odom_.get(),      pose_.get(),     tf_.get(),
+                                    tf_static_.get(), altitude_.get(), diagnostics_.get()};
+  if (base_pressure_) {
+    writers.push_back(base_pressure_->get());
+  }
+  return writers;
 }
 
 std::uint64_t PoseOutputs::failures() const noexcept {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/estimates.hpp"
@@ -48,6 +49,8 @@ class PoseOutputs {
   /// Publishes altitude, odom and tf at their rates.
   void on_prior(const Prior& prior);
   void on_pose(const PoseEstimate& pose);
+  /// A base station publishes its pressure; others do nothing.
+  void on_pressure(const PressureSample& sample);
   /// Publishes what the builder holds.
   void write_diagnostics(const DiagnosticsBuilder& builder) { diagnostics_.write(builder.message()); }
 
@@ -68,6 +71,7 @@ class PoseOutputs {
   Writer<TfMessage> tf_static_;
   Writer<AltitudeMessage> altitude_;
   Writer<DiagnosticsMessage> diagnostics_;
+  std::optional<Writer<PressureMessage>> base_pressure_;
 };
 
 /// registered_scan and map. One thread, which need not be that of PoseOutputs.

@@ -4,9 +4,12 @@
 #include <signal.h>  // NOLINT(modernize-deprecated-headers)
 
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 
 #include "ipc/dds/endpoints.hpp"
+#include "ipc/dds/messages.hpp"
 #include "ipc/shared_memory.hpp"
 #include "tests/ipc/child_process.hpp"
 
@@ -37,6 +40,7 @@ class Listener {
     }
     return wanted <= 0;
   }
+  [[nodiscard]] const dds::Participant& participant() const { return participant_; }
   bool receive(int wanted) {
     return receive(wanted, [](const Message&) { return true; });
   }
@@ -132,6 +136,41 @@ TEST_CASE("while the bridge forwards, the end of isobard can be followed at once
   stand_in.signal(SIGKILL);
   bridge.signal(SIGTERM);
   CHECK(bridge.wait(10s) == 0);
+}
+
+TEST_CASE("a base station's pressure reaches isobard on isobard's clock, and nonsense does not") {
+  ChildProcess stand_in({ISOBAR_STAND_IN});
+  REQUIRE(stand_in.read_until("ready", 10s));
+  ChildProcess bridge({ISOBAR_DDS_PROGRAM});
+  Listener<dds::DiagnosticsMessage> listener(dds::topics::kDiagnostics);
+  REQUIRE(listener.receive(2));  // isobard has told its clock
+  const dds::Participant& participant = listener.participant();
+  dds::Writer<dds::PressureMessage> writer(participant.get(), dds::topics::kBasePressure);
+  dds::PressureMessage message{};
+  message.header.frame_id = dds::text("base");
+  std::string line;
+  int good = 0;
+  const auto start = std::chrono::steady_clock::now();
+  for (int i = 0; i < 200 && good < 5; ++i) {
+    const auto since_start = std::chrono::steady_clock::now() - start;
+    message.header.stamp =
+        dds::to_time(1'000'000'000'000 + since_start / 1ns);  // it believes that it is 1970
+    message.fluid_pressure = i % 2 == 0 ? 98765.25 : 1e9;
+    writer.write(message);
+    while (stand_in.read_line(line, 50ms)) {
+      if (line.starts_with("base")) {
+        double pressure_pa = 0.0;
+        long age_ms = 0;
+        REQUIRE(std::sscanf(line.c_str(), "base %lf %ld", &pressure_pa, &age_ms) == 2);
+        CHECK(pressure_pa == 98765.25);
+        CHECK(std::abs(age_ms) < 1000);  // a loaded machine's delay, and not half a century
+        ++good;
+      }
+    }
+  }
+  CHECK(good == 5);
+  CHECK(listener.receive(
+      1, [](const auto& got) { return says(got, "isobar: bridge/received_implausible", 1); }));
 }
 
 TEST_CASE("what cannot work is refused in words") {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Stands in for isobard: holds the broker and publishes what stand_in.hpp says, in real time, until SIGTERM.
-// Prints "ready" and then once a second how many priors went out.
+// Prints "ready", then once a second how many priors went out, and each base pressure that comes in, with how
+// old it is by the stand-in's own clock: "base PASCAL MILLISECONDS".
 #include <signal.h>  // NOLINT(modernize-deprecated-headers)
 
 #include <chrono>
@@ -71,6 +72,7 @@ int run() {
   ipc::Publisher<RegisteredScan> scans(ipc::topics::kRegisteredScan);
   ipc::Publisher<ipc::MapCloud> maps(ipc::topics::kMapCloud);
   ipc::Publisher<ipc::HealthReport> reports(ipc::topics::kHealth);
+  ipc::Subscriber<PressureSample> base_pressure(ipc::topics::kBaseBarometer);
   const auto start = std::chrono::steady_clock::now();
   const std::int64_t start_ns =
       std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
@@ -89,6 +91,11 @@ int run() {
     }
     if (step % 400 == 0) {
       publish_map(maps, stand_in::pose_at(start_ns, step));
+    }
+    while (const auto sample = base_pressure.take()) {
+      const std::int64_t age_ns = stand_in::prior_at(start_ns, step).stamp_ns - sample->stamp_ns;
+      std::printf("base %.2f %lld\n", sample->pressure_pa, static_cast<long long>(age_ns / 1'000'000));
+      std::fflush(stdout);
     }
     const auto next = std::chrono::nanoseconds((step + 1) * stand_in::kPriorPeriodNs);
     if (wait_until(start + next, stop)) {

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/bridge/receiving.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "ipc/dds/samples.hpp"
+
+namespace isobar::bridge {
+namespace {
+
+std::int64_t monotonic_ns() {
+  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+}
+
+template <class Stream>
+void add_reader(const std::optional<Stream>& stream, std::vector<dds_entity_t>& readers) {
+  if (stream) {
+    readers.push_back(stream->reader.get());
+  }
+}
+
+}  // namespace
+
+void RobotClock::note(std::int64_t stamp_ns) noexcept {
+  const std::int64_t bound_ns = stamp_ns - monotonic_ns();
+  const std::int64_t known_ns = offset_ns_.load(std::memory_order_relaxed);
+  offset_ns_.store(std::max(bound_ns, known_ns), std::memory_order_relaxed);
+}
+
+std::int64_t RobotClock::now_ns() const noexcept {
+  return monotonic_ns() + offset_ns_.load(std::memory_order_relaxed);
+}
+
+Receiving::Receiving(dds_entity_t participant, const dds::DdsConfig& config, const RobotClock& clock)
+    : clock_(clock) {
+  const auto open = [&](auto& stream, const auto& from, const auto& to) {
+    stream.emplace(participant, from, config.ros_namespace, to);
+  };
+  if (config.receive_base_pressure && !config.is_base_station) {
+    open(base_pressure_, dds::topics::kBasePressure, ipc::topics::kBaseBarometer);
+  }
+  if (config.receive_sensors) {
+    open(imu_, dds::topics::kImu, ipc::topics::kImu);
+    open(wheel_, dds::topics::kWheel, ipc::topics::kWheel);
+  }
+  waitset_ = dds::checked(dds_create_waitset(participant), "no wait set");
+  stop_ = dds::checked(dds_create_guardcondition(participant), "no guard condition");
+  dds_waitset_attach(waitset_.get(), stop_.get(), 0);
+  for (const dds_entity_t reader : readers()) {
+    dds_set_status_mask(reader, DDS_DATA_AVAILABLE_STATUS);
+    dds_waitset_attach(waitset_.get(), reader, 0);
+  }
+  thread_ = std::thread([this] { loop(); });
+}
+
+Receiving::~Receiving() {
+  dds_set_guardcondition(stop_.get(), true);
+  thread_.join();
+}
+
+std::vector<dds_entity_t> Receiving::readers() const {
+  std::vector<dds_entity_t> readers;
+  add_reader(base_pressure_, readers);
+  add_reader(imu_, readers);
+  add_reader(wheel_, readers);
+  return readers;
+}
+
+ReceivedCounts Receiving::counts() const noexcept {
+  return {samples_.load(std::memory_order_relaxed), refused_.load(std::memory_order_relaxed),
+          too_early_.load(std::memory_order_relaxed)};
+}
+
+template <class Message, class Sample>
+void Receiving::forward(std::optional<Stream<Message, Sample>>& stream) {
+  if (!stream) {
+    return;
+  }
+  stream->reader.take([&](const Message& message) {
+    Sample sample;
+    if (dds::to_sample(message, sample) != nullptr) {
+      refused_.fetch_add(1, std::memory_order_relaxed);
+      return;
+    }
+    if (!clock_.known()) {
+      too_early_.fetch_add(1, std::memory_order_relaxed);
+      return;
+    }
+    // Other machines have other clocks; nodes of this one run on the wall clock, which may jump.
+    static_cast<void>(stream->anchor.add(sample.stamp_ns, clock_.now_ns()));
+    sample.stamp_ns = stream->anchor.to_host_ns(stream->anchor.device_unwrapped_ns());
+    auto& count = stream->publisher.send(sample) ? samples_ : too_early_;
+    count.fetch_add(1, std::memory_order_relaxed);
+  });
+}
+
+void Receiving::loop() noexcept {
+  bool stopped = false;
+  while (!stopped && dds_waitset_wait(waitset_.get(), nullptr, 0, DDS_INFINITY) >= 0) {
+    forward(base_pressure_);
+    forward(wheel_);
+    forward(imu_);
+    static_cast<void>(dds_read_guardcondition(stop_.get(), &stopped));
+  }
+}
+
+}  // namespace isobar::bridge

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ipc/dds/samples.hpp"
+
+#include <limits>
+
+#include "core/plausibility.hpp"
+#include "ipc/dds/messages.hpp"
+
+namespace isobar::dds {
+namespace {
+
+/// Checks stamp and values, and only then lets the sample out.
+template <class Sample>
+const char* hand_over(const HeaderMessage& header, Sample& candidate, Sample& sample) noexcept {
+  candidate.stamp_ns = to_stamp_ns(header.stamp);
+  const char* broken = implausible_stamp(candidate.stamp_ns);
+  broken = broken != nullptr ? broken : implausibility(candidate);
+  if (broken == nullptr) {
+    sample = candidate;
+  }
+  return broken;
+}
+
+Eigen::Vector3d to_vector(const geometry_msgs_msg_dds__Vector3_& message) noexcept {
+  return {message.x, message.y, message.z};
+}
+
+}  // namespace
+
+const char* to_sample(const PressureMessage& message, PressureSample& sample) noexcept {
+  PressureSample candidate;
+  candidate.pressure_pa = message.fluid_pressure;
+  candidate.temperature_c = std::numeric_limits<double>::quiet_NaN();
+  return hand_over(message.header, candidate, sample);
+}
+
+const char* to_sample(const ImuMessage& message, ImuSample& sample) noexcept {
+  ImuSample candidate;
+  candidate.gyro_rad_s = to_vector(message.angular_velocity);
+  candidate.accel_m_s2 = to_vector(message.linear_acceleration);
+  const auto& q = message.orientation;
+  candidate.has_attitude = message.orientation_covariance[0] != -1.0;
+  if (candidate.has_attitude) {
+    candidate.q_world_imu = Eigen::Quaterniond(q.w, q.x, q.y, q.z);
+  }
+  const char* broken = hand_over(message.header, candidate, sample);
+  if (broken == nullptr) {
+    sample.q_world_imu.normalize();
+  }
+  return broken;
+}
+
+const char* to_sample(const OdometryMessage& message, WheelSample& sample) noexcept {
+  WheelSample candidate;
+  candidate.vx_m_s = message.twist.twist.linear.x;
+  candidate.vy_m_s = message.twist.twist.linear.y;
+  candidate.wz_rad_s = message.twist.twist.angular.z;
+  return hand_over(message.header, candidate, sample);
+}
+
+void fill_pressure(const PressureSample& sample, const std::string& frame,
+                   PressureMessage& message) noexcept {
+  fill_header(sample.stamp_ns, frame, message.header);
+  message.fluid_pressure = sample.pressure_pa;
+  message.variance = 0.0;
+}
+
+}  // namespace isobar::dds

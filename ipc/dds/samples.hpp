@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Samples out of ROS 2's messages. Whatever comes over the network is checked here before its first use.
+#pragma once
+
+#include <string>
+
+#include "core/samples.hpp"
+#include "ipc/dds/topics.hpp"
+
+namespace isobar::dds {
+
+/// Each returns nullptr and fills the sample, stamp on the sender's clock, or returns the rule that the
+/// message breaks and leaves the sample as it was.
+
+/// FluidPressure [Pa]. ROS has no temperature beside it: NaN.
+[[nodiscard]] const char* to_sample(const PressureMessage& message, PressureSample& sample) noexcept;
+
+/// Imu, in the sensor's own frame. Orientation is taken where orientation_covariance[0] is not -1 (REP-145).
+[[nodiscard]] const char* to_sample(const ImuMessage& message, ImuSample& sample) noexcept;
+
+/// The twist of an Odometry; its pose is not used.
+[[nodiscard]] const char* to_sample(const OdometryMessage& message, WheelSample& sample) noexcept;
+
+/// The other way: a base station's own pressure.
+void fill_pressure(const PressureSample& sample, const std::string& frame, PressureMessage& message) noexcept;
+
+}  // namespace isobar::dds
