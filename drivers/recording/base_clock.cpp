@@ -76,7 +76,7 @@ BaseClock tie_base_clock(const std::optional<StampSpan>& robot, const std::optio
   }
   const std::int64_t start_ns = robot->first_ns - base->first_ns;
   const std::int64_t end_ns = robot->last_ns - base->last_ns;
-  const std::int64_t middle_ns = start_ns / 2 + end_ns / 2;
+  const std::int64_t middle_ns = start_ns + (end_ns - start_ns) / 2;
   if (std::abs(start_ns - end_ns) <= kToleranceNs && std::abs(middle_ns) > kToleranceNs) {
     return {middle_ns, "base-station clock is off by " + seconds(-middle_ns) +
                            ": its file starts and ends that much away from the robot's"};
