@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/datagram/udp.hpp"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+
+#include "core/errors.hpp"
+
+namespace isobar {
+namespace {
+
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+/// 3 s of a VLP-16's packets: the kernel caps it at net.core.rmem_max.
+constexpr int kReceiveBufferBytes = 4 * 1024 * 1024;
+/// A stamp of the kernel that lies farther from now than this met a wall clock that was just set [ns].
+constexpr std::int64_t kMaxAgeNs = kNsPerSecond;
+
+std::int64_t read_clock(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return now.tv_sec * kNsPerSecond + now.tv_nsec;
+}
+
+std::int64_t wall_offset_at_start() {
+  static const std::int64_t offset_ns = read_clock(CLOCK_REALTIME) - read_clock(CLOCK_MONOTONIC);
+  return offset_ns;
+}
+
+std::string place(const std::string& address, std::uint16_t port) {
+  return "UDP " + address + ":" + std::to_string(port);
+}
+
+sockaddr_in parse_address(const std::string& address, std::uint16_t port) {
+  sockaddr_in result{};
+  result.sin_family = AF_INET;
+  result.sin_port = htons(port);
+  if (inet_pton(AF_INET, address.c_str(), &result.sin_addr) != 1) {
+    throw ServiceError(place(address, port) + ": is no IPv4 address");
+  }
+  return result;
+}
+
+[[noreturn]] void fail_bind(const std::string& address, std::uint16_t port, int error) {
+  const std::string where = place(address, port) + ": ";
+  switch (error) {
+    case EADDRINUSE:
+      throw ServiceError(where + "the port is in use by another program");
+    case EADDRNOTAVAIL:
+      throw ServiceError(where + "no network interface of this machine has that address");
+    case EACCES:
+      throw ServiceError(where + "ports below 1024 need more rights");
+    default:
+      throw ServiceError(where + "cannot be opened: " + std::strerror(error));
+  }
+}
+
+void set_option(int socket, int option, int value) {
+  setsockopt(socket, SOL_SOCKET, option, &value, sizeof value);
+}
+
+/// What the kernel says beside the bytes.
+struct Ancillary {
+  std::int64_t realtime_ns = 0;
+  std::uint32_t overflow = 0;
+  bool has_overflow = false;
+};
+
+Ancillary read_ancillary(msghdr& message) {
+  Ancillary result;
+  for (cmsghdr* entry = CMSG_FIRSTHDR(&message); entry != nullptr; entry = CMSG_NXTHDR(&message, entry)) {
+    if (entry->cmsg_level != SOL_SOCKET) {
+      continue;
+    }
+    if (entry->cmsg_type == SCM_TIMESTAMPNS) {
+      timespec stamp{};
+      std::memcpy(&stamp, CMSG_DATA(entry), sizeof stamp);
+      result.realtime_ns = stamp.tv_sec * kNsPerSecond + stamp.tv_nsec;
+    } else if (entry->cmsg_type == SO_RXQ_OVFL) {
+      std::memcpy(&result.overflow, CMSG_DATA(entry), sizeof result.overflow);
+      result.has_overflow = true;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::int64_t RobotClock::now_ns() { return read_clock(CLOCK_MONOTONIC) + wall_offset_at_start(); }
+
+std::int64_t RobotClock::from_realtime_ns(std::int64_t realtime_ns) {
+  const std::int64_t age_ns = read_clock(CLOCK_REALTIME) - realtime_ns;
+  const bool believable = age_ns >= 0 && age_ns <= kMaxAgeNs;
+  return now_ns() - (believable ? age_ns : 0);
+}
+
+UdpReceiver::UdpReceiver(const std::string& address, std::uint16_t port) : buffer_(65'536) {
+  const sockaddr_in where = parse_address(address, port);
+  RobotClock::now_ns();  // ties the clocks now, not with the first datagram
+  socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  stop_event_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  if (socket_ < 0 || stop_event_ < 0 ||
+      bind(socket_, reinterpret_cast<const sockaddr*>(&where), sizeof where) != 0) {
+    const int error = errno;
+    close(socket_);
+    close(stop_event_);
+    fail_bind(address, port, error);
+  }
+  set_option(socket_, SO_RCVBUF, kReceiveBufferBytes);
+  set_option(socket_, SO_TIMESTAMPNS, 1);
+  set_option(socket_, SO_RXQ_OVFL, 1);
+  sockaddr_in bound{};
+  socklen_t length = sizeof bound;
+  getsockname(socket_, reinterpret_cast<sockaddr*>(&bound), &length);
+  port_ = ntohs(bound.sin_port);
+}
+
+UdpReceiver::~UdpReceiver() {
+  close(socket_);
+  close(stop_event_);
+}
+
+UdpReceiver::Status UdpReceiver::receive(ReceivedDatagram& datagram, int timeout_ms) {
+  std::array<pollfd, 2> waits{pollfd{socket_, POLLIN, 0}, pollfd{stop_event_, POLLIN, 0}};
+  const int ready = poll(waits.data(), waits.size(), timeout_ms);
+  if (ready == 0 || (ready < 0 && errno == EINTR)) {
+    return Status::kTimeout;
+  }
+  if (ready < 0) {
+    return Status::kError;
+  }
+  if (waits[1].revents != 0) {
+    return Status::kStopped;
+  }
+  iovec bytes{buffer_.data(), buffer_.size()};
+  alignas(cmsghdr) std::array<char, 128> control;
+  msghdr message{};
+  message.msg_iov = &bytes;
+  message.msg_iovlen = 1;
+  message.msg_control = control.data();
+  message.msg_controllen = control.size();
+  const ssize_t length = recvmsg(socket_, &message, 0);
+  if (length < 0) {
+    return errno == EAGAIN || errno == EINTR ? Status::kTimeout : Status::kError;
+  }
+  const Ancillary ancillary = read_ancillary(message);
+  if (ancillary.has_overflow) {  // the kernel's counter wraps at 2^32
+    dropped_.fetch_add(ancillary.overflow - last_overflow_, std::memory_order_relaxed);
+    last_overflow_ = ancillary.overflow;
+  }
+  datagram.payload = {buffer_.data(), static_cast<std::size_t>(length)};
+  datagram.stamp_ns =
+      ancillary.realtime_ns == 0 ? RobotClock::now_ns() : RobotClock::from_realtime_ns(ancillary.realtime_ns);
+  datagram.cut = (message.msg_flags & MSG_TRUNC) != 0;
+  return Status::kDatagram;
+}
+
+void UdpReceiver::stop() noexcept {
+  const std::uint64_t one = 1;
+  // Fails only when the event is already set many times over: it is set, then.
+  [[maybe_unused]] const ssize_t written = write(stop_event_, &one, sizeof one);
+}
+
+UdpSender::UdpSender(const std::string& address, std::uint16_t port) {
+  const sockaddr_in where = parse_address(address, port);
+  socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (socket_ >= 0) {
+    set_option(socket_, SO_BROADCAST, 1);
+  }
+  if (socket_ < 0 || connect(socket_, reinterpret_cast<const sockaddr*>(&where), sizeof where) != 0) {
+    const int error = errno;
+    close(socket_);
+    throw ServiceError(place(address, port) + ": cannot be sent to: " + std::strerror(error));
+  }
+}
+
+UdpSender::~UdpSender() { close(socket_); }
+
+bool UdpSender::send(std::span<const std::uint8_t> payload) noexcept {
+  const auto wanted = static_cast<ssize_t>(payload.size());
+  ssize_t sent = ::send(socket_, payload.data(), payload.size(), MSG_NOSIGNAL);
+  if (sent < 0 && errno == ECONNREFUSED) {  // an ICMP answer to an earlier datagram: nobody listened then
+    sent = ::send(socket_, payload.data(), payload.size(), MSG_NOSIGNAL);
+    return sent == wanted || errno == ECONNREFUSED;
+  }
+  return sent == wanted;
+}
+
+}  // namespace isobar

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/errors.hpp"
+#include "drivers/datagram/udp.hpp"
+
+namespace isobar {
+
+TEST_CASE("Datagrams arrive whole, in order and stamped on the robot clock") {
+  UdpReceiver receiver("127.0.0.1", 0);
+  UdpSender sender("127.0.0.1", receiver.port());
+  const std::int64_t before_ns = RobotClock::now_ns();
+  for (std::size_t i = 1; i <= 20; ++i) {
+    const std::vector<std::uint8_t> payload(i * 70, static_cast<std::uint8_t>(i));
+    REQUIRE(sender.send(payload));
+  }
+  std::int64_t last_ns = before_ns - 1'000'000;  // two clocks are read one after the other
+  for (std::size_t i = 1; i <= 20; ++i) {
+    ReceivedDatagram datagram;
+    REQUIRE(receiver.receive(datagram, 2'000) == UdpReceiver::Status::kDatagram);
+    CHECK(std::vector<std::uint8_t>(datagram.payload.begin(), datagram.payload.end()) ==
+          std::vector<std::uint8_t>(i * 70, static_cast<std::uint8_t>(i)));
+    CHECK(datagram.stamp_ns >= last_ns - 1'000'000);
+    CHECK(datagram.stamp_ns <= RobotClock::now_ns() + 1'000'000);
+    last_ns = datagram.stamp_ns;
+  }
+  ReceivedDatagram none;
+  CHECK(receiver.receive(none, 0) == UdpReceiver::Status::kTimeout);
+  CHECK(receiver.dropped_by_kernel() == 0);
+}
+
+TEST_CASE("stop() from another thread ends an endless wait") {
+  UdpReceiver receiver("127.0.0.1", 0);
+  std::thread stopper([&receiver] { receiver.stop(); });
+  ReceivedDatagram datagram;
+  CHECK(receiver.receive(datagram, -1) == UdpReceiver::Status::kStopped);
+  stopper.join();
+  CHECK(receiver.receive(datagram, -1) == UdpReceiver::Status::kStopped);
+}
+
+TEST_CASE("A socket that cannot be had is explained with address and port") {
+  UdpReceiver first("127.0.0.1", 0);
+  const std::string in_use = "127.0.0.1:" + std::to_string(first.port()) + ": the port is in use";
+  CHECK_THROWS_WITH_AS(UdpReceiver("127.0.0.1", first.port()), doctest::Contains(in_use.c_str()),
+                       ServiceError);
+  CHECK_THROWS_WITH_AS(UdpReceiver("203.0.113.7", 2'368),
+                       doctest::Contains("203.0.113.7:2368: no network interface"), ServiceError);
+  CHECK_THROWS_WITH_AS(UdpReceiver("localhost", 2'368), doctest::Contains("no IPv4 address"), ServiceError);
+  CHECK_THROWS_AS(UdpSender("300.1.1.1", 1), ServiceError);
+}
+
+TEST_CASE("Sending where nobody listens is no failure") {
+  UdpSender sender("127.0.0.1", 9);
+  const std::vector<std::uint8_t> payload(10);
+  for (int i = 0; i < 5; ++i) {
+    CHECK(sender.send(payload));
+  }
+}
+
+}  // namespace isobar
