@@ -57,7 +57,7 @@ struct RegistrationConfig {
   /// Without wheels: how much the velocity changes at random [m/s^2], 0.1 … 20.
   double free_acceleration_m_s2 = 3.0;
   /// Without wheels: time in which a velocity not confirmed by scans dies away [s], 0.1 … 100.
-  double velocity_memory_s = 1.0;
+  double velocity_memory_s = 2.0;
   /// Error of the height prediction of "altitude in the prior" methods [m], 0.01 … 10. Wide, so that the ICP
   /// is free in z, as the paper's baselines are.
   double altitude_prior_error_m = 0.3;

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "core/map/free_space.hpp"
+
+namespace {
+
+using isobar::FreeSpace;
+using isobar::RegisteredScan;
+using isobar::ScanPoint;
+
+constexpr float kRadPerDeg = std::numbers::pi_v<float> / 180.0F;
+
+Eigen::Vector3f ray(float azimuth_deg, float elevation_deg, float range) {
+  const float a = azimuth_deg * kRadPerDeg;
+  const float e = elevation_deg * kRadPerDeg;
+  return range * Eigen::Vector3f(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
+}
+
+// A sphere of 10 m around a 16-beam lidar.
+std::unique_ptr<RegisteredScan> scan_of_sphere() {
+  auto scan = std::make_unique<RegisteredScan>();
+  scan->point_count = 0;
+  for (int azimuth = 0; azimuth < 720; ++azimuth) {
+    for (int ring = -15; ring <= 15; ring += 2) {
+      const Eigen::Vector3f p = ray(0.5F * static_cast<float>(azimuth), static_cast<float>(ring), 10.0F);
+      scan->points[scan->point_count++] = ScanPoint{p.x(), p.y(), p.z()};
+    }
+  }
+  return scan;
+}
+
+}  // namespace
+
+TEST_CASE("rays pass what stands in front of their ends, not what lies behind or where no ray goes") {
+  auto free_space = std::make_unique<FreeSpace>();
+  free_space->set_scan(*scan_of_sphere(), Eigen::Isometry3d::Identity());
+  const Eigen::Vector3f towards = -ray(33.0F, 1.0F, 1.0F);
+  CHECK(free_space->passes_through(ray(33.0F, 1.0F, 5.0F), towards, 0.3F));
+  CHECK_FALSE(free_space->passes_through(ray(33.0F, 1.0F, 9.8F), towards, 0.3F));
+  CHECK_FALSE(free_space->passes_through(ray(33.0F, 1.0F, 12.0F), towards, 0.3F));
+  CHECK_FALSE(free_space->passes_through(ray(33.0F, 60.0F, 5.0F), -ray(33.0F, 60.0F, 1.0F), 0.3F));
+}
+
+TEST_CASE("a surface that is only grazed is not passed, however far the rays go") {
+  auto free_space = std::make_unique<FreeSpace>();
+  free_space->set_scan(*scan_of_sphere(), Eigen::Isometry3d::Identity());
+  // A floor 0.1 m under the rays, seen at one degree.
+  CHECK_FALSE(free_space->passes_through(ray(120.0F, -1.0F, 5.0F), Eigen::Vector3f::UnitZ(), 0.3F));
+}

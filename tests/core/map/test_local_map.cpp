@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <numbers>
+#include <random>
+
+#include "core/map/local_map.hpp"
+
+namespace {
+
+using isobar::LocalMap;
+using isobar::MapConfig;
+using isobar::MapMatch;
+using isobar::MapPoint;
+using isobar::PoseMode;
+using isobar::RegisteredScan;
+using isobar::ScanPoint;
+
+constexpr double kRoomM = 5.0;  // half the edge of a square room, the lidar in its middle
+
+// Range along a direction to the walls of the room (no floor, no ceiling).
+double range_to_walls(const Eigen::Vector3d& direction) {
+  return kRoomM / std::max(std::abs(direction.x()), std::abs(direction.y()));
+}
+
+using RangeOf = std::function<double(const Eigen::Vector3d&)>;
+
+// A scan of 16 rings from `x_m` along the x axis; `range_of` gives the range along a direction.
+void fill_scan(RegisteredScan& scan, double x_m, std::int64_t stamp_ns, const RangeOf& range_of) {
+  scan.pose = {};
+  scan.pose.stamp_ns = stamp_ns;
+  scan.pose.mode = PoseMode::kRegistered;
+  scan.pose.overlap = 1.0;
+  scan.pose.T_map_base.translation().x() = x_m;
+  scan.point_count = 0;
+  for (int i = 0; i < 900; ++i) {
+    for (int ring = -15; ring <= 15; ring += 2) {
+      const double azimuth = i * 2.0 * std::numbers::pi / 900.0;
+      const double elevation = ring * std::numbers::pi / 180.0;
+      const Eigen::Vector3d direction(std::cos(elevation) * std::cos(azimuth),
+                                      std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+      const Eigen::Vector3f p = (direction * range_of(direction)).cast<float>();
+      scan.points[scan.point_count++] = ScanPoint{p.x(), p.y(), p.z()};
+    }
+  }
+}
+
+std::size_t points_within(const LocalMap& map, const Eigen::Vector3d& centre, double radius_m) {
+  std::vector<MapPoint> points;
+  map.append_points(points);
+  std::size_t count = 0;
+  for (const MapPoint& point : points) {
+    count += (point.p_map - centre).norm() < radius_m ? 1 : 0;
+  }
+  return count;
+}
+
+// A post of 0.4 m at `x_m`, 0: what a standing person looks like.
+RangeOf room_with_post(double x_m) {
+  return [x_m](const Eigen::Vector3d& direction) {
+    const double wall = range_to_walls(direction);
+    const bool hits = direction.x() > 0.0 && std::abs(direction.y() / direction.x() * x_m) < 0.2;
+    return hits ? std::min(wall, x_m / direction.x()) : wall;
+  };
+}
+
+}  // namespace
+
+TEST_CASE("a wall is matched on its plane, with the normal towards the robot") {
+  LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
+  auto scan = std::make_unique<RegisteredScan>();
+  std::vector<MapPoint> evicted;
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0.0, 0.015);
+  for (int i = 0; i < 10; ++i) {
+    fill_scan(*scan, 0.0, i * 2'000'000'000LL,
+              [&](const Eigen::Vector3d& direction) { return range_to_walls(direction) + noise(random); });
+    CHECK(map.update(*scan, evicted));
+  }
+  MapMatch match;
+  const Eigen::Vector3d beside_wall(kRoomM - 0.1, 1.0, 0.3);
+  REQUIRE(map.snapshot()->nearest(beside_wall, Eigen::Vector3d::Zero(), 0.5, match));
+  // Ten scans of 1.5 cm noise average to millimetres in place and about a degree in direction.
+  CHECK(match.q_map.x() == doctest::Approx(kRoomM).epsilon(0.002));
+  CHECK(match.normal_map.x() < -std::cos(3.0F * std::numbers::pi_v<float> / 180.0F));
+  // From behind the wall there is nothing to match.
+  CHECK_FALSE(map.snapshot()->nearest(beside_wall, Eigen::Vector3d(20.0, 1.0, 0.3), 0.5, match));
+}
+
+TEST_CASE("a robot that stands still does not make the map grow") {
+  LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
+  auto scan = std::make_unique<RegisteredScan>();
+  std::vector<MapPoint> evicted;
+  fill_scan(*scan, 0.0, 0, range_to_walls);
+  map.update(*scan, evicted);
+  const std::size_t once = points_within(map, Eigen::Vector3d::Zero(), 100.0);
+  for (int i = 1; i < 50; ++i) {
+    fill_scan(*scan, 0.0, i * 2'000'000'000LL, range_to_walls);
+    map.update(*scan, evicted);
+  }
+  CHECK(once > 1000);
+  CHECK(points_within(map, Eigen::Vector3d::Zero(), 100.0) == once);
+  CHECK(evicted.empty());
+}
+
+TEST_CASE("what rays pass through leaves the map; the walls stay") {
+  LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
+  auto scan = std::make_unique<RegisteredScan>();
+  std::vector<MapPoint> evicted;
+  fill_scan(*scan, 0.0, 0, room_with_post(3.0));
+  map.update(*scan, evicted);
+  const Eigen::Vector3d post(3.0, 0.0, 0.0);
+  REQUIRE(points_within(map, post, 0.5) > 10);
+  fill_scan(*scan, 0.0, 0, range_to_walls);
+  const std::size_t walls = points_within(map, Eigen::Vector3d(-kRoomM, 0.0, 0.0), 2.0);
+  for (int i = 1; i < 8; ++i) {
+    fill_scan(*scan, 0.0, i * 2'000'000'000LL, range_to_walls);
+    map.update(*scan, evicted);
+  }
+  CHECK(points_within(map, post, 0.5) == 0);
+  CHECK(points_within(map, Eigen::Vector3d(-kRoomM, 0.0, 0.0), 2.0) >= walls);
+  MapMatch match;
+  CHECK_FALSE(map.snapshot()->nearest(post, Eigen::Vector3d::Zero(), 0.5, match));
+  CHECK(map.seen_through_count() > 0);
+}
+
+TEST_CASE("tiles out of reach are handed out once, and memory stays bounded on a long way") {
+  MapConfig config;
+  config.radius_m = 20.0;
+  LocalMap map(config, Eigen::Isometry3d::Identity());
+  auto scan = std::make_unique<RegisteredScan>();
+  std::vector<MapPoint> evicted;
+  std::size_t most_tiles = 0;
+  for (int i = 0; i <= 200; ++i) {
+    fill_scan(*scan, i * 1.0, i * 1'000'000'000LL, range_to_walls);
+    map.update(*scan, evicted);
+    most_tiles = std::max(most_tiles, map.tile_count());
+  }
+  // A ball of 20 m + one tile holds at most (2 * 28 / 8 + 1)^3 tiles, of which a flat world fills two layers.
+  CHECK(most_tiles < 128);
+  double nearest = 1e9;
+  for (const MapPoint& point : evicted) {
+    nearest = std::min(nearest, 200.0 - point.p_map.x());
+  }
+  CHECK(nearest > config.radius_m - isobar::kTileSizeM);
+  const std::size_t out = evicted.size();
+  CHECK(out > 1000);
+  map.append_points(evicted);
+  CHECK(evicted.size() > out);
+}
+
+TEST_CASE("a snapshot does not change when the map does, and unchanged tiles are shared") {
+  LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
+  auto scan = std::make_unique<RegisteredScan>();
+  std::vector<MapPoint> evicted;
+  fill_scan(*scan, 0.0, 0, range_to_walls);
+  map.update(*scan, evicted);
+  const auto before = map.snapshot();
+  const std::size_t planes = before->plane_count();
+  fill_scan(*scan, 30.0, 1'000'000'000, range_to_walls);
+  map.update(*scan, evicted);
+  CHECK(before->plane_count() == planes);
+  CHECK(map.snapshot()->plane_count() > planes);
+}
+
+TEST_CASE("a scan placed by the prior alone adds what is unknown and leaves what is known") {
+  LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
+  auto scan = std::make_unique<RegisteredScan>();
+  std::vector<MapPoint> evicted;
+  fill_scan(*scan, 0.0, 0, range_to_walls);
+  map.update(*scan, evicted);
+  const std::size_t known = points_within(map, Eigen::Vector3d(-kRoomM, 0.0, 0.0), 1.5);
+  // 0.3 m off: it would double every wall that is perpendicular to the way.
+  fill_scan(*scan, 0.3, 1'000'000'000, range_to_walls);
+  scan->pose.mode = PoseMode::kPriorOnly;
+  map.update(*scan, evicted);
+  CHECK(points_within(map, Eigen::Vector3d(-kRoomM, 0.0, 0.0), 1.5) == known);
+  fill_scan(*scan, 40.0, 2'000'000'000, range_to_walls);
+  scan->pose.mode = PoseMode::kPriorOnly;
+  map.update(*scan, evicted);
+  CHECK(points_within(map, Eigen::Vector3d(40.0 - kRoomM, 0.0, 0.0), 1.5) > known / 2);
+}
+
+TEST_CASE("a pose that is not finite does not reach the map") {
+  LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
+  auto scan = std::make_unique<RegisteredScan>();
+  std::vector<MapPoint> evicted;
+  fill_scan(*scan, 0.0, 0, range_to_walls);
+  scan->pose.T_map_base.translation().y() = std::nan("");
+  CHECK_FALSE(map.update(*scan, evicted));
+  CHECK(map.cell_count() == 0);
+}

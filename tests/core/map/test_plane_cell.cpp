@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+
+#include "core/map/plane_cell.hpp"
+
+namespace {
+
+using isobar::fit_plane;
+using isobar::Moments;
+using isobar::Plane;
+using isobar::PlaneCriteria;
+
+constexpr float kNoiseM = 0.015F;
+
+// Points of horizontal lidar rings on the wall y = 0 of a cell of 0.25 m, with the noise of a range.
+Moments wall_seen_by_rings(const std::vector<float>& ring_heights, std::mt19937& random) {
+  std::normal_distribution<float> noise(0.0F, kNoiseM);
+  Moments moments;
+  for (const float z : ring_heights) {
+    for (int i = 0; i < 40; ++i) {
+      const float x = -0.12F + 0.006F * static_cast<float>(i);
+      // The ray comes at an angle: noise shifts the point along the wall too.
+      const float range_error = noise(random);
+      moments.add({x + 0.6F * range_error, 0.8F * range_error, z});
+    }
+  }
+  return moments;
+}
+
+}  // namespace
+
+TEST_CASE("a patch seen by three rings is a plane with the wall's normal") {
+  std::mt19937 random(1);
+  Plane plane;
+  REQUIRE(fit_plane(wall_seen_by_rings({-0.1F, 0.0F, 0.1F}, random), PlaneCriteria{}, plane));
+  // Deviation of the normal: noise / (half width * sqrt(points)), about 1 degree; three times that.
+  CHECK(std::abs(plane.normal.y()) > std::cos(3.0F * 0.018F));
+  CHECK(plane.thickness_m == doctest::Approx(0.8F * kNoiseM).epsilon(0.3));
+}
+
+TEST_CASE("a single ring makes no plane, however many points it has") {
+  std::mt19937 random(2);
+  Moments moments;
+  for (int repetition = 0; repetition < 20; ++repetition) {
+    moments.add(wall_seen_by_rings({0.03F}, random), Eigen::Vector3f::Zero());
+  }
+  Plane plane;
+  CHECK_FALSE(fit_plane(moments, PlaneCriteria{}, plane));
+}
+
+TEST_CASE("a corner of two walls makes no plane") {
+  Moments moments;
+  for (int i = 0; i < 10; ++i) {
+    for (int j = 0; j < 10; ++j) {
+      const float a = 0.02F * static_cast<float>(i);
+      const float z = 0.02F * static_cast<float>(j);
+      moments.add({a, 0.0F, z});
+      moments.add({0.0F, a, z});
+    }
+  }
+  Plane plane;
+  CHECK_FALSE(fit_plane(moments, PlaneCriteria{}, plane));
+}
+
+TEST_CASE("moments about another centre are the same points") {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(-0.2F, 0.2F);
+  const Eigen::Vector3f offset(0.25F, -0.5F, 0.75F);
+  Moments here;
+  Moments there;
+  Moments direct;
+  for (int i = 0; i < 30; ++i) {
+    const Eigen::Vector3f p(uniform(random), uniform(random), uniform(random));
+    there.add(p);
+    direct.add(p + offset);
+  }
+  here.add(there, offset);
+  // Single precision of sums of thirty products of order one.
+  CHECK(here.count == direct.count);
+  CHECK((here.sum - direct.sum).norm() < 1e-4F);
+  CHECK((here.outer_diagonal - direct.outer_diagonal).norm() < 1e-4F);
+  CHECK((here.outer_off_diagonal - direct.outer_off_diagonal).norm() < 1e-4F);
+}
