@@ -81,6 +81,7 @@ Scale Scale::linear(const Range& values, double px_low, double px_high, double t
   const double width = values.high - values.low;
   const double count = std::max(1.0, std::abs(px_high - px_low) / tick_px);
   const double step = round_step(width / count);
+  if (!std::isfinite(step) || !(step > 0.0)) return scale;  // nothing that could be counted up
   const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 9);
   const double first = std::ceil(values.low / step - 1e-6);
   for (double i = first; i * step <= values.high + 1e-6 * step && scale.ticks_.size() < kMaxTicks; i += 1.0) {
@@ -91,6 +92,7 @@ Scale Scale::linear(const Range& values, double px_low, double px_high, double t
 
 Scale Scale::logarithmic(const Range& values, double px_low, double px_high) {
   Scale scale(values, px_low, px_high, true);
+  if (!(values.low > 0.0) || !std::isfinite(values.high)) return scale;
   const bool is_wide = std::log10(values.high / values.low) > kDecadesWithAllTicks;
   for (int exponent = static_cast<int>(std::floor(std::log10(values.low))); exponent < 12; ++exponent) {
     for (const double factor : {1.0, 2.0, 5.0}) {
