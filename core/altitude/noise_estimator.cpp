@@ -37,7 +37,8 @@ void NoiseEstimator::add(double value) {
   if (filled_ <= 2 * lag_) return;
   const double difference = value - 2.0 * middle + oldest;
   const double floor_variance = options_.floor_sigma * options_.floor_sigma;
-  const double sample = std::min(difference * difference / 6.0, kClip * std::max(variance_, floor_variance));
+  const double sample =
+      std::min(difference * difference / 6.0, options_.clip * std::max(variance_, floor_variance));
   weight_ = std::min(weight_ + 1.0, options_.memory_samples);
   variance_ += (sample - variance_) / weight_;
 }

@@ -19,6 +19,10 @@ class NoiseEstimator {
     double floor_sigma = 0.0;     ///< the result is never below this …
     double ceiling_sigma = 1e30;  ///< … nor above this
     double memory_samples = 200;  ///< time constant, in samples
+    /// Squared differences are clipped at this many times their expectation. 9 costs 0.5 % of a Gaussian's
+    /// variance and keeps outliers out, but learns a hundredfold noise only within memory_samples; infinity
+    /// learns it at once.
+    double clip = 9.0;
   };
 
   explicit NoiseEstimator(const Options& options);

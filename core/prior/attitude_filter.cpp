@@ -21,6 +21,7 @@ constexpr double kAttitudeGate = 5.0;
 constexpr double kGatedLimitS = 1.0;
 // Vibration and sensor noise are white only down to the time over which they were measured.
 constexpr double kNoiseCorrelationS = 0.005;
+constexpr double kVerticalLoosening = 100.0;
 
 double squared(double x) { return x * x; }
 
@@ -120,7 +121,8 @@ void AttitudeFilter::update_bounded_velocity(double dt_s) {
   for (int axis = 0; axis < 3; ++axis) {
     Row H = Row::Zero();
     H(kVelocity + axis) = 1.0;
-    update(H, -velocity_[axis], variance, 1e3);
+    // What hangs is lowered steadily for minutes: its vertical velocity is not zero on average.
+    update(H, -velocity_[axis], axis == 2 ? kVerticalLoosening * variance : variance, 1e3);
   }
 }
 

@@ -138,11 +138,7 @@ PressureUse HeightFilter::update_pressure(const AltimeterReading& reading, doubl
   const PressureUse use = gate(reading, innovation);
   if (use == PressureUse::kGated) return use;
   filter_.update_pressure(height_m, delay_s, reading.noise_variance_m2);
-  if (use == PressureUse::kStep) {
-    restart_forks();
-    return use;
-  }
-  for (Fork& fork : forks_) fork.filter.update_pressure(height_m, delay_s, reading.noise_variance_m2);
+  if (use == PressureUse::kStep) restart_forks();
   return use;
 }
 

@@ -51,8 +51,12 @@ class ImuNoise {
 
  private:
   static constexpr double kLagS = 0.01;
-  static constexpr NoiseEstimator::Options kGyro{0.005, 0.0, 10.0, 400.0};
-  static constexpr NoiseEstimator::Options kAccel{0.1, 0.0, 50.0, 400.0};
+  // Vibration starts within a step of the robot: learnt in some tenths of a second, and shocks are part of
+  // it.
+  static constexpr double kMemorySamples = 150.0;
+  static constexpr double kNoClip = 1e30;
+  static constexpr NoiseEstimator::Options kGyro{0.005, 0.0, 10.0, kMemorySamples, kNoClip};
+  static constexpr NoiseEstimator::Options kAccel{0.1, 0.0, 50.0, kMemorySamples, kNoClip};
 
   std::array<NoiseEstimator, 3> gyro_{NoiseEstimator(kGyro), NoiseEstimator(kGyro), NoiseEstimator(kGyro)};
   std::array<NoiseEstimator, 3> accel_{NoiseEstimator(kAccel), NoiseEstimator(kAccel),

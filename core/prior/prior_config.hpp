@@ -89,8 +89,9 @@ struct HeightConfig {
   double accel_noise_m_s_sqrt_s = 0.003;
 
   /// Angle between the direction in which the wheels roll and base_link's x-y plane as the attitude sees it,
-  /// 1 sigma [rad], 0 … 0.2, and its walk [rad/sqrt(s)]. 0.3 deg of mounting and accelerometer bias.
-  double slope_sigma_rad = 0.006;
+  /// 1 sigma [rad], 0 … 0.2, and its walk [rad/sqrt(s)]. 0.23 deg: 0.1 of mounting and 2 to 4 mg of
+  /// accelerometer bias.
+  double slope_sigma_rad = 0.004;
   double slope_walk_rad_sqrt_s = 2e-5;
   /// Error of the slope that comes and goes (attitude, suspension, uneven floor) [rad], 0 … 0.2, correlation
   /// [s].
@@ -103,11 +104,11 @@ struct HeightConfig {
   /// Vertical speed of a standing robot's ground, 1 sigma [m/s/sqrt(Hz)], 1e-6 … 1.
   double rest_speed_m_s_sqrt_s = 3e-4;
 
-  /// Local slow pressure noise (turbulence, ventilation), as a height: rms [m], 0 … 10, and correlation time
-  /// [s], 0.1 … 600. 0.25 Pa over 15 s: what two good barometers still differ by after their white noise is
-  /// averaged.
-  double turbulence_sigma_m = 0.02;
-  double turbulence_time_s = 15.0;
+  /// Local slow pressure noise (turbulence, ventilation, doors), as a height: rms [m], 0 … 10, and
+  /// correlation time [s], 0.1 … 600. 0.5 Pa over 10 s: twice what two good barometers in still air differ by
+  /// once their white noise is averaged, because buildings are not still.
+  double turbulence_sigma_m = 0.04;
+  double turbulence_time_s = 10.0;
 
   /// Random walk of the difference between the two barometers [m/sqrt(s)], 0 … 1: warm-up, ageing, 1 cm in 10
   /// min.

@@ -30,8 +30,6 @@ constexpr double kStartSigmaRad = 0.02;
 // Vertical speed at the start of a platform on wheels, and of one that hangs [m/s].
 constexpr double kStartClimbOnWheels = 0.05;
 constexpr double kStartClimbHanging = 0.3;
-// A hanging platform that seems to stand may turn slowly and evenly [rad/s].
-constexpr double kUnseenSpin = 0.01;
 // The attitude of the IMU's own filter as a rate is believed within this of the gyro [rad/s].
 constexpr double kDeviceRateTolerance = 0.1;
 constexpr double kDeviceRateSigma = 0.01;
@@ -176,9 +174,11 @@ void PriorEstimator::State::use_standstill(const Eigen::Vector3d& gyro, const Ei
   const double bias_sigma = std::sqrt(std::max(
       {attitude.gyro_bias_variance(0), attitude.gyro_bias_variance(1), attitude.gyro_bias_variance(2)}));
   standstill.add_imu(gyro, attitude.gyro_bias_rad_s(), bias_sigma, force, dt_s);
-  if (!standstill.take_window()) return;
-  const double variance = standstill.gyro_variance_of_mean() + (on_wheels ? 0.0 : squared(kUnseenSpin));
-  attitude.update_zero_rate(standstill.mean_gyro(), standstill.window_s(), variance);
+  // A hanging platform that seems to stand may turn slowly and evenly: without wheels the gyro is not its own
+  // witness.
+  if (!standstill.take_window() || !on_wheels) return;
+  attitude.update_zero_rate(standstill.mean_gyro(), standstill.window_s(),
+                            standstill.gyro_variance_of_mean());
 }
 
 void PriorEstimator::State::use_wheels(std::int64_t stamp_ns, double dt_s, bool on_wheels) {
@@ -231,7 +231,8 @@ void PriorEstimator::State::move(const Eigen::Vector3d& gyro, const Eigen::Vecto
   } else {
     noise.add_sample(gyro, force, dt_s);
     attitude.predict(gyro, force, dt_s, noise.gyro_variance(), noise.accel_variance());
-    const double up_accel = above_base(attitude.force_m_s2()) - kGravity;
+    // Without the attitude filter's accelerometer bias, which still moves: the height filter has its own.
+    const double up_accel = above_base(force) - kGravity;
     noise.add_up_accel(up_accel);
     height.predict(up_accel, dt_s, noise.up_accel_density(dt_s));
     use_standstill(gyro, force, dt_s, on_wheels);
@@ -276,7 +277,7 @@ void PriorEstimator::State::fill(const ImuSample& sample, Prior& out) const {
     out.velocity_variance_m2_s2 = squared(config.attitude.wheel_sigma_m_s) +
                                   squared(config.attitude.wheel_sigma_share) * out.v_base_m_s.squaredNorm();
   }
-  out.standing_still = attitude.started() && standstill.standing() && !height.ground_moves();
+  out.standing_still = out.velocity_valid && standstill.standing() && !height.ground_moves();
 }
 
 PriorEstimator::PriorEstimator(const PriorConfig& config) : state_(std::make_unique<State>(config)) {}

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Does the robot stand still? Gyro, accelerometer and wheels must all say so.
+// Does the robot stand still? Gyro, accelerometer and wheels must all say so. Without wheels nobody can tell:
+// a sphere on a rope is lowered and turns as evenly as if it lay on the ground.
 #pragma once
 
 #include <Eigen/Core>
