@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace isobar::report {
 
@@ -13,6 +14,7 @@ constexpr double kRight = 14.0;
 constexpr double kBottom = 50.0;
 constexpr double kLegendGap = 8.0;
 constexpr double kBandLabelHeight = 22.0;
+constexpr double kInvisiblePx = 0.15;
 constexpr const char* kBandColour = "#eef2f7";
 
 void draw_bands(Picture& picture, const LineChart& chart, const Axes& axes) {
@@ -36,10 +38,18 @@ void draw_series(Picture& picture, const Series& series, const Axes& axes) {
       run.push_back(point);
       continue;
     }
-    picture.polyline(thinned(run), series.stroke);
+    picture.polyline(simplified(thinned(run), kInvisiblePx), series.stroke);
     run.clear();
   }
-  picture.polyline(thinned(run), series.stroke);
+  picture.polyline(simplified(thinned(run), kInvisiblePx), series.stroke);
+}
+
+double distance_to_segment(const Point& p, const Point& a, const Point& b) {
+  const double length = std::hypot(b.x - a.x, b.y - a.y);
+  if (length == 0.0) return std::hypot(p.x - a.x, p.y - a.y);
+  const double along = ((p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y)) / (length * length);
+  const double t = std::clamp(along, 0.0, 1.0);
+  return std::hypot(p.x - a.x - t * (b.x - a.x), p.y - a.y - t * (b.y - a.y));
 }
 
 Range data_range(const LineChart& chart, const std::vector<double> Series::*values) {
@@ -66,6 +76,34 @@ std::vector<Point> thinned(const std::vector<Point>& points) {
     chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
     for (const std::size_t i : chosen) kept.push_back(points[i]);
     begin = end;
+  }
+  return kept;
+}
+
+std::vector<Point> simplified(const std::vector<Point>& points, double tolerance_px) {
+  if (points.size() < 3) return points;
+  std::vector<bool> stays(points.size(), false);
+  stays.front() = stays.back() = true;
+  std::vector<std::pair<std::size_t, std::size_t>> spans{{0, points.size() - 1}};
+  while (!spans.empty()) {
+    const auto [first, last] = spans.back();
+    spans.pop_back();
+    std::size_t furthest = first;
+    double largest = tolerance_px;
+    for (std::size_t i = first + 1; i < last; ++i) {
+      const double distance = distance_to_segment(points[i], points[first], points[last]);
+      if (distance <= largest) continue;
+      largest = distance;
+      furthest = i;
+    }
+    if (furthest == first) continue;
+    stays[furthest] = true;
+    spans.emplace_back(first, furthest);
+    spans.emplace_back(furthest, last);
+  }
+  std::vector<Point> kept;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (stays[i]) kept.push_back(points[i]);
   }
   return kept;
 }

@@ -45,4 +45,8 @@ Picture draw(const LineChart& chart);
 /// At most four points for each pixel column (first, lowest, highest, last): looks the same, and is small.
 std::vector<Point> thinned(const std::vector<Point>& points);
 
+/// Without the points that lie within `tolerance_px` of the line through those that stay (Douglas and Peucker
+/// 1973).
+std::vector<Point> simplified(const std::vector<Point>& points, double tolerance_px);
+
 }  // namespace isobar::report

@@ -99,7 +99,7 @@ Picture draw(const MapView& view) {
       const bool moved = line.empty() || std::hypot(p.x - line.back().x, p.y - line.back().y) > 0.7;
       if (moved) line.push_back(p);
     }
-    picture.polyline(line, path.stroke);
+    picture.polyline(simplified(line, 0.15), path.stroke);
   }
   picture.end_clip();
   return picture;

@@ -33,7 +33,8 @@ Series method_series(const EvaluatedRun& run, const EvaluatedMethod& method,
 
 Series reference_series(const EvaluatedRun& run) {
   const auto& poses = run.reference.trajectory.poses;
-  Series series{"Reference", kReferenceStroke, evaluation::travelled_distance_m(poses), {}};
+  // Wide, so that it can be seen below an estimate that lies on it.
+  Series series{"Reference", {kReferenceStroke.colour, 4.6}, evaluation::travelled_distance_m(poses), {}};
   for (const evaluation::StampedPose& pose : poses) series.y.push_back(pose.position_m.z());
   return series;
 }

@@ -71,6 +71,28 @@ TEST_CASE("thinning keeps the lowest and the highest of every pixel column, and 
   CHECK(thinned({}).empty());
 }
 
+TEST_CASE(
+    "simplifying leaves a corner and takes out what lies on a line, never further off than the tolerance") {
+  std::vector<Point> corner;
+  for (int i = 0; i <= 100; ++i) corner.push_back({0.1 * i, 0.0});
+  for (int i = 1; i <= 100; ++i) corner.push_back({10.0, 0.1 * i});
+  REQUIRE(simplified(corner, 0.05).size() == 3);
+  CHECK(simplified(corner, 0.05)[1].x == doctest::Approx(10.0));
+  std::vector<Point> wave;
+  for (int i = 0; i <= 1000; ++i) wave.push_back({0.5 * i, 40.0 * std::sin(0.02 * i)});
+  const std::vector<Point> kept = simplified(wave, 0.2);
+  CHECK(kept.size() < 150);
+  std::size_t after = 1;
+  for (const Point& p : wave) {
+    while (kept[after].x < p.x) ++after;
+    const Point& a = kept[after - 1];
+    const Point& b = kept[after];
+    const double y = a.y + (b.y - a.y) * (p.x - a.x) / (b.x - a.x);
+    CHECK(std::abs(p.y - y) <
+          0.2 * 2.0);  // slopes up to 1.6: the vertical distance is less than twice the true one
+  }
+}
+
 TEST_CASE("charts stay well-formed whatever the numbers are") {
   const double inf = std::numeric_limits<double>::infinity();
   const std::vector<std::vector<double>> awkward{{},
