@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "core/registration/point_to_plane.hpp"
+
+namespace {
+
+using namespace isobar;  // NOLINT(google-build-using-namespace)
+
+Eigen::Vector3f random_vector(std::mt19937& random, float scale) {
+  std::normal_distribution<float> normal(0.0F, scale);
+  return {normal(random), normal(random), normal(random)};
+}
+
+// Equation (8)'s error of one pair after a twist, in double precision.
+double error_after(const Pair& pair, const Vector6d& twist) {
+  const Eigen::Vector3d omega = twist.head<3>();
+  const double angle = omega.norm();
+  Eigen::Vector3d p = pair.p_robot.cast<double>();
+  if (angle > 0.0) {
+    p = Eigen::AngleAxisd(angle, omega / angle) * p;
+  }
+  const Eigen::Vector3d moved = p + twist.tail<3>() - pair.p_robot.cast<double>();
+  return pair.residual_m + pair.normal.cast<double>().dot(moved);
+}
+
+}  // namespace
+
+TEST_CASE("the analytic Jacobian is the numeric one") {
+  std::mt19937 random(11);
+  for (int i = 0; i < 50; ++i) {
+    const Pair pair{random_vector(random, 5.0F), random_vector(random, 1.0F).normalized(), 0.1F};
+    const Eigen::Matrix<float, 6, 1> jacobian = point_to_plane_jacobian(pair);
+    for (int k = 0; k < 6; ++k) {
+      constexpr double kStep = 1e-5;
+      Vector6d twist = Vector6d::Zero();
+      twist(k) = kStep;
+      const double up = error_after(pair, twist);
+      twist(k) = -kStep;
+      const double numeric = (up - error_after(pair, twist)) / (2.0 * kStep);
+      // Central differences err by the square of the step; single precision of p x n by 1e-6.
+      CHECK(std::abs(jacobian(k) - numeric) < 1e-4);
+    }
+  }
+}
+
+TEST_CASE("rows of yaw, x and y are a_k of the paper's equation (10)") {
+  std::mt19937 random(12);
+  const Pair pair{random_vector(random, 5.0F), random_vector(random, 1.0F).normalized(), 0.0F};
+  const Eigen::Matrix<float, 6, 1> jacobian = point_to_plane_jacobian(pair);
+  const Eigen::Vector3f turned = Eigen::Vector3f::UnitZ().cross(pair.p_robot);
+  CHECK(jacobian(2) == doctest::Approx(pair.normal.dot(turned)).epsilon(1e-4));
+  CHECK(jacobian(3) == pair.normal.x());
+  CHECK(jacobian(4) == pair.normal.y());
+}
+
+TEST_CASE("the scale is the standard deviation of the inliers, outliers or not") {
+  std::mt19937 random(13);
+  std::normal_distribution<float> noise(0.0F, 0.05F);
+  std::vector<Pair> pairs;
+  for (int i = 0; i < 4000; ++i) {
+    const float residual = i % 10 == 0 ? 0.45F : noise(random);
+    pairs.push_back({random_vector(random, 3.0F), Eigen::Vector3f::UnitX(), residual});
+  }
+  // A tenth of outliers moves the median of absolute values from 0.674 to about 0.77 deviations.
+  CHECK(residual_scale_m(pairs, PairNoise{}, 0.5F) == doctest::Approx(0.05 * 0.77 / 0.674).epsilon(0.06));
+}
+
+TEST_CASE(
+    "outliers do not pull: the sum of a wall with a tenth of far outliers has its minimum at the wall") {
+  std::vector<Pair> pairs;
+  for (int i = 0; i < 100; ++i) {
+    pairs.push_back({Eigen::Vector3f(1.0F, 0.1F * static_cast<float>(i), 0.0F), Eigen::Vector3f::UnitX(),
+                     i % 10 == 0 ? 0.5F : 0.02F});
+  }
+  const NormalEquations sum = accumulate(pairs, PairNoise{}, 0.02F);
+  const double step = -sum.gradient(3) / sum.hessian(3, 3);
+  // Least squares would answer -0.068; the outliers' weights are (1 + (0.5 / 0.06)^2)^-2 = 2e-4.
+  CHECK(step == doctest::Approx(-0.02).epsilon(0.05));
+}
+
+TEST_CASE("a pair that feels an error of the fixed height counts less, one that does not counts fully") {
+  PairNoise noise;
+  noise.fixed_variance(5) = 0.06F * 0.06F;
+  noise.noise_m = 0.02F;
+  const std::vector<Pair> wall{{Eigen::Vector3f::UnitX(), Eigen::Vector3f::UnitX(), 0.0F}};
+  const std::vector<Pair> ramp{{Eigen::Vector3f::UnitX(), Eigen::Vector3f(0.6F, 0.0F, 0.8F), 0.0F}};
+  CHECK(accumulate(wall, noise, 0.02F).weight_sum == doctest::Approx(1.0));
+  // Variance 0.02^2 + (0.8 * 0.06)^2 in units of 0.02^2.
+  CHECK(accumulate(ramp, noise, 0.02F).weight_sum == doctest::Approx(1.0 / (1.0 + 0.64 * 9.0)));
+}

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include "core/registration/sampling.hpp"
+
+namespace {
+
+using isobar::RegisteredScan;
+using isobar::Sampler;
+using isobar::ScanPoint;
+
+// Dense close by and sparse far away, as a lidar sees a plane: 20000 points.
+void fill(RegisteredScan& scan) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
+  scan.point_count = 20'000;
+  for (std::uint32_t i = 0; i < scan.point_count; ++i) {
+    const float range = 1.0F / (0.02F + 0.9F * uniform(random));
+    const float azimuth = 6.2831853F * uniform(random);
+    scan.points[i] = ScanPoint{range * std::cos(azimuth), range * std::sin(azimuth), 0.0F};
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the map's points keep their distance: one a voxel, the first of each, in order") {
+  auto scan = std::make_unique<RegisteredScan>();
+  fill(*scan);
+  const float first_x = scan->points[0].x_m;
+  Sampler sampler(0.2, 1000);
+  sampler.thin(*scan);
+  CHECK(scan->point_count < 20'000);
+  CHECK(scan->points[0].x_m == first_x);
+  // No two points share a voxel of the grid that starts at -500 m.
+  std::vector<std::array<int, 2>> voxels;
+  for (std::uint32_t i = 0; i < scan->point_count; ++i) {
+    voxels.push_back({static_cast<int>((scan->points[i].x_m + 500.0F) * 5.0F),
+                      static_cast<int>((scan->points[i].y_m + 500.0F) * 5.0F)});
+  }
+  std::sort(voxels.begin(), voxels.end());
+  CHECK(std::adjacent_find(voxels.begin(), voxels.end()) == voxels.end());
+}
+
+TEST_CASE("the sample's size settles near what is asked and never exceeds it, far points included") {
+  Sampler sampler(0.1, 500);
+  auto scan = std::make_unique<RegisteredScan>();
+  for (int i = 0; i < 10; ++i) {
+    fill(*scan);
+    sampler.thin(*scan);
+    CHECK(sampler.sample().size() <= 500);
+  }
+  CHECK(sampler.sample().size() > 350);
+  std::size_t far = 0;
+  for (const Eigen::Vector3f& p : sampler.sample()) {
+    far += p.norm() > 10.0F ? 1 : 0;
+  }
+  // A tenth of the returns lie beyond 10 m, but most of the area does.
+  CHECK(far > sampler.sample().size() / 4);
+}
+
+TEST_CASE("equal scans give equal samples") {
+  auto a = std::make_unique<RegisteredScan>();
+  fill(*a);
+  auto b = std::make_unique<RegisteredScan>(*a);
+  Sampler first(0.1, 300);
+  Sampler second(0.1, 300);
+  first.thin(*a);
+  second.thin(*b);
+  REQUIRE(first.sample().size() == second.sample().size());
+  for (std::size_t i = 0; i < first.sample().size(); ++i) {
+    CHECK(first.sample()[i] == second.sample()[i]);
+  }
+}
+
+TEST_CASE("an empty scan and one that fills the memory are both thinned") {
+  auto scan = std::make_unique<RegisteredScan>();
+  scan->point_count = 0;
+  Sampler sampler(0.1, 300);
+  sampler.thin(*scan);
+  CHECK(sampler.sample().empty());
+  scan->point_count = RegisteredScan::kMaxPoints;
+  for (std::uint32_t i = 0; i < scan->point_count; ++i) {
+    scan->points[i] = ScanPoint{static_cast<float>(i % 300), static_cast<float>(i / 300), 0.0F};
+  }
+  sampler.thin(*scan);
+  CHECK(scan->point_count == RegisteredScan::kMaxPoints);
+  CHECK(sampler.sample().size() == 300);
+}
