@@ -18,6 +18,9 @@ namespace fs = std::filesystem;
 /// Enough for every picture of the report; a larger map is thinned evenly.
 constexpr std::size_t kMaxMapPoints = 1'500'000;
 
+/// A pose or two before the reference starts are no news.
+constexpr double kNotedShareOutside = 0.005;
+
 std::string repairs_note(const std::string& name, const evaluation::StampRepairs& repairs) {
   return name + ": " + std::to_string(repairs.backwards) + " poses were out of order and sorted, " +
          std::to_string(repairs.duplicates) + " with a stamp seen before were dropped.";
@@ -72,7 +75,8 @@ void add_notes(EvaluatedRun& run) {
     const evaluation::MethodFigures& figures = method.evaluation.figures;
     if (needed_repair(figures.repairs))
       run.notes.push_back(repairs_note(display_name(method.name), figures.repairs));
-    if (figures.paired < figures.poses) {
+    const std::size_t outside = figures.poses - figures.paired;
+    if (static_cast<double>(outside) > kNotedShareOutside * static_cast<double>(figures.poses)) {
       run.notes.push_back(display_name(method.name) + ": " + std::to_string(figures.poses - figures.paired) +
                           " of " + std::to_string(figures.poses) +
                           " poses lie outside of the reference's time and are left out.");

@@ -23,7 +23,7 @@ void draw_bands(Picture& picture, const LineChart& chart, const Axes& axes) {
     const double to = axes.x.clamped(band.to);
     if (to - from < 0.5) continue;
     if (band.shaded) picture.rect({from, axes.frame.y, to - from, axes.frame.height}, kBandColour);
-    if (to - from > text_width(band.label, 12.0) + 6.0) {
+    if (to - from > text_width(band.label, 12.0) - 4.0) {
       picture.text({0.5 * (from + to), axes.frame.y - 5.0}, band.label, {12.0, "#4b5563", "middle"});
     }
   }

@@ -34,7 +34,7 @@ Series method_series(const EvaluatedRun& run, const EvaluatedMethod& method,
 Series reference_series(const EvaluatedRun& run) {
   const auto& poses = run.reference.trajectory.poses;
   // Wide, so that it can be seen below an estimate that lies on it.
-  Series series{"Reference", {kReferenceStroke.colour, 4.6}, evaluation::travelled_distance_m(poses), {}};
+  Series series{"Reference", {"#9ca3af", 6.0}, evaluation::travelled_distance_m(poses), {}};
   for (const evaluation::StampedPose& pose : poses) series.y.push_back(pose.position_m.z());
   return series;
 }
