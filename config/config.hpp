@@ -46,14 +46,14 @@ struct InputSettings {
 
 /// [output]
 struct OutputSettings {
-  std::string directory;             ///< folder for trajectory, map and status of a live run; empty: none
-  double cloud_interval_s = 2.0;     ///< between map clouds for viewers, 0.2 … 3600
+  std::string directory;          ///< folder for trajectory, map and status of a live run; empty: none
+  double cloud_interval_s = 2.0;  ///< between map clouds for viewers, 0.2 … 3600
 };
 
 /// [realtime]
 struct RealtimeSettings {
-  bool enabled = false;             ///< SCHED_FIFO, and all memory locked
-  int inertial_priority = 55;       ///< 1 … 99
+  bool enabled = false;        ///< SCHED_FIFO, and all memory locked
+  int inertial_priority = 55;  ///< 1 … 99
   int prior_priority = 55;
   int lidar_priority = 45;
   int registration_priority = 40;

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "config/setting.hpp"
+
+#include <array>
+
+namespace isobar {
+
+std::string Setting::section() const {
+  const auto dot = key.rfind('.');
+  return dot == std::string::npos ? std::string() : key.substr(0, dot);
+}
+
+std::string Setting::name() const {
+  const auto dot = key.rfind('.');
+  return dot == std::string::npos ? key : key.substr(dot + 1);
+}
+
+const std::vector<std::string>& method_choices() {
+  static const std::vector<std::string> names{"6dof",          "4dof",          "3dof",
+                                              "6dof-altitude", "4dof-altitude", "odometry"};
+  return names;
+}
+
+const std::vector<std::string>& air_temperature_choices() {
+  static const std::vector<std::string> names{"auto", "fixed"};
+  return names;
+}
+
+std::vector<Setting> settings_of(Config& config) {
+  std::vector<Setting> settings;
+  settings.push_back(
+      {.key = "method",
+       .target = &config.method,
+       .doc = "What the ICP estimates. 3dof: x, y and yaw, height from air pressure (the paper's "
+              "method). 4dof: z too. 6dof: all. ...-altitude: height from pressure only predicts z. "
+              "odometry: no ICP.",
+       .choices = method_choices()});
+  add_sensor_settings(config, settings);
+  add_service_settings(config, settings);
+  add_prior_settings(config.prior, settings);
+  add_registration_settings(config.registration, settings);
+  add_map_settings(config.map, settings);
+  return settings;
+}
+
+std::string_view section_doc(std::string_view section) {
+  struct Doc {
+    std::string_view section;
+    std::string_view doc;
+  };
+  static constexpr std::array<Doc, 21> kDocs{{
+      {"lidar", "The lidar, as a live run reads it from the network. A replay takes it from the recording."},
+      {"imu", "Where the IMU sits on the robot. A replay takes it from the recording."},
+      {"barometer", "Where the barometer sits on the robot. A replay takes it from the recording."},
+      {"input", "UDP port on which a live run takes samples of IMU, barometers and wheels."},
+      {"output", "What a live run writes and shows."},
+      {"realtime", "Scheduling of the threads of a live run."},
+      {"dds", "What isobar-dds says, to whom, and under which names."},
+      {"dds.propagator", "How corrections of the registration enter odom."},
+      {"altimeter", "How air pressure is checked and turned into height."},
+      {"altimeter.air",
+       "Air temperature between base station and robot: 10 K wrong is 3.4 % of every height."},
+      {"attitude", "Attitude and velocity from gyro, accelerometer and wheels."},
+      {"standstill", "When nothing moves."},
+      {"dead_reckoning", "Dead reckoning with wheels."},
+      {"height", "Filter of the height from pressure, acceleration and wheels."},
+      {"limits", "What arrives from the sensors is believed within these limits only."},
+      {"registration", "How a scan is prepared, matched to the map and solved."},
+      {"map", "Size and density of the local map, and when it changes."},
+  }};
+  for (const Doc& entry : kDocs) {
+    if (entry.section == section) {
+      return entry.doc;
+    }
+  }
+  return {};
+}
+
+}  // namespace isobar

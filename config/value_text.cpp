@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "config/value_text.hpp"
+
+#include <arpa/inet.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+#include "core/errors.hpp"
+
+namespace isobar {
+namespace {
+
+template <typename Number>
+std::string shortest(Number value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+/// A TOML float, which needs a dot or an exponent.
+std::string float_text(double value) {
+  std::string text = shortest(value);
+  return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
+}
+
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      result += '\\';
+      result += c;
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
+      std::array<char, 8> escape{};
+      std::snprintf(escape.data(), escape.size(), "\\u%04X", static_cast<unsigned>(c));
+      result += escape.data();
+    } else {
+      result += c;
+    }
+  }
+  return result + "\"";
+}
+
+struct ValueText {
+  const Setting& setting;
+
+  std::string operator()(const double* value) const { return float_text(*value); }
+  std::string operator()(const bool* value) const { return *value ? "true" : "false"; }
+  std::string operator()(const std::string* value) const { return quoted(*value); }
+  std::string operator()(const Eigen::Vector3d* v) const {
+    return "[" + float_text(v->x()) + ", " + float_text(v->y()) + ", " + float_text(v->z()) + "]";
+  }
+  std::string operator()(const std::vector<int>* values) const {
+    std::string text;
+    for (const int value : *values) {
+      text += (text.empty() ? "" : ", ") + shortest(value);
+    }
+    return "[" + text + "]";
+  }
+  std::string operator()(const Method* value) const {
+    return quoted(setting.choices.at(static_cast<std::size_t>(*value)));
+  }
+  std::string operator()(const AirTemperatureMode* value) const {
+    return quoted(setting.choices.at(static_cast<std::size_t>(*value)));
+  }
+  template <typename Integer>
+  std::string operator()(const Integer* value) const {
+    return shortest(*value);
+  }
+};
+
+bool consists_of(const std::string& text, const char* also) {
+  return std::all_of(text.begin(), text.end(), [also](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view(also).find(static_cast<char>(c)) != std::string_view::npos;
+  });
+}
+
+}  // namespace
+
+std::string range_text(const Setting& setting) {
+  if (!setting.choices.empty()) {
+    return {};
+  }
+  const bool has_low = std::isfinite(setting.lowest);
+  const bool has_high = std::isfinite(setting.highest);
+  const std::string unit = setting.unit.empty() ? "" : " " + setting.unit;
+  return has_low && has_high
+             ? " within " + shortest(setting.lowest) + " … " + shortest(setting.highest) + unit
+             : std::string();
+}
+
+std::string value_text(const Setting& setting) { return std::visit(ValueText{setting}, setting.target); }
+
+const char* broken_text_rule(TextRule rule, const std::string& text) {
+  switch (rule) {
+    case TextRule::kAny:
+      return nullptr;
+    case TextRule::kIpv4: {
+      in_addr address{};
+      return inet_pton(AF_INET, text.c_str(), &address) == 1 ? nullptr
+                                                             : "must be an IPv4 address such as \"0.0.0.0\"";
+    }
+    case TextRule::kNameOrEmpty:
+      if (text.empty()) {
+        return nullptr;
+      }
+      [[fallthrough]];
+    case TextRule::kName: {
+      const bool fits = !text.empty() && text.size() <= 100 && consists_of(text, "_/") &&
+                        text.front() != '/' && text.back() != '/';
+      return fits ? nullptr : "must be 1 to 100 letters, digits, '_' or '/', with no '/' at the ends";
+    }
+    case TextRule::kInterface:
+      return text.size() <= 64 && consists_of(text, "_.-:@")
+                 ? nullptr
+                 : "must be the name or the address of a network interface";
+  }
+  return nullptr;
+}
+
+void check_together(const Config& config, const std::string& file) {
+  const auto require = [&file](bool holds, const char* key, const char* rule) {
+    if (!holds) {
+      throw ConfigError(file + ": " + key + ": " + rule);
+    }
+  };
+  const AltimeterConfig& altimeter = config.prior.altimeter;
+  require(config.lidar.min_range_m < config.lidar.max_range_m, "lidar.min_range_m",
+          "must be below lidar.max_range_m");
+  require(config.registration.min_range_m < config.registration.max_range_m, "registration.min_range_m",
+          "must be below registration.max_range_m");
+  require(altimeter.min_pressure_pa < altimeter.max_pressure_pa, "altimeter.min_pressure_pa",
+          "must be below altimeter.max_pressure_pa");
+  require(altimeter.noise_floor_pa <= altimeter.initial_noise_pa &&
+              altimeter.initial_noise_pa <= altimeter.noise_ceiling_pa,
+          "altimeter.initial_noise_pa",
+          "must lie between altimeter.noise_floor_pa and altimeter.noise_ceiling_pa");
+  require(config.registration.last_distance_m <= config.registration.first_distance_m,
+          "registration.last_distance_m", "must not be above registration.first_distance_m");
+  require(config.lidar.port != config.input.port, "input.port", "must differ from lidar.port");
+}
+
+}  // namespace isobar

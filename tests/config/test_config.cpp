@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "config/config_io.hpp"
+#include "config/setting.hpp"
+#include "config/value_text.hpp"
+#include "core/errors.hpp"
+
+namespace isobar {
+namespace {
+
+void fails(const std::string& text, const std::string& words) {
+  CAPTURE(text);
+  CHECK_THROWS_WITH_AS(parse_config(text, "c.toml"), doctest::Contains(words.c_str()), ConfigError);
+}
+
+/// Moves a value to another one inside its rules.
+struct Change {
+  const Setting& setting;
+  void operator()(double* v) const {
+    *v =
+        *v * 0.75 + 0.25 * (*v > 0.5 * (setting.lowest + setting.highest) ? setting.lowest : setting.highest);
+  }
+  void operator()(bool* v) const { *v = !*v; }
+  void operator()(std::string* v) const {
+    *v = !setting.choices.empty()               ? setting.choices.back()
+         : setting.text_rule == TextRule::kIpv4 ? "127.0.0.1"
+                                                : "other";
+  }
+  void operator()(Eigen::Vector3d* v) const { *v += Eigen::Vector3d(1.0 / 3.0, -2.5, 1e-7); }
+  void operator()(std::vector<int>* v) const { *v = {1, 0}; }
+  void operator()(Method* v) const { *v = Method::kOdometry; }
+  void operator()(AirTemperatureMode* v) const { *v = AirTemperatureMode::kFixed; }
+  template <typename Integer>
+  void operator()(Integer* v) const {
+    *v = !setting.choices.empty() ? static_cast<Integer>(24)
+                                  : static_cast<Integer>(*v > setting.lowest ? *v - 1 : *v + 1);
+  }
+};
+
+}  // namespace
+
+TEST_CASE(
+    "config/isobar.toml is what `isobar config show` prints, so it holds every key and is never stale") {
+  std::ifstream in(std::filesystem::path(ISOBAR_SOURCE_DIR) / "config/isobar.toml", std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  // If this fails: build/release/tools/isobar config show > config/isobar.toml
+  CHECK(text.str() == show_config(Config{}));
+}
+
+TEST_CASE("What is shown loads as the same settings, defaults and changed values alike") {
+  const std::string defaults = show_config(Config{});
+  CHECK(show_config(parse_config(defaults, "c.toml")) == defaults);
+  for (const Setting& setting : [] {
+         static Config unchanged;
+         return settings_of(unchanged);
+       }()) {
+    Config config;
+    auto settings = settings_of(config);
+    const auto same = std::find_if(settings.begin(), settings.end(),
+                                   [&](const Setting& s) { return s.key == setting.key; });
+    std::visit(Change{*same}, same->target);
+    const std::string line = value_text(*same);
+    CAPTURE(setting.key);
+    CHECK(line != value_text(setting));
+    std::string toml = setting.section().empty() ? "" : "[" + setting.section() + "]\n";
+    toml += setting.name() + " = " + line + "\n";
+    Config loaded;
+    try {
+      loaded = parse_config(toml, "c.toml");
+    } catch (const ConfigError& error) {
+      // Some pairs must move together; then the error says so.
+      CHECK(std::string(error.what()).find("must") != std::string::npos);
+      continue;
+    }
+    CHECK(show_config(loaded) == show_config(config));
+    CHECK(show_config(loaded) != defaults);
+  }
+}
+
+TEST_CASE("Every key stands once, has words, and its default keeps its own rule") {
+  Config config;
+  std::set<std::string> keys;
+  for (const Setting& setting : settings_of(config)) {
+    CAPTURE(setting.key);
+    CHECK(keys.insert(setting.key).second);
+    CHECK(setting.doc.size() > 5);
+    CHECK((setting.section().empty() || !section_doc(setting.section()).empty()));
+    if (const auto* number = std::get_if<double*>(&setting.target); number != nullptr) {
+      CHECK(**number >= setting.lowest);
+      CHECK(**number <= setting.highest);
+      CHECK(std::isfinite(setting.lowest));
+      CHECK(std::isfinite(setting.highest));
+    }
+  }
+  CHECK(keys.size() > 100);
+}
+
+TEST_CASE("Values outside their rules are refused with file, line, column, key, rule and value") {
+  fails("[lidar]\nport = 70000\n",
+        "c.toml:2:8: lidar.port: must be a whole number within 1 … 65535 (got 70000)");
+  fails("[lidar]\nport = 1.5\n", "must be a whole number");
+  fails("[lidar]\nport = \"2368\"\n", "got '2368'");
+  fails("[lidar]\nmodel = \"VLP-32C\"\n", "lidar.model: must be one of VLP-16, HDL-32E");
+  fails("[lidar]\naddress = \"localhost\"\n", "lidar.address: must be an IPv4 address");
+  fails("[lidar]\nxyz_m = [0, 0]\n", "lidar.xyz_m: must be three numbers");
+  fails("[lidar]\nxyz_m = [0, 0, nan]\n", "lidar.xyz_m");
+  fails("[lidar]\nxyz_m = [0, 0, 1e9]\n", "within -100 … 100 m");
+  fails("[registration]\nmax_range_m = inf\n", "registration.max_range_m");
+  fails("[registration]\nmax_iterations = 0\n", "within 1 … 50");
+  fails("[realtime]\nenabled = 1\n", "must be true or false");
+  fails("[realtime]\nmap_cpus = [0, -1]\n", "realtime.map_cpus");
+  fails("[realtime]\nmap_cpus = 3\n", "realtime.map_cpus");
+  fails("method = \"5dof\"\n",
+        "must be one of 6dof, 4dof, 3dof, 6dof-altitude, 4dof-altitude, odometry (got '5dof')");
+  fails("method = 3\n", "must be one of");
+  fails("[dds]\nros_gid_bytes = 20\n", "must be one of 16, 24");
+  fails("[dds]\nmap_frame = \"/map\"\n", "dds.map_frame");
+  fails("lidar = 3\n", "must be a section");
+  fails("[method]\n", "must be one of");
+  fails("[altimeter]\nmin_pressure_pa = 150000.0\n", "must be below altimeter.max_pressure_pa");
+}
+
+TEST_CASE("An unknown key is an error that names the nearest one") {
+  fails("[registration]\nmax_iteration = 3\n",
+        "c.toml:2:17: registration.max_iteration: unknown key; did you mean registration.max_iterations?");
+  fails("[lidarr]\nport = 3\n", "unknown key");
+  fails("cell_m = 0.3\n", "did you mean map.cell_m?");
+  fails("[dds.propagator]\nzzzzzzzzzzzzzzz = 3\n", "unknown key");
+}
+
+TEST_CASE("Files that cannot be a configuration are explained; an empty one means defaults") {
+  fails("[lidar\n", "c.toml:1:");
+  fails("a = 1\na = 2\n", "c.toml:2:");
+  CHECK_THROWS_WITH_AS(load_config("/"), doctest::Contains("is a folder"), ConfigError);
+  CHECK_THROWS_WITH_AS(load_config("/nonexistent/x.toml"), doctest::Contains("no such file"), ConfigError);
+  CHECK(show_config(parse_config("", "c.toml")) == show_config(Config{}));
+}
+
+TEST_CASE("Whole numbers serve as numbers") {
+  CHECK(parse_config("[map]\ncell_m = 1\n", "c.toml").map.cell_m == 1.0);
+}
+
+}  // namespace isobar
