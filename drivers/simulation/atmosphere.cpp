@@ -13,14 +13,14 @@ namespace isobar::simulation {
 
 namespace {
 
-constexpr double kDryAirGas_j_kg_k = 287.05;
-constexpr double kStep_s = SplineGrid::kStep_s;
+constexpr double kDryAirGasJKgK = 287.05;
+constexpr double kStepS = SplineGrid::kStepS;
 
 /// Door pulses: a half wave of suction, then a weaker one back, 0.5 to 2 s in all.
 void add_pulse(std::vector<double>& pressure, double start_s, double duration_s, double peak_pa) {
-  const auto first = static_cast<std::size_t>(std::max(0.0, start_s / kStep_s));
+  const auto first = static_cast<std::size_t>(std::max(0.0, start_s / kStepS));
   for (std::size_t i = first; i < pressure.size(); ++i) {
-    const double phase = (kStep_s * static_cast<double>(i) - start_s) / duration_s;
+    const double phase = (kStepS * static_cast<double>(i) - start_s) / duration_s;
     if (phase >= 1.0) break;
     const double wave = phase < 0.6 ? std::sin(std::numbers::pi * phase / 0.6)
                                     : -0.5 * std::sin(std::numbers::pi * (phase - 0.6) / 0.4);
@@ -38,7 +38,7 @@ void add_zones(std::vector<double>& pressure, const std::vector<int>& zones, dou
   for (std::size_t i = 0; i < pressure.size(); ++i) {
     Random of_zone(seed, "zone", static_cast<std::uint64_t>(zones[std::min(i, zones.size() - 1)]));
     const double wanted = std::clamp(of_zone.normal(sigma_pa), -2.0, 2.0);
-    offset = i == 0 ? wanted : offset + (wanted - offset) * kStep_s / 1.5;
+    offset = i == 0 ? wanted : offset + (wanted - offset) * kStepS / 1.5;
     pressure[i] += offset;
   }
 }
@@ -50,7 +50,7 @@ AirErrors AirErrors::draw(Random random) {
   // Fronts move several hPa in three hours: 1 to 4 hPa here, up or down.
   errors.ramp_pa_s = random.sign() * random.uniform(100.0, 400.0) / 10'800.0;
   errors.walk_pa_rts = random.uniform(0.05, 0.2);
-  errors.turbulence_pa = random.uniform(0.5, 2.0);
+  errors.turbulence_pa = random.uniform(0.3, 1.0);
   // Indoors, a few metres apart; what the paper's static pair of sensors leaves after filtering (0.7 cm).
   errors.local_turbulence_pa = random.uniform(0.08, 0.16);
   errors.zone_sigma_pa = random.uniform(0.3, 1.0);
@@ -69,18 +69,18 @@ Atmosphere::Atmosphere(const Scenario& scenario, const AirErrors& errors, Random
   GaussMarkov at_base(errors.local_turbulence_pa, 4.0, Random(random.next()));
   double walk = 0.0;
   for (std::size_t i = 0; i < samples; ++i) {
-    walk += random.normal(errors.walk_pa_rts * std::sqrt(kStep_s));
-    common[i] = scenario.start_pressure_pa + errors.ramp_pa_s * kStep_s * static_cast<double>(i) + walk +
-                turbulence.step(kStep_s);
-    robot[i] = at_robot.step(kStep_s);
-    base[i] = at_base.step(kStep_s);
-    const double climb_m_s = i == 0 ? 0.0 : (scenario.raw[i].z_m - scenario.raw[i - 1].z_m) / kStep_s;
+    walk += random.normal(errors.walk_pa_rts * std::sqrt(kStepS));
+    common[i] = scenario.start_pressure_pa + errors.ramp_pa_s * kStepS * static_cast<double>(i) + walk +
+                turbulence.step(kStepS);
+    robot[i] = at_robot.step(kStepS);
+    base[i] = at_base.step(kStepS);
+    const double climb_m_s = i == 0 ? 0.0 : (scenario.raw[i].z_m - scenario.raw[i - 1].z_m) / kStepS;
     robot[i] += scenario.air.piston_pa_s_m * (errors.pulse_pa > 0.0 ? climb_m_s : 0.0);
   }
   add_zones(robot, scenario.air.zone, errors.zone_sigma_pa, random);
   if (scenario.air.door_pulses_1_s > 0.0 && errors.pulse_pa > 0.0) {
     const double mean_s = 1.0 / scenario.air.door_pulses_1_s;
-    for (double t = random.exponential(mean_s); t < kStep_s * static_cast<double>(samples);
+    for (double t = random.exponential(mean_s); t < kStepS * static_cast<double>(samples);
          t += random.exponential(mean_s)) {
       const double peak = random.sign() * errors.pulse_pa * random.uniform(0.4, 1.6);
       const double duration_s = random.uniform(0.5, 2.0);
@@ -95,7 +95,7 @@ Atmosphere::Atmosphere(const Scenario& scenario, const AirErrors& errors, Random
 
 // The paper's hypsometric equation with a constant temperature of the column, solved for p1.
 double Atmosphere::column(double pressure_pa, double height_m) const {
-  return pressure_pa * std::exp(-kGravity * height_m / (kDryAirGas_j_kg_k * air_temperature_k_));
+  return pressure_pa * std::exp(-kGravity * height_m / (kDryAirGasJKgK * air_temperature_k_));
 }
 
 double Atmosphere::robot_pa(double time_s, double height_m) const {

@@ -34,7 +34,7 @@ PressureSample BarometerModel::sample(double time_s, double true_pa, double air_
       errors_.warm_up_k * (1.0 - std::exp(-(time_s + errors_.powered_for_s) / errors_.warm_up_tau_s));
   PressureSample sample;
   sample.pressure_pa = true_pa * (1.0 + errors_.scale) + errors_.offset_pa + errors_.drift_pa_k * warm_k +
-                       errors_.drift_pa_k2 * warm_k * warm_k + flicker_.step(1.0 / kRate_hz) +
+                       errors_.drift_pa_k2 * warm_k * warm_k + flicker_.step(1.0 / kRateHz) +
                        random_.normal(errors_.noise_pa);
   sample.temperature_c =
       air_temperature_c + warm_k + errors_.temperature_offset_k + random_.normal(errors_.temperature_noise_k);

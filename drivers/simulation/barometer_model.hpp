@@ -28,9 +28,9 @@ struct BarometerErrors {
 /// Samples must be taken in time order.
 class BarometerModel {
  public:
-  static constexpr double kRate_hz = 32.0;
+  static constexpr double kRateHz = 32.0;
   /// Each result is the mean of a conversion that began this long before it was read.
-  static constexpr double kConversion_s = 0.028;
+  static constexpr double kConversionS = 0.028;
 
   BarometerModel(const BarometerErrors& errors, Random random);
   /// true_pa: pressure in the middle of the conversion. The stamp is left to the caller.

@@ -11,8 +11,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kDoorHeight_m = 2.05;
-constexpr double kWall_m = 0.2;
+constexpr double kDoorHeightM = 2.05;
+constexpr double kWallM = 0.2;
 
 /// One leg with its own coordinates: s along it, l to its left.
 class Leg {
@@ -64,9 +64,9 @@ bool is_free(const Storey& storey, const Rect& rect) {
 void add_frame(const Leg& leg, double s0, double s1, double side, Mesh& mesh) {
   const double inner = side * leg.half_m();
   const double outer = side * (leg.half_m() - 0.03);
-  leg.box(mesh, s0 - 0.06, s0, inner, outer, 0.0, kDoorHeight_m + 0.06, Surface::kWood);
-  leg.box(mesh, s1, s1 + 0.06, inner, outer, 0.0, kDoorHeight_m + 0.06, Surface::kWood);
-  leg.box(mesh, s0, s1, inner, outer, kDoorHeight_m, kDoorHeight_m + 0.06, Surface::kWood);
+  leg.box(mesh, s0 - 0.06, s0, inner, outer, 0.0, kDoorHeightM + 0.06, Surface::kWood);
+  leg.box(mesh, s1, s1 + 0.06, inner, outer, 0.0, kDoorHeightM + 0.06, Surface::kWood);
+  leg.box(mesh, s0, s1, inner, outer, kDoorHeightM, kDoorHeightM + 0.06, Surface::kWood);
 }
 
 void add_furniture(const Leg& leg, double s0, double s1, double l0, double l1, Mesh& mesh, Random& random) {
@@ -93,13 +93,13 @@ bool add_room(const Leg& leg, double door_s, double door_width, double side, dou
   const double before = random.uniform(0.4, 2.0);
   const double after = random.uniform(0.4, 2.0);
   const double depth = random.uniform(2.8, 5.5);
-  const double near_l = side * (leg.half_m() + kWall_m);
+  const double near_l = side * (leg.half_m() + kWallM);
   const double far_l = near_l + side * depth;
   const double s0 = door_s - before;
   const double s1 = door_s + door_width + after;
   if (!is_free(storey, leg.rect(s0 - 0.1, s1 + 0.1, near_l, far_l + side * 0.4))) return false;
   storey.taken.push_back(leg.rect(s0 - 0.1, s1 + 0.1, side * (leg.half_m() + 0.01), far_l + side * 0.4));
-  storey.plan.cut({leg.rect(door_s, door_s + door_width, side * leg.half_m(), near_l), 0.0, kDoorHeight_m});
+  storey.plan.cut({leg.rect(door_s, door_s + door_width, side * leg.half_m(), near_l), 0.0, kDoorHeightM});
   storey.plan.cut({leg.rect(s0, s1, near_l, far_l), 0.0, ceiling_m});
   if (random.chance(0.6)) {  // a window without glass: rays leave and nothing comes back
     const double width = std::min(1.4, s1 - s0 - 0.4);
@@ -147,7 +147,7 @@ void add_side(const Leg& leg, double side, double ceiling_m, Storey& storey, Mes
       const Rect niche =
           leg.rect(door_s, s, side * leg.half_m(), side * (leg.half_m() + random.uniform(0.06, 0.19)));
       if (!is_free(storey, niche)) continue;
-      storey.plan.cut({niche, 0.0, kDoorHeight_m});
+      storey.plan.cut({niche, 0.0, kDoorHeightM});
       storey.taken.push_back(niche);
     }
     add_frame(leg, door_s, s, side, mesh);

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kWanderTau_s = 200.0;  // flicker noise looks like this over some minutes
+constexpr double kWanderTauS = 200.0;  // flicker noise looks like this over some minutes
 
 Vector3d draw_vector(Random& random, double sigma) {
   const double x = random.normal(sigma);
@@ -82,7 +82,7 @@ Vector3d ImuModel::white(double sigma) {
 }
 
 void ImuModel::wander(Vector3d& bias, double sigma) {
-  const double keep = std::exp(-1.0 / (kRate_hz * kWanderTau_s));
+  const double keep = std::exp(-1.0 / (kRateHz * kWanderTauS));
   bias = keep * bias + white(sigma * std::sqrt(1.0 - keep * keep));
 }
 
@@ -101,7 +101,7 @@ ImuSample ImuModel::sample(double time_s) {
   const bool on_slope = std::abs(state.v_world.z()) > 0.1 * speed;
   const double shaking = std::min(1.0, speed / 0.6) * (on_slope ? 2.0 : 1.0);
   // White noise of density n sampled at rate f has standard deviation n sqrt(f / 2).
-  const double band = std::sqrt(0.5 * kRate_hz);
+  const double band = std::sqrt(0.5 * kRateHz);
   ImuSample sample;
   sample.gyro_rad_s = errors_.gyro_scale * (R_imu_base * state.w_base) + errors_.gyro_bias_rad_s +
                       gyro_wander_ + white(errors_.gyro_density_rad_s_rthz * band) +

@@ -35,7 +35,7 @@ struct ImuErrors {
 /// Samples must be taken in time order.
 class ImuModel {
  public:
-  static constexpr double kRate_hz = 200.0;
+  static constexpr double kRateHz = 200.0;
 
   ImuModel(const Trajectory& trajectory, const Eigen::Isometry3d& T_base_imu, const ImuErrors& errors,
            Random random);

@@ -11,10 +11,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kCycle_s = 1e-9 * static_cast<double>(velodyne::kVlp16.firing_cycle_ns);
-constexpr double kStep_s = 1e-9 * static_cast<double>(velodyne::kVlp16.firing_step_ns);
+constexpr double kCycleS = 1e-9 * static_cast<double>(velodyne::kVlp16.firing_cycle_ns);
+constexpr double kStepS = 1e-9 * static_cast<double>(velodyne::kVlp16.firing_step_ns);
 constexpr double kPi = std::numbers::pi;
-constexpr double kMinRange_m = 0.4;  // the manual: no returns nearer than about 0.4 m are reported well
+constexpr double kMinRangeM = 0.4;  // the manual: no returns nearer than about 0.4 m are reported well
 
 /// Diffuse reflectivity (0 … 1) at 903 nm, of the size of published spectra.
 double reflectivity(Surface surface) {
@@ -69,7 +69,7 @@ LidarModel::LidarModel(const World& world, const Trajectory& trajectory,
 }
 
 double LidarModel::packet_time_s(std::uint64_t n) {
-  return static_cast<double>(n) * (Vlp16Packet::kCycles * kCycle_s);
+  return static_cast<double>(n) * (Vlp16Packet::kCycles * kCycleS);
 }
 
 double LidarModel::azimuth_rad(double time_s) const {
@@ -79,7 +79,7 @@ double LidarModel::azimuth_rad(double time_s) const {
 
 LaserReturn LidarModel::measure(const Hit& hit, std::size_t laser, Random& random) const {
   LaserReturn measured;
-  if (!hit.found || static_cast<double>(hit.distance_m) < kMinRange_m) return measured;
+  if (!hit.found || static_cast<double>(hit.distance_m) < kMinRangeM) return measured;
   const double range_m = hit.distance_m;
   const double cosine = hit.cos_incidence;
   // Lambert: echo power falls with the square of the range and with the cosine of incidence.
@@ -93,10 +93,10 @@ LaserReturn LidarModel::measure(const Hit& hit, std::size_t laser, Random& rando
   }
   double sigma_m = errors_.range_sigma_m;
   // At grazing incidence the spot (3 mrad) smears in depth over range * 3 mrad * tan(incidence).
-  constexpr double kBeam_rad = 0.003;
+  constexpr double kBeamRad = 0.003;
   if (sigma_m > 0.0) {
     const double smear =
-        0.15 * kBeam_rad * range_m * std::sqrt(1.0 - cosine * cosine) / std::max(cosine, 0.05);
+        0.15 * kBeamRad * range_m * std::sqrt(1.0 - cosine * cosine) / std::max(cosine, 0.05);
     sigma_m = std::hypot(sigma_m, std::min(smear, 0.05));
   }
   measured.distance_m = range_m + errors_.range_bias_m[laser] + random.normal(sigma_m);
@@ -117,10 +117,10 @@ void LidarModel::fire_cycle(double time_s, std::array<LaserReturn, 16>& returns,
   const Vector3d w_world = R_world_base * state.w_base;
   world_.look(time_s, eye, errors_.reach_m, moment);
   const double azimuth = azimuth_rad(time_s);
-  const double azimuth_step = azimuth_rad(time_s + kStep_s) - azimuth;
+  const double azimuth_step = azimuth_rad(time_s + kStepS) - azimuth;
   for (std::size_t laser = 0; laser < 16; ++laser) {
     // Pose of this laser's own firing. Second order terms in 35 us are below a nanometre.
-    const double later_s = kStep_s * static_cast<double>(laser);
+    const double later_s = kStepS * static_cast<double>(laser);
     const double a = azimuth + azimuth_step * static_cast<double>(laser);
     const Vector3d beam(cos_elevation_[laser] * std::cos(a), -cos_elevation_[laser] * std::sin(a),
                         sin_elevation_[laser]);
@@ -137,14 +137,14 @@ ReceivedPacket LidarModel::packet(std::uint64_t n) const {
   Vlp16Packet packet;
   World::Moment moment;
   for (std::size_t cycle = 0; cycle < Vlp16Packet::kCycles; ++cycle) {
-    const double time_s = start_s + kCycle_s * static_cast<double>(cycle);
+    const double time_s = start_s + kCycleS * static_cast<double>(cycle);
     if (cycle % 2 == 0) packet.azimuth_rad[cycle / 2] = azimuth_rad(time_s);
     fire_cycle(time_s, packet.returns[cycle], moment, random);
   }
   const double sensor_s = std::fmod(errors_.clock_offset_s + (1.0 + errors_.clock_drift) * start_s, 3600.0);
   packet.timestamp_us = static_cast<std::uint32_t>(sensor_s * 1e6);
   ReceivedPacket received;
-  received.receive_time_s = start_s + Vlp16Packet::kCycles * kCycle_s + errors_.latency_s;
+  received.receive_time_s = start_s + Vlp16Packet::kCycles * kCycleS + errors_.latency_s;
   if (errors_.latency_jitter_s > 0.0) received.receive_time_s += random.exponential(errors_.latency_jitter_s);
   received.bytes = encode(packet);
   return received;

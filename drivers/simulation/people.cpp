@@ -46,9 +46,9 @@ MovingBody make_walker(const Corridor& corridor, std::size_t leg, double floor_z
   std::vector<double> y;
   for (std::size_t i = 0; i < samples; ++i) {
     if (pause_s > 0.0) {
-      pause_s -= SplineGrid::kStep_s;
+      pause_s -= SplineGrid::kStepS;
     } else {
-      s += direction * speed * SplineGrid::kStep_s;
+      s += direction * speed * SplineGrid::kStepS;
       if (s <= 0.0 || s >= span) {
         s = std::clamp(s, 0.0, span);
         direction = -direction;

@@ -284,7 +284,8 @@ Hit RayCaster::cast(const Vector3f& origin, const Vector3f& direction, float lim
     const Entry entry = stack[--depth];
     if (entry.near_m >= hit.distance_m) continue;
     if (entry.child < 0) {
-      intersect(leaves_[static_cast<std::size_t>(~entry.child)], origin, direction, hit.distance_m, triangle);
+      const std::int32_t leaf = ~entry.child;
+      intersect(leaves_[static_cast<std::size_t>(leaf)], origin, direction, hit.distance_m, triangle);
       continue;
     }
     // Slab test of Kay and Kajiya (1986) on four boxes.

@@ -13,7 +13,7 @@ using Eigen::Vector2d;
 
 namespace {
 
-constexpr double kStep_s = SplineGrid::kStep_s;
+constexpr double kStepS = SplineGrid::kStepS;
 
 /// Rides of elevators have a symmetric speed profile with smooth jerk: v = V (1 - cos)/2 ramps.
 double ride_height(double time_s, double ramp_s, double cruise_s, double speed_m_s) {
@@ -35,7 +35,7 @@ Route::Route(const Vector2d& xy_m, double z_m, double yaw_rad, PlatformLimits li
   add({xy_m.x(), xy_m.y(), z_m, yaw_rad, 0.0, 0.0}, "flat");
 }
 
-double Route::time_s() const { return kStep_s * static_cast<double>(samples_.size() - 1); }
+double Route::time_s() const { return kStepS * static_cast<double>(samples_.size() - 1); }
 
 void Route::add(const RawPose& pose, const std::string& label) {
   samples_.push_back(pose);
@@ -46,14 +46,14 @@ void Route::add(const RawPose& pose, const std::string& label) {
 void Route::wait(double seconds) {
   const RawPose still = pose();
   const std::string label = labels_.back().label;
-  for (double t = kStep_s; t < seconds; t += kStep_s) add(still, label);
+  for (double t = kStepS; t < seconds; t += kStepS) add(still, label);
 }
 
 void Route::turn(double angle_rad) {
   const RawPose start = pose();
   // Half a cosine of turn rate: peak at the limit.
   const double duration_s = std::abs(angle_rad) * std::numbers::pi / (2.0 * limits_.turn_rate_rad_s);
-  for (double t = kStep_s; t < duration_s + kStep_s; t += kStep_s) {
+  for (double t = kStepS; t < duration_s + kStepS; t += kStepS) {
     RawPose next = start;
     next.yaw_rad += angle_rad * 0.5 * (1.0 - std::cos(std::numbers::pi * std::min(1.0, t / duration_s)));
     add(next, labels_.back().label);
@@ -72,7 +72,7 @@ void Route::ride(double height_m, double speed_m_s, double acceleration_m_s2) {
   }
   const double cruise_s = (distance - speed * ramp_s) / speed;
   const double total_s = 2.0 * ramp_s + cruise_s;
-  for (double t = kStep_s; t < total_s + kStep_s; t += kStep_s) {
+  for (double t = kStepS; t < total_s + kStepS; t += kStepS) {
     RawPose next = start;
     next.z_m += std::copysign(ride_height(t, ramp_s, cruise_s, speed), height_m);
     add(next, "elevator");
@@ -95,8 +95,8 @@ void Route::drive(const std::vector<Waypoint>& waypoints) {
   while (path.length_m() - s > 1e-3) {
     const double a = limits_.acceleration_m_s2;
     const double wanted = std::min(path.speed_m_s(s), std::sqrt(2.0 * a * (path.length_m() - s)));
-    v = std::max(0.01, v + std::clamp(wanted - v, -1.5 * a * kStep_s, a * kStep_s));
-    s = std::min(path.length_m(), s + v * kStep_s);
+    v = std::max(0.01, v + std::clamp(wanted - v, -1.5 * a * kStepS, a * kStepS));
+    s = std::min(path.length_m(), s + v * kStepS);
     add(path.pose(s), path.label(s));
   }
 }
@@ -113,18 +113,18 @@ void add_shaking(std::vector<RawPose>& samples, const std::vector<LabelledSpan>&
   double strength = 0.0;
   Vector2d before(samples.front().x_m, samples.front().y_m);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const double t = kStep_s * static_cast<double>(i);
+    const double t = kStepS * static_cast<double>(i);
     while (span + 1 < labels.size() && t > labels[span].end_s) ++span;
     RawPose& pose = samples[i];
     const Vector2d here(pose.x_m, pose.y_m);
-    const double speed = (here - before).norm() / kStep_s;
+    const double speed = (here - before).norm() / kStepS;
     before = here;
     strength += 0.25 * (std::min(1.0, speed / 0.4) - strength);  // fades in and out over 0.2 s
     const bool stairs = labels[span].label == "stairs" && std::abs(pose.pitch_rad) > 0.1;
-    pose.roll_rad += strength * roll.step(kStep_s) * (stairs ? 0.8 : 0.15) * kDegree;
-    pose.pitch_rad += strength * pitch.step(kStep_s) * (stairs ? 1.0 : 0.15) * kDegree;
-    pose.yaw_rad += strength * yaw.step(kStep_s) * (stairs ? 0.8 : 0.4) * kDegree;
-    pose.z_m += strength * heave.step(kStep_s) * (stairs ? 0.006 : 0.001);
+    pose.roll_rad += strength * roll.step(kStepS) * (stairs ? 0.8 : 0.15) * kDegree;
+    pose.pitch_rad += strength * pitch.step(kStepS) * (stairs ? 1.0 : 0.15) * kDegree;
+    pose.yaw_rad += strength * yaw.step(kStepS) * (stairs ? 0.8 : 0.4) * kDegree;
+    pose.z_m += strength * heave.step(kStepS) * (stairs ? 0.006 : 0.001);
   }
 }
 

@@ -101,7 +101,7 @@ std::vector<int> zones_of(const std::vector<RawPose>& raw, const std::vector<Lab
   std::vector<int> zones;
   std::size_t span = 0;
   for (std::size_t i = 0; i < raw.size(); ++i) {
-    while (span + 1 < labels.size() && SplineGrid::kStep_s * static_cast<double>(i) > labels[span].end_s)
+    while (span + 1 < labels.size() && SplineGrid::kStepS * static_cast<double>(i) > labels[span].end_s)
       ++span;
     const int half = raw[i].x_m > middle_x_m ? 1 : 0;
     zones.push_back(3 * static_cast<int>(span) + (labels[span].label == "flat" ? half : 2));
@@ -109,8 +109,8 @@ std::vector<int> zones_of(const std::vector<RawPose>& raw, const std::vector<Lab
   return zones;
 }
 
-void finish(Scenario& scenario, const Building& building, Route route, int storeys, double people_a_storey,
-            Random& random) {
+void finish(Scenario& scenario, const Building& building, const Route& route, int storeys,
+            double people_a_storey, Random& random) {
   scenario.raw = route.samples();
   scenario.labels = route.labels();
   add_shaking(scenario.raw, scenario.labels, Random(random.next()));
@@ -151,7 +151,7 @@ Scenario make_three_floors(std::uint64_t seed, bool short_form) {
     route.drive(way);
     route.wait(1.5);
     scenario.description = "three-floors, short form: two floors, one staircase";
-    finish(scenario, building, std::move(route), 2, 1.0, random);
+    finish(scenario, building, route, 2, 1.0, random);
     return scenario;
   }
   const Building building(random, 3, 5, random.uniform(100.0, 105.0), 17, 18);
@@ -174,7 +174,7 @@ Scenario make_three_floors(std::uint64_t seed, bool short_form) {
   route.drive({second_stop, way.end()});
   route.wait(3.0);
   scenario.description = "three floors, two staircases, about 311 m of corridors and 12 m of height";
-  finish(scenario, building, std::move(route), 3, 3.0, random);
+  finish(scenario, building, route, 3, 3.0, random);
   return scenario;
 }
 
@@ -193,7 +193,7 @@ Scenario make_stairs_demo(std::uint64_t seed, bool short_form) {
   route.drive(way);
   route.wait(1.5);
   scenario.description = "a corridor, down a staircase to the next floor and on";
-  finish(scenario, building, std::move(route), 2, 1.0, random);
+  finish(scenario, building, route, 2, 1.0, random);
   return scenario;
 }
 

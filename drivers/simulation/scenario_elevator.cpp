@@ -16,12 +16,12 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kCabinWidth_m = 1.7;
-constexpr double kCabinDepth_m = 2.1;
-constexpr double kDoorWidth_m = 1.1;
-constexpr double kDoorHeight_m = 2.1;
-constexpr double kShaftDoor_m = 0.25;  // thickness of the wall between corridor and shaft
-constexpr double kDoorTime_s = 2.5;
+constexpr double kCabinWidthM = 1.7;
+constexpr double kCabinDepthM = 2.1;
+constexpr double kDoorWidthM = 1.1;
+constexpr double kDoorHeightM = 2.1;
+constexpr double kShaftDoorM = 0.25;  // thickness of the wall between corridor and shaft
+constexpr double kDoorTimeS = 2.5;
 
 /// When doors move and where the cabin is, on the time grid.
 struct Lift {
@@ -34,11 +34,11 @@ struct Lift {
 /// The cabin's inner walls, floor and ceiling, open at x = 0 towards -x; inside is 0 < x < depth.
 Mesh make_cabin() {
   Mesh mesh;
-  const double half = 0.5 * kCabinWidth_m;
+  const double half = 0.5 * kCabinWidthM;
   const double top = 2.25;
-  const double door = 0.5 * kDoorWidth_m;
+  const double door = 0.5 * kDoorWidthM;
   const double x0 = 0.12;
-  const double x1 = x0 + kCabinDepth_m;
+  const double x1 = x0 + kCabinDepthM;
   const Surface metal = Surface::kMetal;
   mesh.quad({0.0, -half, 0.0}, {x1, -half, 0.0}, {x1, half, 0.0}, {0.0, half, 0.0}, Surface::kConcrete);
   mesh.quad({x0, -half, top}, {x1, -half, top}, {x1, half, top}, {x0, half, top}, Surface::kPlaster);
@@ -51,15 +51,15 @@ Mesh make_cabin() {
     // handrails
     mesh.box({x0 + 0.2, side * half, 0.85}, {x1 - 0.2, side * (half - 0.06), 0.92}, metal);
   }
-  mesh.quad({x0, -door, kDoorHeight_m}, {x0, door, kDoorHeight_m}, {x0, door, top}, {x0, -door, top}, metal);
+  mesh.quad({x0, -door, kDoorHeightM}, {x0, door, kDoorHeightM}, {x0, door, top}, {x0, -door, top}, metal);
   return mesh;
 }
 
 /// One leaf of a sliding door; side -1 or +1, shut at its origin, overlapping the other by 2 cm.
 Mesh make_leaf(double side) {
   Mesh mesh;
-  mesh.box({-0.02, std::min(-side * 0.01, side * 0.5 * kDoorWidth_m), 0.0},
-           {0.02, std::max(-side * 0.01, side * 0.5 * kDoorWidth_m), kDoorHeight_m}, Surface::kMetal);
+  mesh.box({-0.02, std::min(-side * 0.01, side * 0.5 * kDoorWidthM), 0.0},
+           {0.02, std::max(-side * 0.01, side * 0.5 * kDoorWidthM), kDoorHeightM}, Surface::kMetal);
   return mesh;
 }
 
@@ -69,7 +69,7 @@ void add_doors(std::vector<MovingBody>& bodies, double x, double y, const std::v
   for (const double side : {-1.0, 1.0}) {
     std::vector<double> slide;
     slide.reserve(open.size());
-    for (const double fraction : open) slide.push_back(y + side * fraction * 0.5 * kDoorWidth_m);
+    for (const double fraction : open) slide.push_back(y + side * fraction * 0.5 * kDoorWidthM);
     bodies.push_back({RayCaster(make_leaf(side)), Channel(std::vector<double>(open.size(), x)),
                       Channel(std::move(slide)), Channel(z)});
   }
@@ -99,10 +99,10 @@ Site draw_site(Random& random, bool short_form) {
 
 /// Cuts the door's opening and, on the way, the shaft.
 void cut_elevator(FloorPlan& plan, const Site& site, double storey_m) {
-  const double half = 0.5 * kDoorWidth_m;
+  const double half = 0.5 * kDoorWidthM;
   const double x = site.end_x_m;
-  plan.cut({{x, -half, x + kShaftDoor_m, half}, 0.0, kDoorHeight_m});
-  plan.cut({{x + kShaftDoor_m, -1.0, x + kShaftDoor_m + 2.5, 1.0}, 0.0, storey_m, false, false});
+  plan.cut({{x, -half, x + kShaftDoorM, half}, 0.0, kDoorHeightM});
+  plan.cut({{x + kShaftDoorM, -1.0, x + kShaftDoorM + 2.5, 1.0}, 0.0, storey_m, false, false});
 }
 
 /// The ground floor beyond the ramp lies higher: the floor of the plan is cut there and closed by the ramp.
@@ -161,7 +161,7 @@ class Timeline {
     const bool top = route_.pose().z_m > 0.5 * site_.height_m;
     move_cabin_to(top ? site_.height_m : 0.0);
     doors(top, 1.0);
-    const double middle_m = site_.end_x_m + kShaftDoor_m + 0.12 + 0.5 * kCabinDepth_m;
+    const double middle_m = site_.end_x_m + kShaftDoorM + 0.12 + 0.5 * kCabinDepthM;
     drive({{{middle_m, 0.0}, route_.pose().z_m, 0.4, "flat"}});
     route_.turn(random_.sign() * std::numbers::pi);
     follow();
@@ -191,12 +191,12 @@ class Timeline {
   /// Opens (1) or shuts (0) the doors of the cabin and of one storey while the robot waits.
   void doors(bool top, double target) {
     const double from = lift_.open.back();
-    for (double t = SplineGrid::kStep_s; t <= kDoorTime_s; t += SplineGrid::kStep_s) {
-      const double phase = t / kDoorTime_s;
+    for (double t = SplineGrid::kStepS; t <= kDoorTimeS; t += SplineGrid::kStepS) {
+      const double phase = t / kDoorTimeS;
       const double fraction = from + (target - from) * 0.5 * (1.0 - std::cos(std::numbers::pi * phase));
       open_ = fraction;
       (top ? open_top_ : open_ground_) = fraction;
-      wait(2.0 * SplineGrid::kStep_s);
+      wait(2.0 * SplineGrid::kStepS);
     }
     wait(random_.uniform(0.8, 1.5));
   }
@@ -219,9 +219,9 @@ class Timeline {
   void move_cabin_to(double target_m) {
     const double from_m = lift_.cabin_z_m.back();
     const double seconds = std::abs(target_m - from_m) / ride_speed_m_s_;
-    const auto steps = static_cast<int>(seconds / SplineGrid::kStep_s);
+    const auto steps = static_cast<int>(seconds / SplineGrid::kStepS);
     if (steps == 0) return;
-    route_.wait(seconds + SplineGrid::kStep_s);
+    route_.wait(seconds + SplineGrid::kStepS);
     for (int i = 1; lift_.cabin_z_m.size() < route_.samples().size(); ++i) {
       push(from_m + (target_m - from_m) * std::min(1.0, static_cast<double>(i) / steps));
     }
@@ -242,7 +242,7 @@ class Timeline {
 std::vector<MovingBody> lift_bodies(const Site& site, const Lift& lift) {
   std::vector<MovingBody> bodies;
   const std::size_t samples = lift.cabin_z_m.size();
-  const double x = site.end_x_m + kShaftDoor_m;
+  const double x = site.end_x_m + kShaftDoorM;
   const Channel cabin_z(lift.cabin_z_m);
   bodies.push_back({RayCaster(make_cabin()), Channel(std::vector<double>(samples, x)),
                     Channel(std::vector<double>(samples, 0.0)), cabin_z});

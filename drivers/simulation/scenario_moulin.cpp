@@ -22,8 +22,7 @@ constexpr double kPi = std::numbers::pi;
 class Shaft {
  public:
   Shaft(Random& random, double depth_m) : depth_m_(depth_m), radius_m_(random.uniform(2.2, 4.5)) {
-    for (std::size_t i = 0; i < waves_.size(); ++i) {
-      Wave& wave = waves_[i];
+    for (Wave& wave : waves_) {
       wave.around = static_cast<double>(random.integer(0, 7));
       wave.along_1_m = 2.0 * kPi / random.uniform(1.2, 12.0) * random.sign();
       wave.phase = random.uniform(0.0, 2.0 * kPi);
@@ -56,11 +55,11 @@ class Shaft {
 
   [[nodiscard]] Mesh mesh(Random& random) const {
     constexpr int kAround = 90;
-    constexpr double kAlong_m = 0.25;
+    constexpr double kAlongM = 0.25;
     Mesh mesh;
-    const auto rows = static_cast<int>(depth_m_ / kAlong_m);
+    const auto rows = static_cast<int>(depth_m_ / kAlongM);
     const auto point = [&](int row, int column) {
-      return wall(kAlong_m * row, 2.0 * kPi * (column % kAround) / kAround);
+      return wall(kAlongM * row, 2.0 * kPi * (column % kAround) / kAround);
     };
     for (int row = 0; row < rows; ++row) {
       for (int column = 0; column < kAround; ++column) {
@@ -107,7 +106,7 @@ std::vector<double> draw_depths(Random& random, double start_m, double end_m, do
   std::vector<double> depths;
   const auto hold = [&](double seconds) {
     const double depth = depths.empty() ? start_m : depths.back();
-    for (double t = 0.0; t < seconds; t += SplineGrid::kStep_s) depths.push_back(depth);
+    for (double t = 0.0; t < seconds; t += SplineGrid::kStepS) depths.push_back(depth);
   };
   const auto lower_to = [&](double target_m) {
     const double way = target_m - depths.back();
@@ -116,9 +115,9 @@ std::vector<double> draw_depths(Random& random, double start_m, double end_m, do
     while (std::abs(target_m - depths.back()) > 0.002) {
       const double left = std::abs(target_m - depths.back());
       const double wanted =
-          std::min(speed_m_s * (1.0 + hands.step(SplineGrid::kStep_s)), std::sqrt(2.0 * 0.15 * left));
+          std::min(speed_m_s * (1.0 + hands.step(SplineGrid::kStepS)), std::sqrt(2.0 * 0.15 * left));
       v = std::max(0.01, v + std::clamp(wanted - v, -0.02, 0.0125));  // 0.25 m/s^2
-      depths.push_back(depths.back() + std::copysign(std::min(left, v * SplineGrid::kStep_s), way));
+      depths.push_back(depths.back() + std::copysign(std::min(left, v * SplineGrid::kStepS), way));
     }
   };
   hold(random.uniform(3.0, 8.0));
@@ -131,7 +130,7 @@ std::vector<double> draw_depths(Random& random, double start_m, double end_m, do
 
 /// A pendulum of the rope's length with two planes of swing, and a slow spin.
 std::vector<RawPose> swing(Random& random, const Shaft& shaft, const std::vector<double>& depths) {
-  constexpr double kPulley_m = 1.5;  // above the ice
+  constexpr double kPulleyM = 1.5;  // above the ice
   const std::array<double, 2> amplitude_m{random.uniform(0.05, 0.25), random.uniform(0.05, 0.25)};
   std::array<double, 2> phase{random.uniform(0.0, 2.0 * kPi), random.uniform(0.0, 2.0 * kPi)};
   const double spin_mean = random.sign() * random.uniform(2.0, 6.0) * kPi / 180.0;
@@ -141,18 +140,18 @@ std::vector<RawPose> swing(Random& random, const Shaft& shaft, const std::vector
   std::vector<RawPose> raw;
   double yaw = random.uniform(-kPi, kPi);
   for (std::size_t i = 0; i < depths.size(); ++i) {
-    const double t = SplineGrid::kStep_s * static_cast<double>(i);
-    const double rope_m = depths[i] + kPulley_m;
+    const double t = SplineGrid::kStepS * static_cast<double>(i);
+    const double rope_m = depths[i] + kPulleyM;
     // The first seconds are held by hand: the swing and the spin grow when it hangs free.
     const double free = std::clamp((t - 3.0) / 8.0, 0.0, 1.0);
     const double grown = free * free * (3.0 - 2.0 * free);
     std::array<double, 2> offset{};
     for (std::size_t axis = 0; axis < 2; ++axis) {
-      phase[axis] += std::sqrt(kGravity / rope_m) * (axis == 0 ? 1.0 : 1.01) * SplineGrid::kStep_s;
+      phase[axis] += std::sqrt(kGravity / rope_m) * (axis == 0 ? 1.0 : 1.01) * SplineGrid::kStepS;
       offset[axis] = grown * std::min(amplitude_m[axis], 0.06 * rope_m) * std::sin(phase[axis]);
     }
-    yaw += grown * (spin_mean + spin_size * std::sin(2.0 * kPi * spin_hz * t + spin_phase)) *
-           SplineGrid::kStep_s;
+    yaw +=
+        grown * (spin_mean + spin_size * std::sin(2.0 * kPi * spin_hz * t + spin_phase)) * SplineGrid::kStepS;
     // The sphere's z axis follows the rope, as the force on a pendulum does.
     const Vector3d up = Vector3d(-offset[0], -offset[1], rope_m).normalized();
     const double along = std::cos(yaw) * up.x() + std::sin(yaw) * up.y();
@@ -182,7 +181,7 @@ Scenario make_moulin(std::uint64_t seed, bool short_form) {
   Scenario scenario;
   scenario.description = "a hanging sphere in a vertical shaft of ice";
   scenario.raw = swing(random, shaft, draw_depths(random, start_m, end_m, back_m, speed_m_s));
-  scenario.labels = {{0.0, SplineGrid::kStep_s * static_cast<double>(scenario.raw.size() - 1), "shaft"}};
+  scenario.labels = {{0.0, SplineGrid::kStepS * static_cast<double>(scenario.raw.size() - 1), "shaft"}};
   scenario.trajectory = Trajectory(scenario.raw);
   scenario.world = World(shaft.mesh(random), {});
   scenario.has_wheels = false;

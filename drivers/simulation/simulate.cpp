@@ -85,7 +85,7 @@ void write_imu(const Run& run) {
   ImuModel imu(run.scenario.trajectory, bolted(run.scenario.mounts.imu, run.random("imu mount"), 0.1),
                ImuErrors::draw(run.random("imu errors"), tracked), run.random("imu noise"));
   Random jitter = run.random("imu stamps");
-  for (double t = 0.0; t <= run.duration_s; t += 1.0 / ImuModel::kRate_hz) {
+  for (double t = 0.0; t <= run.duration_s; t += 1.0 / ImuModel::kRateHz) {
     ImuSample sample = imu.sample(t);
     sample.stamp_ns = run.robot.stamp_ns(t + stamp_jitter_s(jitter));
     run.writer.add_imu(sample);
@@ -96,7 +96,7 @@ void write_wheels(const Run& run) {
   WheelModel wheels(run.scenario.trajectory, WheelErrors::draw(run.random("wheel errors")),
                     run.random("wheel noise"));
   Random jitter = run.random("wheel stamps");
-  for (double t = 0.003; t <= run.duration_s; t += 1.0 / WheelModel::kRate_hz) {
+  for (double t = 0.003; t <= run.duration_s; t += 1.0 / WheelModel::kRateHz) {
     WheelSample sample = wheels.sample(t);
     sample.stamp_ns = run.robot.stamp_ns(t + stamp_jitter_s(jitter));
     run.writer.add_wheel(sample);
@@ -110,20 +110,20 @@ void write_pressure(const Run& run) {
                        run.random("barometer noise"));
   BarometerModel base(BarometerErrors::draw(run.random("base errors"), true), run.random("base noise"));
   Random random = run.random("pressure stamps");
-  // The base station keeps its own time, by NTP at best: some milliseconds to two seconds off, tens of ppm.
+  // The base station keeps its own time, by NTP at best: some milliseconds to a second off, tens of ppm.
   Clock base_clock = run.robot;
-  base_clock.offset_s = random.sign() * std::pow(10.0, random.uniform(-2.3, 0.3));
+  base_clock.offset_s = random.sign() * std::pow(10.0, random.uniform(-2.3, 0.0));
   base_clock.drift = random.normal(20e-6);
-  const double phase_s = random.uniform(0.0, 1.0 / BarometerModel::kRate_hz);
-  for (double t = 0.01; t <= run.duration_s; t += 1.0 / BarometerModel::kRate_hz) {
-    const double middle_s = t - 0.5 * BarometerModel::kConversion_s;
+  const double phase_s = random.uniform(0.0, 1.0 / BarometerModel::kRateHz);
+  for (double t = 0.01; t <= run.duration_s; t += 1.0 / BarometerModel::kRateHz) {
+    const double middle_s = t - 0.5 * BarometerModel::kConversionS;
     const MotionState state = scenario.trajectory.at(middle_s);
     const double height_m = (state.p_world + state.q_world_base * scenario.mounts.pressure_port_m).z();
     PressureSample sample = robot.sample(t, air.robot_pa(middle_s, height_m), scenario.air_temperature_c);
     sample.stamp_ns = run.robot.stamp_ns(t + stamp_jitter_s(random));
     run.writer.add_pressure(sample);
     const double base_s = t + phase_s;
-    sample = base.sample(base_s, air.base_pa(base_s - 0.5 * BarometerModel::kConversion_s),
+    sample = base.sample(base_s, air.base_pa(base_s - 0.5 * BarometerModel::kConversionS),
                          scenario.air_temperature_c);
     sample.stamp_ns = base_clock.stamp_ns(base_s + stamp_jitter_s(random));
     run.writer.add_base_pressure(sample);
@@ -186,6 +186,7 @@ recording::Manifest make_manifest(const ScenarioRequest& request, const Scenario
 
 std::vector<ScenarioInfo> scenarios() {
   std::vector<ScenarioInfo> infos;
+  infos.reserve(kEntries.size());
   for (const Entry& entry : kEntries) infos.push_back({entry.name, entry.description});
   return infos;
 }

@@ -17,7 +17,7 @@ constexpr double kBasis[6][6] = {  // NOLINT(modernize-avoid-c-arrays): a table
 
 SplineWeights SplineGrid::weights(double time_s, std::size_t samples) {
   // The six control points that act between grid points i and i+1 are i-2 … i+3.
-  const double position = std::clamp(time_s / kStep_s, 2.0, static_cast<double>(samples) - 4.0);
+  const double position = std::clamp(time_s / kStepS, 2.0, static_cast<double>(samples) - 4.0);
   const double whole = std::floor(position);
   const double u = position - whole;
   SplineWeights weights;
@@ -26,9 +26,9 @@ SplineWeights SplineGrid::weights(double time_s, std::size_t samples) {
     const auto& c = kBasis[i];
     weights.value[i] = (c[0] + u * (c[1] + u * (c[2] + u * (c[3] + u * (c[4] + u * c[5]))))) / 120.0;
     weights.rate[i] =
-        (c[1] + u * (2 * c[2] + u * (3 * c[3] + u * (4 * c[4] + u * 5 * c[5])))) / (120.0 * kStep_s);
+        (c[1] + u * (2 * c[2] + u * (3 * c[3] + u * (4 * c[4] + u * 5 * c[5])))) / (120.0 * kStepS);
     weights.curve[i] =
-        (2 * c[2] + u * (6 * c[3] + u * (12 * c[4] + u * 20 * c[5]))) / (120.0 * kStep_s * kStep_s);
+        (2 * c[2] + u * (6 * c[3] + u * (12 * c[4] + u * 20 * c[5]))) / (120.0 * kStepS * kStepS);
   }
   return weights;
 }

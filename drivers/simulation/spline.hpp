@@ -22,7 +22,7 @@ struct SplineWeights {
 class SplineGrid {
  public:
   /// Spacing of the raw samples. 50 ms lets motion up to some 5 Hz through and rounds corners over 0.2 s.
-  static constexpr double kStep_s = 0.05;
+  static constexpr double kStepS = 0.05;
 
   /// Weights at time_s since the first sample, held inside the grid of `samples` samples.
   [[nodiscard]] static SplineWeights weights(double time_s, std::size_t samples);

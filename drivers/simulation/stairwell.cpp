@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kSlab_m = 0.25;  // thickness of a storey's floor
+constexpr double kSlabM = 0.25;  // thickness of a storey's floor
 constexpr Surface kStone = Surface::kConcrete;
 
 }  // namespace
@@ -40,7 +40,7 @@ Rect Stairwell::rect() const {
 void Stairwell::cut_lower(FloorPlan& storey) const {
   const double end = kLanding + run_m() + kHalfLanding;
   const double top = sizes_.storey_m();
-  storey.cut({Rect::around(plan(0.0, -kHalfLane), plan(kLanding, kLaneGap + kHalfLane)), 0.0, top - kSlab_m});
+  storey.cut({Rect::around(plan(0.0, -kHalfLane), plan(kLanding, kLaneGap + kHalfLane)), 0.0, top - kSlabM});
   storey.cut(
       {Rect::around(plan(kLanding, -kHalfLane), plan(end, kLaneGap + kHalfLane)), 0.0, top, true, false});
 }

@@ -46,7 +46,7 @@ Trajectory::Trajectory(const std::vector<RawPose>& raw)
       pitch_(channel(raw, [](const RawPose& pose) { return pose.pitch_rad; })),
       roll_(channel(raw, [](const RawPose& pose) { return pose.roll_rad; })) {}
 
-double Trajectory::duration_s() const { return SplineGrid::kStep_s * (static_cast<double>(x_.size()) - 1.0); }
+double Trajectory::duration_s() const { return SplineGrid::kStepS * (static_cast<double>(x_.size()) - 1.0); }
 
 MotionState Trajectory::at(double time_s) const {
   const SplineWeights weights = SplineGrid::weights(time_s, x_.size());

@@ -30,7 +30,7 @@ struct RawPose {
   double roll_rad = 0.0;
 };
 
-/// Motion from raw poses every SplineGrid::kStep_s: position and attitude are C4 functions of time.
+/// Motion from raw poses every SplineGrid::kStepS: position and attitude are C4 functions of time.
 class Trajectory {
  public:
   Trajectory() = default;

@@ -33,11 +33,11 @@ WheelSample WheelModel::sample(double time_s) {
   const Eigen::Vector3d forward = state.q_world_base * Eigen::Vector3d::UnitX();
   const double v = state.v_world.dot(forward);
   const double tilt = std::asin(std::clamp(forward.z(), -1.0, 1.0));
-  const double dt_s = 1.0 / kRate_hz;
+  const double dt_s = 1.0 / kRateHz;
   double slip = slip_.step(dt_s);
   // Climbing, the tracks turn further than the robot moves; descending, less. A cabin moves nobody's tracks.
-  constexpr double kStairTilt_rad = 0.15;
-  if (std::abs(tilt) > kStairTilt_rad) slip += std::copysign(errors_.stair_slip, tilt * v);
+  constexpr double kStairTiltRad = 0.15;
+  if (std::abs(tilt) > kStairTiltRad) slip += std::copysign(errors_.stair_slip, tilt * v);
   // The encoders of a robot that stands still are still.
   const Eigen::Vector2d flat_velocity = state.v_world.head<2>();
   const bool moves = flat_velocity.norm() > 0.002 || std::abs(state.w_base.z()) > 0.01;

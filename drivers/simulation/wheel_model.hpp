@@ -24,7 +24,7 @@ struct WheelErrors {
 /// Samples must be taken in time order.
 class WheelModel {
  public:
-  static constexpr double kRate_hz = 50.0;
+  static constexpr double kRateHz = 50.0;
 
   WheelModel(const Trajectory& trajectory, const WheelErrors& errors, Random random);
   [[nodiscard]] WheelSample sample(double time_s);
