@@ -113,9 +113,15 @@ struct HeightConfig {
   /// Random walk of the difference between the two barometers [m/sqrt(s)], 0 … 1: warm-up, ageing, 1 cm in 10
   /// min.
   double offset_walk_m_sqrt_s = 4e-4;
-  /// Random walk of the weather where no base station takes it out [m/sqrt(s)], 0 … 10. Fronts move 100 Pa an
-  /// hour, 2 mm/s, for hours: as a walk about 2.5 cm after 1 s-steps of that size over 100 s.
-  double weather_walk_m_sqrt_s = 0.02;
+  /// Random walk of the weather where no base station takes it out [m/sqrt(s)], 0 … 10. Fronts move 100 to
+  /// 130 Pa an hour, 2 to 3 mm/s, for hours: over ten minutes this walk grows as far, 1.2 m.
+  double weather_walk_m_sqrt_s = 0.05;
+
+  /// Drift of two barometers that warm up, which nothing shows: 1 sigma [m], 0 … 10, and time constant [s], 1
+  /// … 1e5. Only added to the reported variance; a filter that believed it would leave errors of the wheels
+  /// in the height.
+  double warm_up_sigma_m = 0.05;
+  double warm_up_time_s = 300.0;
 
   /// A pressure further off than this many sigmas is not used, 2 … 20 …
   double gate_sigma = 4.0;

@@ -85,6 +85,7 @@ struct PriorEstimator::State {
   double forward_integral_m = 0.0;
 
   HeightSource reading_source = HeightSource::kNone;
+  std::int64_t height_start_ns = 0;
 
   void align(const Eigen::Vector3d& gyro, const Eigen::Vector3d& force, double dt_s);
   void bridge_gap(const Eigen::Vector3d& gyro, double dt_s);
@@ -115,6 +116,7 @@ void PriorEstimator::State::align(const Eigen::Vector3d& gyro, const Eigen::Vect
   start_elapsed_s = 0.0;
   const bool on_wheels = wheels.valid(imu_gate.stamp_ns());
   if (!height.started()) {
+    height_start_ns = imu_gate.stamp_ns();
     height.start(above_base(p_base_imu), on_wheels ? kStartClimbOnWheels : kStartClimbHanging);
   }
 }
@@ -267,7 +269,11 @@ void PriorEstimator::State::fill(const ImuSample& sample, Prior& out) const {
   }
   if (height.started()) {
     out.height_m = height.z_m() - above_base(p_base_imu);
-    out.height_variance_m2 = height.variance_m2() + squared(altimeter.scale_uncertainty() * out.height_m);
+    const double on_for_s = std::max(0.0, seconds_between(height_start_ns, sample.stamp_ns));
+    const double warm_up_m =
+        config.height.warm_up_sigma_m * -std::expm1(-on_for_s / config.height.warm_up_time_s);
+    out.height_variance_m2 =
+        height.variance_m2() + squared(altimeter.scale_uncertainty() * out.height_m) + squared(warm_up_m);
   }
   out.height_source = height.started() ? source(sample.stamp_ns) : HeightSource::kNone;
   out.velocity_valid = on_wheels && attitude.started();
