@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "config/config_io.hpp"
+
 namespace isobar::bridge {
 
 void add_options(CLI::App& app, Options& options) {
@@ -15,7 +17,10 @@ void add_options(CLI::App& app, Options& options) {
 }
 
 Settings load_settings(const Options& options) {
+  const Config config = options.config_file.empty() ? Config{} : load_config(options.config_file);
   Settings settings;
+  settings.dds = config.dds;
+  settings.mounts = {config.lidar.mount, config.imu.mount, config.barometer.mount};
   if (options.domain) {
     settings.dds.domain_id = *options.domain;
   }

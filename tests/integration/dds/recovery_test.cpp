@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <string>
 
 #include "ipc/dds/endpoints.hpp"
@@ -23,16 +24,18 @@ using test::ChildProcess;
 template <class Message>
 class Listener {
  public:
-  explicit Listener(const dds::DdsTopic<Message>& topic)
-      : participant_({}), reader_(participant_.get(), topic) {
+  explicit Listener(const dds::DdsTopic<Message>& topic, const std::string& ros_namespace = {})
+      : participant_({}), reader_(participant_.get(), topic, ros_namespace) {
     waitset_ = dds::checked(dds_create_waitset(participant_.get()), "wait set");
     dds_set_status_mask(reader_.get(), DDS_DATA_AVAILABLE_STATUS);
     dds_waitset_attach(waitset_.get(), reader_.get(), 0);
   }
-  /// Forgets what has come so far, then waits until `wanted` fitting messages have.
+  void forget() {
+    reader_.take([](const Message&) {});
+  }
+  /// Waits until `wanted` fitting messages have come.
   template <class Fits>
   bool receive(int wanted, Fits&& fits, std::chrono::seconds timeout = 20s) {
-    reader_.take([](const Message&) {});
     const auto deadline = std::chrono::steady_clock::now() + timeout;
     while (wanted > 0 && std::chrono::steady_clock::now() < deadline) {
       dds_waitset_wait(waitset_.get(), nullptr, 0, DDS_MSECS(100));
@@ -88,6 +91,7 @@ TEST_CASE("a killed bridge does not disturb isobard, and a new one goes on") {
   CHECK(stand_in.read_until("priors", 5s));
   CHECK(stand_in.read_until("priors", 5s));
   ChildProcess bridge({ISOBAR_DDS_PROGRAM});
+  listener.forget();
   CHECK(listener.receive(100));
   CHECK(stand_in.running());
   bridge.signal(SIGINT);
@@ -102,11 +106,13 @@ TEST_CASE("when isobard is killed or stopped and comes again, the bridge comes b
   for (const int ending : {SIGKILL, SIGTERM, SIGKILL}) {
     ChildProcess stand_in({ISOBAR_STAND_IN});
     REQUIRE(stand_in.read_until("ready", 10s));
+    listener.forget();
     CHECK(listener.receive(20));
     stand_in.signal(ending);
     CHECK(stand_in.wait(10s) == (ending == SIGKILL ? 128 + SIGKILL : 0));
   }
   ChildProcess stand_in({ISOBAR_STAND_IN});
+  listener.forget();
   CHECK(listener.receive(20));
   CHECK(bridge.running());  // the same process all along
   bridge.signal(SIGTERM);
@@ -124,6 +130,7 @@ TEST_CASE("a bridge that was stopped for so long that isobard gave it up comes b
     CHECK(stand_in.read_until("priors", 5s));
   }
   bridge.signal(SIGCONT);
+  listener.forget();
   CHECK(listener.receive(200));
   CHECK(stand_in.running());
 }
@@ -173,6 +180,24 @@ TEST_CASE("a base station's pressure reaches isobard on isobard's clock, and non
       1, [](const auto& got) { return says(got, "isobar: bridge/received_implausible", 1); }));
 }
 
+TEST_CASE("the configuration file says the namespace and where the sensors sit") {
+  const std::string file = "/tmp/isobar-bridge-test.toml";
+  std::ofstream(file) << "[dds]\nros_namespace = \"robot1\"\nlidar_frame = \"velodyne\"\n"
+                         "[lidar]\nxyz_m = [0.1, 0.2, 0.45]\n";
+  ChildProcess stand_in({ISOBAR_STAND_IN});
+  ChildProcess bridge({ISOBAR_DDS_PROGRAM, "--config", file});
+  {
+    Listener<dds::OdometryMessage> listener(dds::topics::kOdom, "robot1");
+    CHECK(listener.receive(20));
+  }
+  Listener<dds::TfMessage> listener(dds::topics::kTfStatic);
+  CHECK(listener.receive(1, [](const dds::TfMessage& message) {
+    const auto& lidar = message.transforms._buffer[0];
+    const auto& xyz = lidar.transform.translation;
+    return std::string("velodyne") == lidar.child_frame_id && xyz.x == 0.1 && xyz.y == 0.2 && xyz.z == 0.45;
+  }));
+}
+
 TEST_CASE("what cannot work is refused in words") {
   ChildProcess no_interface({ISOBAR_DDS_PROGRAM, "--interface", "nope0"});
   CHECK(no_interface.read_until("nope0", 10s));
@@ -180,6 +205,9 @@ TEST_CASE("what cannot work is refused in words") {
   ChildProcess no_domain({ISOBAR_DDS_PROGRAM, "--domain", "233"});
   CHECK(no_domain.read_until("domain", 10s));
   CHECK(no_domain.wait(10s) == 78);
+  ChildProcess no_file({ISOBAR_DDS_PROGRAM, "--config", "/nowhere/isobar.toml"});
+  CHECK(no_file.read_until("/nowhere/isobar.toml", 10s));
+  CHECK(no_file.wait(10s) == 78);
   ChildProcess no_option({ISOBAR_DDS_PROGRAM, "--nonsense"});
   CHECK(no_option.wait(10s) == 64);
 }
