@@ -140,7 +140,7 @@ std::optional<SensorEntry> read_sensor(const toml::table& root, const std::strin
   return SensorEntry{text.file_name(*table, name), text.mount(*table, name)};
 }
 
-toml::table parse(const std::filesystem::path& folder, const std::filesystem::path& file) {
+std::string read_text(const std::filesystem::path& folder, const std::filesystem::path& file) {
   if (!std::filesystem::is_directory(folder)) {
     throw DataError(folder.string() +
                     (std::filesystem::exists(folder) ? ": is no folder; a recording is a folder with "
@@ -157,12 +157,16 @@ toml::table parse(const std::filesystem::path& folder, const std::filesystem::pa
   std::ostringstream content;
   content << in.rdbuf();
   if (!in.good() && content.str().empty()) {
-    throw DataError(file.string() + ": is empty or cannot be read");
+    throw DataError(file.string() + ": version: must be 1; the file is empty or cannot be read");
   }
+  return content.str();
+}
+
+toml::table parse_toml(std::string_view text, const std::string& file) {
   try {
-    return toml::parse(content.str(), file.string());
+    return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
-    throw DataError(file.string() + ":" + std::to_string(error.source().begin.line) + ": " +
+    throw DataError(file + ":" + std::to_string(error.source().begin.line) + ": " +
                     std::string(error.description()));
   }
 }
@@ -218,8 +222,13 @@ Manifest Manifest::with_all_sensors() {
 
 Manifest read_manifest(const std::filesystem::path& folder, std::vector<std::string>& warnings) {
   const std::filesystem::path file = folder / kManifestFile;
-  const toml::table root = parse(folder, file);
-  ManifestText text(file.string(), warnings);
+  return parse_manifest(read_text(folder, file), file.string(), warnings);
+}
+
+Manifest parse_manifest(std::string_view content, const std::string& file,
+                        std::vector<std::string>& warnings) {
+  const toml::table root = parse_toml(content, file);
+  ManifestText text(file, warnings);
   text.warn_unknown_keys(
       root, "",
       {"version", "description", "lidar", "imu", "barometer", "base_barometer", "wheel", "reference"});

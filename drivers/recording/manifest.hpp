@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/geometry.hpp"
@@ -44,6 +45,10 @@ struct Manifest {
 /// Reads `folder`/recording.toml. Throws DataError "file:line: key: rule". Unknown keys and sections come
 /// from other tools and are no error: they are added to `warnings` as "file:line: key: unknown, ignored".
 Manifest read_manifest(const std::filesystem::path& folder, std::vector<std::string>& warnings);
+
+/// The same from the text of a file; `file` is its name in errors.
+Manifest parse_manifest(std::string_view content, const std::string& file,
+                        std::vector<std::string>& warnings);
 
 /// Writes `folder`/recording.toml; reading it back gives an equal manifest. Throws DataError.
 void write_manifest(const std::filesystem::path& folder, const Manifest& manifest);

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Configuration and manifest. What is accepted must be shown and accepted again.
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/config_io.hpp"
+#include "core/errors.hpp"
+#include "drivers/recording/manifest.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  try {
+    const std::string shown = isobar::show_config(isobar::parse_config(text, "fuzz.toml"));
+    if (isobar::show_config(isobar::parse_config(shown, "shown.toml")) != shown) {
+      std::abort();
+    }
+  } catch (const isobar::ConfigError& error) {
+    if (std::string_view(error.what()).starts_with("shown.toml")) {
+      std::abort();
+    }
+  }
+  try {
+    std::vector<std::string> warnings;
+    isobar::recording::parse_manifest(text, "fuzz.toml", warnings);
+  } catch (const isobar::DataError&) {
+    return 0;  // refused in words
+  }
+  return 0;
+}

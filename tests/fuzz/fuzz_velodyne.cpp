@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A stream of packets. Each starts with a byte of choices and the payload's length; the byte may ask for
+// valid flags, azimuths, mode and model, so that the fuzzer gets past the checks.
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "drivers/velodyne/velodyne_decoder.hpp"
+
+namespace {
+
+using isobar::velodyne::Model;
+
+void make_valid(std::vector<std::uint8_t>& packet, Model model, bool dual) {
+  packet.resize(isobar::velodyne::kDataPacketBytes);
+  for (std::size_t block = 0; block < 12; ++block) {
+    packet[block * 100] = 0xFF;
+    packet[block * 100 + 1] = 0xEE;
+    packet[block * 100 + 3] %= 140;  // azimuth below 36000
+  }
+  packet[1204] = dual ? 0x39 : 0x37;
+  packet[1205] = static_cast<std::uint8_t>(model);
+}
+
+/// What the next stage relies on.
+void check(const isobar::Scan& scan) {
+  if (scan.point_count > isobar::Scan::kMaxPoints || scan.end_stamp_ns < scan.stamp_ns ||
+      scan.end_stamp_ns - scan.stamp_ns > 600'000'000) {
+    std::abort();
+  }
+  for (std::uint32_t i = 0; i < scan.point_count; ++i) {
+    if (!(std::abs(scan.points[i].x_m) < 132.0F) || scan.points[i].ring > 31) {
+      std::abort();
+    }
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const auto scan = std::make_unique<isobar::Scan>();
+  if (size < 1) {
+    return 0;
+  }
+  isobar::velodyne::VelodyneConfig config;
+  config.model = (data[0] & 1U) != 0 ? Model::kHdl32e : Model::kVlp16;
+  config.mask_end_deg = data[0];
+  static isobar::velodyne::VelodyneDecoder fresh[2] = {isobar::velodyne::VelodyneDecoder({Model::kVlp16}),
+                                                       isobar::velodyne::VelodyneDecoder({Model::kHdl32e})};
+  auto decoder = std::make_unique<isobar::velodyne::VelodyneDecoder>(fresh[data[0] & 1U]);
+  std::int64_t host_ns = 1'700'000'000'000'000'000;
+  std::vector<std::uint8_t> packet;
+  for (std::size_t at = 1; at + 5 <= size;) {
+    const unsigned choices = data[at];
+    const std::size_t length = std::min<std::size_t>(data[at + 1] | data[at + 2] << 8U, size - at - 5);
+    host_ns += (choices & 1U) != 0 ? std::int64_t{data[at + 3]} << (data[at + 4] % 56U) : 1'327'104;
+    packet.assign(data + at + 5, data + at + 5 + length);
+    if ((choices & 6U) != 0) {
+      make_valid(packet, config.model, (choices & 4U) != 0);
+    }
+    if (decoder->add_packet(packet, host_ns, *scan).scan_complete) {
+      check(*scan);
+    }
+    at += 5 + length;
+  }
+  if (decoder->flush(*scan)) {
+    check(*scan);
+  }
+  return 0;
+}

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Writes seed inputs for every fuzz target into the folder that is given. Nothing recorded is in them.
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "config/config_io.hpp"
+#include "drivers/recording/recording_writer.hpp"
+#include "tests/drivers/velodyne/packet_builder.hpp"
+
+namespace {
+
+using namespace isobar;
+
+std::filesystem::path root;
+
+void save(const std::string& target, const std::string& name, const std::string& content) {
+  std::filesystem::create_directories(root / target);
+  std::ofstream(root / target / name, std::ios::binary) << content;
+}
+
+std::string load(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+test::PacketPlan plan_of(int n, std::uint8_t product_id, std::uint8_t mode) {
+  test::PacketPlan plan;
+  plan.product_id = product_id;
+  plan.return_mode = mode;
+  plan.timestamp_us = static_cast<std::uint32_t>(3'599'990'000LL + n * 1'327) % 3'600'000'000U;
+  plan.first_azimuth_deg = 355.0 + n * 2.4;
+  return plan;
+}
+
+void velodyne_seeds() {
+  for (const std::uint8_t product_id : {0x22, 0x21}) {
+    for (const std::uint8_t mode : {0x37, 0x39}) {
+      std::string stream(1, static_cast<char>(product_id & 1U));
+      for (int n = 0; n < 5; ++n) {
+        const auto packet = test::build_packet(plan_of(n, product_id, mode));
+        stream += std::string("\0\xB6\x04\0\0", 5);  // no choices, 1206 bytes
+        stream.append(packet.begin(), packet.end());
+      }
+      save("fuzz_velodyne", std::to_string(product_id) + "-" + std::to_string(mode), stream);
+    }
+  }
+}
+
+void recording_seeds() {
+  const auto folder = root / "recording";
+  std::filesystem::remove_all(folder);
+  recording::RecordingWriter writer(folder, recording::Manifest::with_all_sensors());
+  constexpr std::int64_t kStart = 1'700'000'000'000'000'000;
+  for (std::int64_t i = 0; i < 5; ++i) {
+    const std::int64_t stamp_ns = kStart + i * 100'000'000;
+    ImuSample imu;
+    imu.stamp_ns = stamp_ns;
+    imu.accel_m_s2.z() = 9.81;
+    imu.has_attitude = true;
+    writer.add_imu(imu);
+    writer.add_pressure({stamp_ns, 100'000.5, 20.0});
+    writer.add_base_pressure({stamp_ns + 1'000'000'000'000, 100'010.25, 21.0});
+    writer.add_wheel({stamp_ns, 0.5, 0.0, 0.1});
+    writer.add_packet(stamp_ns, std::vector<std::uint8_t>(64, static_cast<std::uint8_t>(i)));
+    writer.add_reference(stamp_ns, Eigen::Isometry3d::Identity());
+  }
+  writer.add_segment({kStart, kStart + 1'000'000'000, "flat"});
+  writer.close();
+  const std::string capture = load(folder / "lidar.pcap");
+  save("fuzz_pcap", "nanoseconds", capture);
+  save("fuzz_recording", "all",
+       load(folder / "imu.csv") + "\x01" + load(folder / "barometer.csv") + "\x01" +
+           load(folder / "base_barometer.csv") + "\x01" + load(folder / "wheel.csv") + "\x01" +
+           capture.substr(24) + "\x01\x01\x01\x01" + load(folder / "reference.tum") + "\x01" +
+           load(folder / "segments.csv"));
+  save("fuzz_toml", "manifest", load(folder / "recording.toml"));
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 2) {
+    std::fprintf(stderr, "usage: make_seeds FOLDER\n");
+    return 64;
+  }
+  root = arguments[1];
+  velodyne_seeds();
+  recording_seeds();
+  save("fuzz_toml", "config", show_config(Config{}));
+  save("fuzz_toml", "short",
+       "method = \"4dof\"\n[lidar]\nmodel = \"HDL-32E\"\nxyz_m = [0.1, 0, 0.45]\n[map]\ncell_m = 0.3\n");
+  save(
+      "fuzz_datagram", "all",
+      "imu,1,1700000000000000000,0.1,0.2,-0.3,0,0,9.81,1,0,0,0\nbaro,1,1700000000000000000,100000.5,20.25\r\n"
+      "base,4294967295,0,1e5,nan\nwheel,7,5,0.5,0,0.1\n");
+  return 0;
+}
