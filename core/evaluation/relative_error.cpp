@@ -8,7 +8,7 @@ namespace isobar::evaluation {
 namespace {
 
 constexpr double kLongestWindow = 1.1;  // times the length asked for
-constexpr double kRounding_m = 1e-6;    // of a sum of steps
+constexpr double kRoundingM = 1e-6;     // of a sum of steps
 
 /// Appends the windows within pairs[begin … end-1].
 void append_windows(const std::vector<PosePair>& pairs, std::size_t begin, std::size_t end,
@@ -16,11 +16,11 @@ void append_windows(const std::vector<PosePair>& pairs, std::size_t begin, std::
   std::size_t last = begin;
   double next_start_m = begin < end ? pairs[begin].distance_m : 0.0;
   for (std::size_t first = begin; first < end; ++first) {
-    const double start_m = pairs[first].distance_m + kRounding_m;
+    const double start_m = pairs[first].distance_m + kRoundingM;
     if (start_m < next_start_m) continue;
     next_start_m +=
         options.start_step_m * (std::floor((start_m - next_start_m) / options.start_step_m) + 1.0);
-    while (last < end && pairs[last].distance_m < start_m + options.length_m - 2.0 * kRounding_m) ++last;
+    while (last < end && pairs[last].distance_m < start_m + options.length_m - 2.0 * kRoundingM) ++last;
     if (last == end) return;
     const double travelled_m = pairs[last].distance_m - pairs[first].distance_m;
     if (travelled_m <= kLongestWindow * options.length_m) windows.push_back({first, last, travelled_m});

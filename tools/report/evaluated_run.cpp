@@ -32,6 +32,7 @@ bool needed_repair(const evaluation::StampRepairs& repairs) {
 
 std::vector<evaluation::HeightSigma> sigmas_of(const std::vector<StatusRow>& status) {
   std::vector<evaluation::HeightSigma> sigmas;
+  sigmas.reserve(status.size());
   for (const StatusRow& row : status) sigmas.push_back({row.stamp_ns, row.sd_z_m});
   return sigmas;
 }

@@ -69,6 +69,12 @@ void add_property(VertexLayout& layout, const std::string& type, const std::stri
   if (layout.bytes > kMaxVertexBytes) throw DataError(where + "a vertex has too many properties");
 }
 
+std::uint64_t element_count(const std::string& word, const std::string& where) {
+  const std::optional<std::int64_t> count = evaluation::parse_int64(word);
+  if (!count || *count < 0) throw DataError(where + "'" + word + "' is not a number of elements");
+  return static_cast<std::uint64_t>(*count);
+}
+
 /// Reads up to and with "end_header"; only elements behind the vertices may follow them.
 VertexLayout read_ply_header(std::istream& in, const std::string& name) {
   VertexLayout layout;
@@ -76,7 +82,8 @@ VertexLayout read_ply_header(std::istream& in, const std::string& name) {
   std::string element;
   bool is_binary = false;
   for (std::size_t number = 1; number <= kMaxHeaderLines && std::getline(in, line); ++number) {
-    const std::string where = name + ":" + std::to_string(number) + ": ";
+    std::string where = name;
+    where.append(":").append(std::to_string(number)).append(": ");
     std::istringstream words(line);
     std::string keyword;
     std::string first;
@@ -87,9 +94,8 @@ VertexLayout read_ply_header(std::istream& in, const std::string& name) {
     if (keyword == "element") {
       if (element.empty() && first != "vertex") throw DataError(where + "the first element must be 'vertex'");
       element = first;
-      const std::optional<std::int64_t> count = evaluation::parse_int64(second);
-      if (!count || *count < 0) throw DataError(where + "'" + second + "' is not a number of elements");
-      if (element == "vertex") layout.count = static_cast<std::uint64_t>(*count);
+      const std::uint64_t count = element_count(second, where);
+      if (element == "vertex") layout.count = count;
     }
     if (keyword == "property" && element == "vertex") add_property(layout, first, second, where);
     if (keyword != "end_header") continue;

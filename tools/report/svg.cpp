@@ -64,7 +64,7 @@ std::string fixed(double value, int decimals) {
 }
 
 std::string fixed_signed(double value, int decimals) {
-  const std::string text = fixed(value, decimals);
+  std::string text = fixed(value, decimals);
   if (std::isnan(value) || text.find_first_of("123456789") == std::string::npos) return text;
   if (text.front() == '-') return std::string(kMinus) + text.substr(1);
   return "+" + text;

@@ -11,10 +11,10 @@
 
 namespace isobar::evaluation::test {
 
-inline constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
+inline constexpr std::int64_t kStartNs = 1'700'000'000'000'000'000;
 inline constexpr double kDegree = std::numbers::pi / 180.0;
 
-inline std::int64_t at_ns(double t_s) { return kStart_ns + std::llround(t_s * 1e9); }
+inline std::int64_t at_ns(double t_s) { return kStartNs + std::llround(t_s * 1e9); }
 
 inline Eigen::Quaterniond yaw_rotation(double yaw) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));

@@ -90,7 +90,7 @@ TEST_CASE("relative errors do not change when the estimate is moved by yaw and s
   const Trajectory reference = winding(60.0, 0.05);
   Trajectory estimate = reference;
   for (StampedPose& p : estimate.poses)
-    p.position_m.z() += 0.1 * std::sin(static_cast<double>(p.stamp_ns - kStart_ns) * 1e-9);
+    p.position_m.z() += 0.1 * std::sin(static_cast<double>(p.stamp_ns - kStartNs) * 1e-9);
   const std::vector<PosePair> here = pairs_of(reference, estimate);
   const std::vector<PosePair> there =
       pairs_of(reference, transformed(yaw_and_shift(1.0, {9, 8, 7}), estimate));
