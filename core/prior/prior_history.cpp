@@ -41,7 +41,7 @@ Prior interpolate(const Prior& before, const Prior& after, std::int64_t stamp_ns
   return out;
 }
 
-Prior extrapolate(const Prior& from, std::int64_t stamp_ns) {
+Prior extrapolate(const Prior& from, std::int64_t stamp_ns, double height_rate_m_s) {
   const double dt_s = static_cast<double>(stamp_ns - from.stamp_ns) * kSecondsPerNs;
   Prior out = from;
   out.stamp_ns = stamp_ns;
@@ -51,7 +51,7 @@ Prior extrapolate(const Prior& from, std::int64_t stamp_ns) {
   out.T_odom_base.translation() += step;
   const Eigen::Quaterniond turn = (half_turn * half_turn).normalized();
   out.T_odom_base.linear() = from.T_odom_base.linear() * turn.toRotationMatrix();
-  out.height_m += step.z();
+  out.height_m += height_rate_m_s * dt_s;
   out.height_variance_m2 += dt_s * dt_s * from.velocity_variance_m2_s2;
   return out;
 }
@@ -71,6 +71,19 @@ void PriorHistory::add(const Prior& prior) {
   first_ = (first_ + 1) % ring_.size();
 }
 
+double PriorHistory::height_rate_m_s() const {
+  // Over some tens of milliseconds: single steps carry the corrections by the barometer.
+  constexpr std::int64_t kSpanNs = 50'000'000;
+  for (std::size_t back = 2; back <= count_; ++back) {
+    const Prior& before = nth(count_ - back);
+    const std::int64_t span_ns = newest().stamp_ns - before.stamp_ns;
+    if (span_ns >= kSpanNs || back == count_) {
+      return (newest().height_m - before.height_m) / (static_cast<double>(span_ns) * kSecondsPerNs);
+    }
+  }
+  return 0.0;
+}
+
 void PriorHistory::clear() {
   first_ = 0;
   count_ = 0;
@@ -83,7 +96,7 @@ bool PriorHistory::covers(std::int64_t stamp_ns) const {
 bool PriorHistory::at(std::int64_t stamp_ns, Prior& out) const {
   if (!covers(stamp_ns)) return false;
   if (stamp_ns >= newest().stamp_ns) {
-    out = extrapolate(newest(), stamp_ns);
+    out = extrapolate(newest(), stamp_ns, height_rate_m_s());
     return true;
   }
   // First prior that is later than stamp_ns: it exists, and is not the oldest.

@@ -14,8 +14,9 @@ namespace isobar {
 /// variances linearly. Flags hold only where both hold; the height source is the worse of the two.
 Prior interpolate(const Prior& before, const Prior& after, std::int64_t stamp_ns);
 
-/// Prior carried on to `stamp_ns` at constant twist. Variances of height grow with the velocity's.
-Prior extrapolate(const Prior& from, std::int64_t stamp_ns);
+/// Prior carried on to `stamp_ns` at constant twist; the height at `height_rate_m_s`, which is not the
+/// twist's where the ground moves (elevator). The height's variance grows with the velocity's.
+Prior extrapolate(const Prior& from, std::int64_t stamp_ns, double height_rate_m_s);
 
 /// Ring buffer of fixed capacity, oldest forgotten first. Allocates in its constructor only. One thread.
 class PriorHistory {
@@ -44,6 +45,7 @@ class PriorHistory {
   [[nodiscard]] const Prior& newest() const { return nth(count_ - 1); }
 
  private:
+  [[nodiscard]] double height_rate_m_s() const;
   [[nodiscard]] const Prior& nth(std::size_t age_order) const {
     const std::size_t index = first_ + age_order;
     return ring_[index < ring_.size() ? index : index - ring_.size()];

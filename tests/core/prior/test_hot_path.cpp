@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+
+#include "core/prior/prior_history.hpp"
+#include "tests/core/prior/simulated_robot.hpp"
+
+namespace {
+std::atomic<long> allocations{0};  // NOLINT: counted by the operators below
+}
+
+// Every way to allocate goes through these two.
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size)) return memory;  // NOLINT
+  throw std::bad_alloc();
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  ++allocations;
+  const auto align = static_cast<std::size_t>(alignment);
+  if (void* memory = std::aligned_alloc(align, (size + align - 1) / align * align)) return memory;  // NOLINT
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }                                 // NOLINT
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }                    // NOLINT
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }               // NOLINT
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }  // NOLINT
+
+using namespace isobar;
+using namespace isobar::testing;
+
+TEST_CASE("nothing is allocated after construction") {
+  PriorEstimator estimator{PriorConfig{}};
+  PriorHistory history(256);
+  Prior prior;
+  const long before = allocations;
+  bool covered = true;
+  for (int i = 0; i < 4000; ++i) {
+    const std::int64_t stamp_ns = i * 5'000'000LL;
+    ImuSample sample;
+    sample.stamp_ns = stamp_ns;
+    sample.accel_m_s2 = Eigen::Vector3d(0.01 * (i % 7), 0.0, kGravity);
+    if (i % 6 == 0) estimator.add_pressure({stamp_ns, 1e5 + 0.1 * (i % 5), 20.0});
+    if (i % 6 == 3) estimator.add_base_pressure({stamp_ns, 1e5 + 0.1 * (i % 3), 20.0});
+    if (i % 4 == 0) estimator.add_wheel({stamp_ns, 0.3, 0.0, 0.0});
+    estimator.add_imu(sample, prior);
+    history.add(prior);
+    covered = covered && history.at(stamp_ns - (i > 0 ? 1'000'000 : 0), prior);
+  }
+  CHECK(allocations == before);
+  CHECK(covered);
+  const long counted = allocations;
+  ::operator delete(::operator new(16));  // the counter counts: not a new-expression, which may be left out
+  CHECK(allocations == counted + 1);
+}
+
+TEST_CASE("the same samples give the same bits") {
+  SimulatedRobot robot;
+  robot.motion = Drive{};
+  robot.duration_s = 10.0;
+  const auto first = run(robot, config_for(robot), 12);
+  const auto second = run(robot, config_for(robot), 12);
+  REQUIRE(first.size() == second.size());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    CHECK(std::memcmp(first[i].prior.T_odom_base.data(), second[i].prior.T_odom_base.data(),
+                      16 * sizeof(double)) == 0);
+    CHECK(first[i].prior.height_m == second[i].prior.height_m);
+    CHECK(first[i].prior.height_variance_m2 == second[i].prior.height_variance_m2);
+  }
+}

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "core/prior/prior_history.hpp"
+#include "core/prior/rotation.hpp"
+
+using namespace isobar;
+
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+/// Constant twist: the exact motion at time t.
+Prior at_time(std::int64_t stamp_ns) {
+  const double t = static_cast<double>(stamp_ns) * 1e-9;
+  Prior prior;
+  prior.stamp_ns = stamp_ns;
+  prior.w_base_rad_s = {0.0, 0.0, 0.5};
+  prior.v_base_m_s = {1.0, 0.0, 0.0};
+  prior.T_odom_base.linear() = rotation_of(prior.w_base_rad_s * t).toRotationMatrix();
+  prior.T_odom_base.translation() =
+      Eigen::Vector3d(2.0 * std::sin(0.5 * t), 2.0 * (1.0 - std::cos(0.5 * t)), 0.0);
+  prior.height_m = 0.3 * t;
+  prior.attitude_valid = true;
+  prior.height_source = HeightSource::kDifferential;
+  return prior;
+}
+
+}  // namespace
+
+TEST_CASE("a history interpolates a constant twist") {
+  PriorHistory history(100);
+  for (int i = 0; i < 60; ++i) history.add(at_time(i * 5 * kMs));
+  for (std::int64_t stamp = 0; stamp <= 295 * kMs; stamp += 1'234'567) {
+    Prior prior;
+    REQUIRE(history.at(stamp, prior));
+    const Prior truth = at_time(stamp);
+    CHECK(prior.stamp_ns == stamp);
+    // Chord against arc over 5 ms: v w dt^2 / 8, 1.6e-6 m.
+    CHECK((prior.T_odom_base.translation() - truth.T_odom_base.translation()).norm() < 2e-6);
+    CHECK(prior.T_odom_base.linear().isApprox(truth.T_odom_base.linear(), 1e-12));
+    CHECK(prior.height_m == doctest::Approx(truth.height_m).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("a history extrapolates by the twist, up to its limit") {
+  PriorHistory history(10, 100 * kMs);
+  for (int i = 0; i < 20; ++i) history.add(at_time(i * 5 * kMs));
+  Prior prior;
+  REQUIRE(history.at(195 * kMs, prior));
+  // Over 100 ms the straight step differs from the arc by v w^2 dt^3 / 24.
+  CHECK((prior.T_odom_base.translation() - at_time(195 * kMs).T_odom_base.translation()).norm() < 2e-5);
+  CHECK(prior.T_odom_base.linear().isApprox(at_time(195 * kMs).T_odom_base.linear(), 1e-12));
+  // The height goes on at the rate at which it has moved, though the wheels know nothing of it (elevator).
+  CHECK(prior.height_m == doctest::Approx(0.3 * 0.195).epsilon(1e-6));
+  const Prior untouched = prior;
+  CHECK_FALSE(history.at(196 * kMs, prior));
+  CHECK(prior.stamp_ns == untouched.stamp_ns);
+}
+
+TEST_CASE("a history forgets the oldest and refuses what lies outside") {
+  PriorHistory history(10);
+  Prior prior;
+  CHECK_FALSE(history.at(0, prior));
+  for (int i = 0; i < 25; ++i) history.add(at_time(i * 5 * kMs));
+  CHECK(history.size() == 10);
+  CHECK(history.oldest().stamp_ns == 75 * kMs);
+  CHECK(history.newest().stamp_ns == 120 * kMs);
+  CHECK_FALSE(history.covers(75 * kMs - 1));
+  CHECK(history.covers(75 * kMs));
+  history.add(at_time(60 * kMs));
+  CHECK(history.newest().stamp_ns == 120 * kMs);
+  history.clear();
+  CHECK(history.empty());
+}
+
+TEST_CASE("between two priors the worse source and both flags count") {
+  Prior a = at_time(0);
+  Prior b = at_time(10 * kMs);
+  b.height_source = HeightSource::kHeld;
+  b.attitude_valid = false;
+  const Prior middle = interpolate(a, b, 3 * kMs);
+  CHECK(middle.height_source == HeightSource::kHeld);
+  CHECK_FALSE(middle.attitude_valid);
+}
