@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "drivers/simulation/corridor.hpp"
+#include "drivers/simulation/lift.hpp"
 #include "drivers/simulation/people.hpp"
 #include "drivers/simulation/scenario.hpp"
 
@@ -15,65 +16,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 namespace {
-
-constexpr double kCabinWidthM = 1.7;
-constexpr double kCabinDepthM = 2.1;
-constexpr double kDoorWidthM = 1.1;
-constexpr double kDoorHeightM = 2.1;
-constexpr double kShaftDoorM = 0.25;  // thickness of the wall between corridor and shaft
-constexpr double kDoorTimeS = 2.5;
-
-/// When doors move and where the cabin is, on the time grid.
-struct Lift {
-  std::vector<double> cabin_z_m;
-  std::vector<double> open;      ///< cabin doors: 0 shut … 1 open
-  std::vector<double> open_top;  ///< landing doors
-  std::vector<double> open_ground;
-};
-
-/// The cabin's inner walls, floor and ceiling, open at x = 0 towards -x; inside is 0 < x < depth.
-Mesh make_cabin() {
-  Mesh mesh;
-  const double half = 0.5 * kCabinWidthM;
-  const double top = 2.25;
-  const double door = 0.5 * kDoorWidthM;
-  const double x0 = 0.12;
-  const double x1 = x0 + kCabinDepthM;
-  const Surface metal = Surface::kMetal;
-  mesh.quad({0.0, -half, 0.0}, {x1, -half, 0.0}, {x1, half, 0.0}, {0.0, half, 0.0}, Surface::kConcrete);
-  mesh.quad({x0, -half, top}, {x1, -half, top}, {x1, half, top}, {x0, half, top}, Surface::kPlaster);
-  mesh.quad({x1, -half, 0.0}, {x1, half, 0.0}, {x1, half, top}, {x1, -half, top}, metal);
-  for (const double side : {-1.0, 1.0}) {
-    mesh.quad({x0, side * half, 0.0}, {x1, side * half, 0.0}, {x1, side * half, top}, {x0, side * half, top},
-              metal);
-    mesh.quad({x0, side * door, 0.0}, {x0, side * half, 0.0}, {x0, side * half, top}, {x0, side * door, top},
-              metal);
-    // handrails
-    mesh.box({x0 + 0.2, side * half, 0.85}, {x1 - 0.2, side * (half - 0.06), 0.92}, metal);
-  }
-  mesh.quad({x0, -door, kDoorHeightM}, {x0, door, kDoorHeightM}, {x0, door, top}, {x0, -door, top}, metal);
-  return mesh;
-}
-
-/// One leaf of a sliding door; side -1 or +1, shut at its origin, overlapping the other by 2 cm.
-Mesh make_leaf(double side) {
-  Mesh mesh;
-  mesh.box({-0.02, std::min(-side * 0.01, side * 0.5 * kDoorWidthM), 0.0},
-           {0.02, std::max(-side * 0.01, side * 0.5 * kDoorWidthM), kDoorHeightM}, Surface::kMetal);
-  return mesh;
-}
-
-/// A leaf of each side of a door at (x, y), sliding along y.
-void add_doors(std::vector<MovingBody>& bodies, double x, double y, const std::vector<double>& open,
-               const std::vector<double>& z) {
-  for (const double side : {-1.0, 1.0}) {
-    std::vector<double> slide;
-    slide.reserve(open.size());
-    for (const double fraction : open) slide.push_back(y + side * fraction * 0.5 * kDoorWidthM);
-    bodies.push_back({RayCaster(make_leaf(side)), Channel(std::vector<double>(open.size(), x)),
-                      Channel(std::move(slide)), Channel(z)});
-  }
-}
 
 /// Corridor from the origin along +x; the elevator lies beyond its end.
 struct Site {
@@ -99,10 +41,14 @@ Site draw_site(Random& random, bool short_form) {
 
 /// Cuts the door's opening and, on the way, the shaft.
 void cut_elevator(FloorPlan& plan, const Site& site, double storey_m) {
-  const double half = 0.5 * kDoorWidthM;
+  const double half = 0.5 * LiftSizes::kDoorWidthM;
   const double x = site.end_x_m;
-  plan.cut({{x, -half, x + kShaftDoorM, half}, 0.0, kDoorHeightM});
-  plan.cut({{x + kShaftDoorM, -1.0, x + kShaftDoorM + 2.5, 1.0}, 0.0, storey_m, false, false});
+  plan.cut({{x, -half, x + LiftSizes::kShaftWallM, half}, 0.0, LiftSizes::kDoorHeightM});
+  plan.cut({{x + LiftSizes::kShaftWallM, -1.0, x + LiftSizes::kShaftWallM + 2.5, 1.0},
+            0.0,
+            storey_m,
+            false,
+            false});
 }
 
 /// The ground floor beyond the ramp lies higher: the floor of the plan is cut there and closed by the ramp.
@@ -144,115 +90,7 @@ void build_top(Mesh& mesh, const Site& site, Random& random) {
   storey.plan.build(mesh, site.height_m);
 }
 
-/// Drives the robot and the lift together.
-class Timeline {
- public:
-  Timeline(const Site& site, Random& random)
-      : site_(site), route_({random.uniform(1.5, 2.5), 0.0}, site.height_m, 0.0), random_(random) {
-    lift_.cabin_z_m.push_back(0.0);
-    lift_.open.push_back(0.0);
-    lift_.open_top.push_back(0.0);
-    lift_.open_ground.push_back(0.0);
-  }
-
-  /// Waits for the lift at `top` or on the ground, drives in, turns round, and is carried to the other
-  /// storey.
-  void take_lift() {
-    const bool top = route_.pose().z_m > 0.5 * site_.height_m;
-    move_cabin_to(top ? site_.height_m : 0.0);
-    doors(top, 1.0);
-    const double middle_m = site_.end_x_m + kShaftDoorM + 0.12 + 0.5 * kCabinDepthM;
-    drive({{{middle_m, 0.0}, route_.pose().z_m, 0.4, "flat"}});
-    route_.turn(random_.sign() * std::numbers::pi);
-    follow();
-    doors(top, 0.0);
-    const double before_m = route_.pose().z_m;
-    const std::size_t first = route_.samples().size();
-    route_.ride(top ? -site_.height_m : site_.height_m, ride_speed_m_s_, ride_acceleration_m_s2_);
-    const double cabin_m = lift_.cabin_z_m.back();
-    for (std::size_t i = first; i < route_.samples().size(); ++i) {
-      push(cabin_m + route_.samples()[i].z_m - before_m);
-    }
-    doors(!top, 1.0);
-  }
-
-  void drive(const std::vector<Waypoint>& way) {
-    route_.drive(way);
-    follow();
-  }
-  void wait(double seconds) {
-    route_.wait(seconds);
-    follow();
-  }
-  void turn_round() {
-    route_.turn(random_.sign() * std::numbers::pi);
-    follow();
-  }
-  /// Opens (1) or shuts (0) the doors of the cabin and of one storey while the robot waits.
-  void doors(bool top, double target) {
-    const double from = lift_.open.back();
-    for (double t = SplineGrid::kStepS; t <= kDoorTimeS; t += SplineGrid::kStepS) {
-      const double phase = t / kDoorTimeS;
-      const double fraction = from + (target - from) * 0.5 * (1.0 - std::cos(std::numbers::pi * phase));
-      open_ = fraction;
-      (top ? open_top_ : open_ground_) = fraction;
-      wait(2.0 * SplineGrid::kStepS);
-    }
-    wait(random_.uniform(0.8, 1.5));
-  }
-
-  [[nodiscard]] const Route& route() const { return route_; }
-  [[nodiscard]] const Lift& lift() const { return lift_; }
-
- private:
-  /// The lift stands still while the robot moved.
-  void follow() {
-    while (lift_.cabin_z_m.size() < route_.samples().size()) push(lift_.cabin_z_m.back());
-  }
-  void push(double cabin_z_m) {
-    lift_.cabin_z_m.push_back(cabin_z_m);
-    lift_.open.push_back(open_);
-    lift_.open_top.push_back(open_top_);
-    lift_.open_ground.push_back(open_ground_);
-  }
-  /// The empty cabin comes, unseen behind shut doors.
-  void move_cabin_to(double target_m) {
-    const double from_m = lift_.cabin_z_m.back();
-    const double seconds = std::abs(target_m - from_m) / ride_speed_m_s_;
-    const auto steps = static_cast<int>(seconds / SplineGrid::kStepS);
-    if (steps == 0) return;
-    route_.wait(seconds + SplineGrid::kStepS);
-    for (int i = 1; lift_.cabin_z_m.size() < route_.samples().size(); ++i) {
-      push(from_m + (target_m - from_m) * std::min(1.0, static_cast<double>(i) / steps));
-    }
-  }
-
-  const Site& site_;
-  Route route_;
-  Random& random_;
-  Lift lift_;
-  double open_ = 0.0;
-  double open_top_ = 0.0;
-  double open_ground_ = 0.0;
-  // Passenger elevators: 1 m/s, up to 1 m/s^2.
-  double ride_speed_m_s_ = 1.0;
-  double ride_acceleration_m_s2_ = 0.8;
-};
-
-std::vector<MovingBody> lift_bodies(const Site& site, const Lift& lift) {
-  std::vector<MovingBody> bodies;
-  const std::size_t samples = lift.cabin_z_m.size();
-  const double x = site.end_x_m + kShaftDoorM;
-  const Channel cabin_z(lift.cabin_z_m);
-  bodies.push_back({RayCaster(make_cabin()), Channel(std::vector<double>(samples, x)),
-                    Channel(std::vector<double>(samples, 0.0)), cabin_z});
-  add_doors(bodies, x + 0.08, 0.0, lift.open, lift.cabin_z_m);
-  add_doors(bodies, site.end_x_m + 0.15, 0.0, lift.open_top, std::vector<double>(samples, site.height_m));
-  add_doors(bodies, site.end_x_m + 0.15, 0.0, lift.open_ground, std::vector<double>(samples, 0.0));
-  return bodies;
-}
-
-void drive_ground_floor(Timeline& timeline, const Site& site, bool short_form, Random& random) {
+void drive_ground_floor(LiftDrive& timeline, const Site& site, bool short_form, Random& random) {
   const double speed = random.uniform(0.5, 0.7);
   const double x1 = site.end_x_m - site.ramp_start_m;
   const double x0 = x1 - site.ramp_m;
@@ -275,7 +113,7 @@ Scenario make_elevator(std::uint64_t seed, bool short_form) {
   build_ground(mesh, site, random);
   build_top(mesh, site, random);
 
-  Timeline timeline(site, random);
+  LiftDrive timeline({site.end_x_m, site.height_m}, random.uniform(1.5, 2.5), random);
   const double speed = random.uniform(0.5, 0.7);
   timeline.wait(random.uniform(3.0, short_form ? 4.0 : 8.0));
   timeline.drive({{{site.end_x_m - 1.3, 0.0}, site.height_m, speed, "flat"}});
@@ -297,7 +135,7 @@ Scenario make_elevator(std::uint64_t seed, bool short_form) {
   scenario.labels = timeline.route().labels();
   add_shaking(scenario.raw, scenario.labels, Random(random.next()));
   scenario.trajectory = Trajectory(scenario.raw);
-  std::vector<MovingBody> bodies = lift_bodies(site, timeline.lift());
+  std::vector<MovingBody> bodies = timeline.bodies();
   const int people = short_form ? 1 : 2;
   for (int i = 0; i < people; ++i) {
     Corridor walk = site.corridor;
