@@ -4,8 +4,11 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "config/config_io.hpp"
+#include "daemon/stage_settings.hpp"
+#include "drivers/recording/manifest.hpp"
 #include "tools/commands.hpp"
 
 namespace isobar::tools {
@@ -25,8 +28,17 @@ void add_config_command(CLI::App& app) {
   CLI::App* show =
       command->add_subcommand("show", "Print every setting with unit, range and reason, as TOML");
   show->add_option("FILE", *file, "configuration whose values take the place of the defaults");
-  show->callback([file] {
-    const std::string text = show_config(file->empty() ? Config{} : load_config(*file));
+  const auto recording = std::make_shared<std::string>();
+  show->add_option("--sensors-of", *recording,
+                   "recording whose sensors and mounts take the place of the defaults");
+  show->callback([file, recording] {
+    Config config = file->empty() ? Config{} : load_config(*file);
+    if (!recording->empty()) {
+      std::vector<std::string> warnings;
+      config = with_sensors_of(recording::read_manifest(*recording, warnings), config);
+      for (const std::string& warning : warnings) std::fprintf(stderr, "note: %s\n", warning.c_str());
+    }
+    const std::string text = show_config(config);
     std::fwrite(text.data(), 1, text.size(), stdout);
   });
 }

@@ -7,7 +7,7 @@ namespace isobar::bridge {
 namespace {
 
 using ipc::HealthLevel;
-using std::chrono_literals::operator""ms;
+using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
 
 /// A thread comes round at least this often, so that its life can be seen.
 constexpr auto kRound = 250ms;

@@ -26,8 +26,7 @@
 namespace isobar::bridge {
 namespace {
 
-using std::chrono_literals::operator""ms;
-using std::chrono_literals::operator""s;
+using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
 
 /// isobard sends hundreds of priors a second and its health every second. After this long without anything
 /// the way through shared memory is broken (this process was stopped for so long that it was given up, say).

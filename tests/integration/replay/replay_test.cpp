@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "config/config_io.hpp"
+#include "drivers/recording/reference.hpp"
+#include "tests/integration/replay/recordings.hpp"
+
+using namespace isobar;        // NOLINT(google-build-using-namespace): a test
+using namespace isobar::test;  // NOLINT(google-build-using-namespace)
+
+TEST_CASE("replaying the same recording twice gives the same trajectory and the same map to the last bit") {
+  std::filesystem::path first;
+  std::filesystem::path second;
+  run(short_drive(), first);
+  run(short_drive(), second);
+  const std::string trajectory = bytes_of(first / "trajectory.tum");
+  REQUIRE(trajectory.size() > 1000);
+  CHECK(trajectory == bytes_of(second / "trajectory.tum"));
+  const std::string map = bytes_of(first / "map.ply");
+  REQUIRE(map.size() > 10'000);
+  CHECK(map == bytes_of(second / "map.ply"));
+}
+
+TEST_CASE("every scan gets a pose, in order, and nearly all are registered") {
+  std::filesystem::path out;
+  const ReplaySummary summary = run(short_drive(), out);
+  CHECK(summary.scans >= 135);  // 14 s at 10 Hz, less what the ends cut off
+  CHECK(summary.poses >= summary.scans);
+  CHECK(summary.registered >= summary.scans - 5);  // the first scans start the map
+  const auto poses = recording::read_tum(out / "trajectory.tum");
+  CHECK(poses.size() == summary.poses);
+  CHECK(std::is_sorted(poses.begin(), poses.end(),
+                       [](const auto& a, const auto& b) { return a.stamp_ns < b.stamp_ns; }));
+}
+
+TEST_CASE("each method follows the drive") {
+  // A few metres of travel: 15 cm hold for every method but dead reckoning, which also drifts with the
+  // wheels' scale and slip (up to a few per cent).
+  for (const Method method : {Method::k3Dof, Method::k4Dof, Method::k6Dof, Method::k4DofAltitude,
+                              Method::k6DofAltitude, Method::kOdometry}) {
+    CAPTURE(static_cast<int>(method));
+    std::filesystem::path out;
+    run(short_drive(), out, method);
+    CHECK(largest_error_m(short_drive(), out) < (method == Method::kOdometry ? 0.5 : 0.15));
+  }
+}
+
+TEST_CASE("the settings that a run wrote are those it used: running them again gives the same trajectory") {
+  std::filesystem::path out;
+  run(short_drive(), out);
+  const Config again = load_config(out / "settings.toml");
+  const std::filesystem::path out_again = fresh_folder("again");
+  replay(short_drive(), again, out_again, [](double) {});
+  CHECK(bytes_of(out / "trajectory.tum") == bytes_of(out_again / "trajectory.tum"));
+}
