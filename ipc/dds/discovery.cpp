@@ -47,6 +47,7 @@ Gid gid_of(dds_entity_t entity) {
 template <class Gid>
 std::vector<Gid> gids_of(const std::vector<dds_entity_t>& entities) {
   std::vector<Gid> gids;
+  gids.reserve(entities.size());
   for (const dds_entity_t entity : entities) {
     gids.push_back(gid_of<Gid>(entity));
   }

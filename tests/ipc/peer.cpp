@@ -13,8 +13,8 @@
 
 namespace {
 
-using namespace isobar;  // NOLINT(google-build-using-namespace): a test's helper
-using std::chrono_literals::operator""ms;
+using namespace isobar;                // NOLINT(google-build-using-namespace): a test's helper
+using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
 
 int run_broker() {
   const ipc::Broker broker;
