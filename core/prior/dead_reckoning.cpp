@@ -52,7 +52,7 @@ bool WheelOdometer::valid(std::int64_t stamp_ns) const {
 Eigen::Vector2d WheelOdometer::take_displacement(std::int64_t stamp_ns) {
   if (!valid(stamp_ns)) return Eigen::Vector2d::Zero();
   const Eigen::Vector2d here = rolled_ + velocity(last_) * seconds_between(last_.stamp_ns, stamp_ns);
-  const Eigen::Vector2d displacement = here - taken_;
+  Eigen::Vector2d displacement = here - taken_;
   taken_ = here;
   return displacement;
 }
