@@ -92,12 +92,13 @@ BrokerLock BrokerLock::acquire() {
   if (descriptor < 0) {
     throw ServiceError(std::string(kLockPath) + ": cannot be opened: " + reason());
   }
-  BrokerLock lock(descriptor);
   struct flock request = whole_file(F_WRLCK);
   if (::fcntl(descriptor, F_OFD_SETLK, &request) != 0) {
+    ::close(descriptor);
     throw ServiceError("another isobard is running on this machine (it holds " + std::string(kLockPath) +
                        "); stop it first");
   }
+  BrokerLock lock(descriptor);
   if (library_lock_is_held()) {
     throw ServiceError("another program serves iceoryx on this machine (it holds " +
                        std::string(kLibraryLockPath) + "); stop it first: iox-roudi or a second isobard");

@@ -201,10 +201,15 @@ TEST_CASE("readers see that the broker was killed, and the next broker starts ov
 TEST_CASE("a second broker is refused in words") {
   ChildProcess first({ISOBAR_IPC_PEER, "broker"});
   REQUIRE(first.read_until("ready", 10s));
+  ChildProcess reader({ISOBAR_IPC_PEER, "watch"});
+  REQUIRE(reader.read_until("received", 10s));
   ChildProcess second({ISOBAR_IPC_PEER, "broker"});
   CHECK(second.read_until("another isobard is running", 10s));
   CHECK(second.wait(5s) == 69);
   CHECK(first.running());
+  CHECK(reader.running());  // and those who are attached notice nothing
+  ChildProcess late({ISOBAR_IPC_PEER, "read", "3"});
+  CHECK(late.wait(10s) == 0);
   CHECK_THROWS_WITH_AS(Broker(), doctest::Contains("another isobard is running"), ServiceError);
 }
 
