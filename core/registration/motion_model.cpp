@@ -90,7 +90,9 @@ Prediction MotionModel::predict(const Prior& now, const MethodTraits& method) co
   } else {
     translation += kFreeMotionFloorM + 0.5 * config_.free_acceleration_m_s2 * dt * dt;
   }
-  const double rotation = config_.step_rotation_floor_deg * kRadPerDeg +
+  const double turn =
+      Eigen::AngleAxisd(last_.T_odom_base.linear().transpose() * now.T_odom_base.linear()).angle();
+  const double rotation = config_.step_rotation_floor_deg * kRadPerDeg + config_.step_rotation_share * turn +
                           std::sqrt(std::max(now.yaw_rate_variance_rad2_s2, 0.0)) * dt;
   prediction.deviation.head<3>().setConstant(std::min(rotation, kLargestDeviationRad));
   prediction.deviation.tail<3>().setConstant(std::min(translation, kLargestDeviationM));
