@@ -9,9 +9,6 @@ namespace {
 
 // The initial value counts as much as this many samples.
 constexpr double kInitialWeight = 10.0;
-// Squared differences are clipped at this many times their expectation; costs 0.5 % of the variance of a
-// Gaussian.
-constexpr double kClip = 9.0;
 
 }  // namespace
 
