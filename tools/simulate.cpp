@@ -46,6 +46,8 @@ void add_simulate_command(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--out", options->out_dir, "folder for the recording, made if missing");
   command->add_flag("--short", options->request.short_form, "30 to 60 s instead of the whole run");
+  command->add_option("--stop-after", options->request.stop_after_s, "cut the run short [s]")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--list", options->list, "name the scenarios and end");
   command->callback([options] { run(*options); });
 }
