@@ -97,7 +97,8 @@ struct PriorEstimator::State {
   void use_climb(double dt_s, bool on_wheels, bool pressure_lost);
   void fill(const ImuSample& sample, Prior& out) const;
   [[nodiscard]] HeightSource source(std::int64_t stamp_ns) const;
-  [[nodiscard]] bool too_far_ahead(std::int64_t stamp_ns) const {
+  [[nodiscard]] bool bad_stamp(std::int64_t stamp_ns) const {
+    if (!plausible_stamp(stamp_ns)) return true;
     return imu_gate.started() && seconds_between(imu_gate.stamp_ns(), stamp_ns) > config.limits.max_ahead_s;
   }
   /// Height of a point of base_link above base_link's origin.
@@ -330,7 +331,7 @@ bool PriorEstimator::add_imu(const ImuSample& sample, Prior& out) {
 
 void PriorEstimator::add_pressure(const PressureSample& sample) {
   State& s = *state_;
-  if (s.too_far_ahead(sample.stamp_ns)) {
+  if (s.bad_stamp(sample.stamp_ns)) {
     ++s.counters.pressure_bad_time;
     return;
   }
@@ -360,7 +361,7 @@ void PriorEstimator::add_pressure(const PressureSample& sample) {
 
 void PriorEstimator::add_base_pressure(const PressureSample& sample) {
   State& s = *state_;
-  if (s.too_far_ahead(sample.stamp_ns)) {
+  if (s.bad_stamp(sample.stamp_ns)) {
     ++s.counters.base_bad_time;
     return;
   }
@@ -382,7 +383,7 @@ void PriorEstimator::add_base_pressure(const PressureSample& sample) {
 
 void PriorEstimator::add_wheel(const WheelSample& sample) {
   State& s = *state_;
-  if (s.too_far_ahead(sample.stamp_ns)) {
+  if (s.bad_stamp(sample.stamp_ns)) {
     ++s.counters.wheel_bad_time;
     return;
   }
