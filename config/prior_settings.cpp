@@ -157,6 +157,9 @@ void add_height(HeightConfig& height, std::vector<Setting>& settings) {
       "Random walk of the difference between the two barometers: warm-up, ageing.");
   add("weather_walk_m_sqrt_s", height.weather_walk_m_sqrt_s, "m/sqrt(s)", 0.0, 10.0,
       "Random walk of the weather where no base station takes it out.");
+  add("warm_up_sigma_m", height.warm_up_sigma_m, "m", 0.0, 10.0,
+      "Drift of two barometers that warm up, 1 sigma; only added to the reported variance.");
+  add("warm_up_time_s", height.warm_up_time_s, "s", 1.0, 1e5, "Its time constant.");
   add("gate_sigma", height.gate_sigma, "", 2.0, 20.0,
       "A pressure farther off than this many sigmas is not used …");
   add("gate_time_s", height.gate_time_s, "s", 0.0, 60.0,

@@ -53,6 +53,8 @@ void add_weights(RegistrationConfig& r, Section& s) {
         "Smallest error of a step's translation.");
   s.add("step_rotation_floor_deg", &r.step_rotation_floor_deg, "deg", 1e-3, 10.0,
         "Smallest error of a step's rotation.");
+  s.add("step_rotation_share", &r.step_rotation_share, "", 0.0, 1.0,
+        "Error of a step's rotation as a share of the turn: clocks of lidar and IMU differ by milliseconds.");
   s.add("free_acceleration_m_s2", &r.free_acceleration_m_s2, "m/s^2", 0.1, 20.0,
         "Without wheels: how much the velocity changes at random.");
   s.add("velocity_memory_s", &r.velocity_memory_s, "s", 0.1, 100.0,

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -103,6 +105,29 @@ TEST_CASE("Every key stands once, has words, and its default keeps its own rule"
     }
   }
   CHECK(keys.size() > 100);
+}
+
+TEST_CASE("Every number and switch of the algorithms' configuration structs has a key") {
+  Config config;
+  std::set<std::string> names;
+  for (const Setting& setting : settings_of(config)) {
+    names.insert(setting.name());
+  }
+  const std::regex field(R"(\n  (?:double|bool|int|std::size_t|std::uint32_t|AirTemperatureMode) (\w+) = )");
+  for (const char* header :
+       {"core/altitude/altitude_config.hpp", "core/prior/prior_config.hpp", "core/map/map_config.hpp",
+        "core/registration/registration_config.hpp", "ipc/dds/dds_config.hpp"}) {
+    std::ifstream in(std::filesystem::path(ISOBAR_SOURCE_DIR) / header);
+    const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    std::size_t fields = 0;
+    for (std::sregex_iterator match(text.begin(), text.end(), field), end; match != end; ++match, ++fields) {
+      const std::string name = (*match)[1];
+      CAPTURE(header);
+      CAPTURE(name);
+      CHECK(names.count(name) == 1);
+    }
+    CHECK(fields > 5);
+  }
 }
 
 TEST_CASE("Values outside their rules are refused with file, line, column, key, rule and value") {

@@ -56,7 +56,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (std::size_t at = 1; at + 5 <= size;) {
     const unsigned choices = data[at];
     const std::size_t length = std::min<std::size_t>(data[at + 1] | data[at + 2] << 8U, size - at - 5);
-    host_ns += (choices & 1U) != 0 ? std::int64_t{data[at + 3]} << (data[at + 4] % 56U) : 1'327'104;
+    const std::uint64_t step_ns =
+        (choices & 1U) != 0 ? std::uint64_t{data[at + 3]} << (data[at + 4] % 56U) : 1'327'104;
+    host_ns =
+        static_cast<std::int64_t>(static_cast<std::uint64_t>(host_ns) + step_ns);  // any stamp at all, wraps
     packet.assign(data + at + 5, data + at + 5 + length);
     if ((choices & 6U) != 0) {
       make_valid(packet, config.model, (choices & 4U) != 0);
