@@ -24,10 +24,16 @@ constexpr const char* kLockPath = "/dev/shm/isobar.lock";
 /// The lock of iceoryx itself, held by any program with a RouDi inside.
 constexpr const char* kLibraryLockPath = "/tmp/iox-unique-roudi.lock";
 
-struct flock whole_file(short type) {
+/// The holder locks the first byte against all, those who attach share the second.
+constexpr off_t kHolderByte = 0;
+constexpr off_t kAttachedByte = 1;
+
+struct flock lock_of(short type, off_t byte) {
   struct flock lock {};
   lock.l_type = type;
   lock.l_whence = SEEK_SET;
+  lock.l_start = byte;
+  lock.l_len = 1;
   return lock;
 }
 
@@ -49,8 +55,13 @@ bool read_instance(int descriptor, std::uint64_t& instance) noexcept {
          instance != 0;
 }
 
-bool is_locked(int descriptor) noexcept {
-  struct flock query = whole_file(F_RDLCK);
+bool is_held(int descriptor) noexcept {
+  struct flock query = lock_of(F_RDLCK, kHolderByte);
+  return ::fcntl(descriptor, F_OFD_GETLK, &query) == 0 && query.l_type != F_UNLCK;
+}
+
+bool is_attached_to(int descriptor) noexcept {
+  struct flock query = lock_of(F_WRLCK, kAttachedByte);
   return ::fcntl(descriptor, F_OFD_GETLK, &query) == 0 && query.l_type != F_UNLCK;
 }
 
@@ -61,7 +72,9 @@ int open_announced(std::uint64_t& instance) {
     return -1;
   }
   // The lock before the number: a number that is read after the lock was seen is never that of a dead holder.
-  if (is_locked(descriptor) && read_instance(descriptor, instance)) {
+  struct flock attached = lock_of(F_RDLCK, kAttachedByte);
+  if (::fcntl(descriptor, F_OFD_SETLK, &attached) == 0 && is_held(descriptor) &&
+      read_instance(descriptor, instance)) {
     return descriptor;
   }
   ::close(descriptor);
@@ -92,7 +105,7 @@ BrokerLock BrokerLock::acquire() {
   if (descriptor < 0) {
     throw ServiceError(std::string(kLockPath) + ": cannot be opened: " + reason());
   }
-  struct flock request = whole_file(F_WRLCK);
+  struct flock request = lock_of(F_WRLCK, kHolderByte);
   if (::fcntl(descriptor, F_OFD_SETLK, &request) != 0) {
     ::close(descriptor);
     throw ServiceError("another isobard is running on this machine (it holds " + std::string(kLockPath) +
@@ -118,6 +131,15 @@ void BrokerLock::announce() {
   }
   if (::pwrite(descriptor_, &instance, sizeof(instance), 0) != static_cast<ssize_t>(sizeof(instance))) {
     throw ServiceError(std::string(kLockPath) + ": cannot be written: " + reason());
+  }
+}
+
+void BrokerLock::withdraw(std::chrono::milliseconds patience) noexcept {
+  static_cast<void>(::ftruncate(descriptor_, 0) == 0);
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  // Locks cannot be waited for with a limit; this is the end of the program, not its work.
+  while (is_attached_to(descriptor_) && std::chrono::steady_clock::now() < deadline) {
+    ::poll(nullptr, 0, 10);
   }
 }
 
@@ -167,7 +189,7 @@ BrokerWatch::~BrokerWatch() {
 
 bool BrokerWatch::alive() const noexcept {
   std::uint64_t instance = 0;
-  return is_locked(descriptor_) && read_instance(descriptor_, instance) && instance == instance_;
+  return is_held(descriptor_) && read_instance(descriptor_, instance) && instance == instance_;
 }
 
 }  // namespace isobar::ipc

@@ -24,12 +24,16 @@ class BrokerLock {
   /// @throws ServiceError the file cannot be written
   void announce();
 
+  /// Says that the shared memory is about to go, and waits until nobody who attached is left, `patience` at
+  /// most: memory that is taken apart while others work on it can crash both sides.
+  void withdraw(std::chrono::milliseconds patience) noexcept;
+
  private:
   explicit BrokerLock(int descriptor) : descriptor_(descriptor) {}
   int descriptor_;
 };
 
-/// The side of those who attach.
+/// The side of those who attach. The holder sees that this exists.
 class BrokerWatch {
  public:
   /// Waits until a holder has announced itself, `timeout` at most (0: looks once).

@@ -63,6 +63,9 @@ constexpr std::uint64_t kManagementBytes = 67ULL << 20;
 constexpr std::uint64_t kChunkHeaderBytes = 64;
 constexpr std::uint64_t kMegabyte = 1ULL << 20;
 
+/// Attached processes look for their broker a few times a second, see Attachment::broker_alive().
+constexpr auto kPatience = std::chrono::seconds(2);
+
 std::atomic<std::uint64_t> g_library_faults{0};
 std::atomic<FatalAction> g_fatal_action{nullptr};
 
@@ -190,7 +193,7 @@ Broker::Broker() {
   impl_->lock.announce();
 }
 
-Broker::~Broker() = default;
+Broker::~Broker() { impl_->lock.withdraw(kPatience); }
 
 std::uint64_t Broker::needed_bytes() noexcept {
   std::uint64_t bytes = kManagementBytes;

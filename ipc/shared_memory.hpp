@@ -32,7 +32,9 @@ class Broker {
   /// @throws ServiceError another isobard runs on this machine; /dev/shm is too small (says how many MB are
   ///         needed and free); shared memory is refused.
   Broker();
-  ~Broker();  ///< attached processes go on living, but get no more messages
+  /// Attached processes go on living, but get no more messages. Waits up to 2 s until they have noticed and
+  /// left.
+  ~Broker();
   Broker(const Broker&) = delete;
   Broker& operator=(const Broker&) = delete;
 
@@ -57,7 +59,8 @@ class Attachment {
   Attachment& operator=(const Attachment&) = delete;
 
   /// False once the isobard that was joined has gone, even if another one has started meanwhile. From then on
-  /// nothing arrives any more, and only a new process can attach again. Costs a few system calls.
+  /// nothing arrives any more, and only a new process can attach again. To be asked at least twice a second:
+  /// an isobard that ends waits for those who are attached. Costs a few system calls.
   [[nodiscard]] bool broker_alive() const noexcept;
 
  private:

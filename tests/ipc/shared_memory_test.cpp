@@ -7,6 +7,8 @@
 
 #include <array>
 #include <chrono>
+#include <memory>
+#include <string>
 #include <thread>
 
 #include "core/errors.hpp"
@@ -196,6 +198,25 @@ TEST_CASE("readers see that the broker was killed, and the next broker starts ov
   REQUIRE(second.read_until("ready", 10s));
   ChildProcess next_reader({ISOBAR_IPC_PEER, "read", "3"});
   CHECK(next_reader.wait(10s) == 0);
+}
+
+TEST_CASE("a broker that ends waits until those who are attached have left") {
+  auto broker = std::make_unique<Broker>();
+  auto priors = std::make_unique<Publisher<Prior>>(topics::kPrior);
+  ChildProcess reader({ISOBAR_IPC_PEER, "watch"});
+  std::string line;
+  while (!reader.read_line(line, 5ms)) {
+    Prior prior;
+    prior.height_m = 1.0;
+    REQUIRE(priors->send(prior));
+  }
+  CHECK(line == "received");
+  const std::uint64_t faults = library_fault_count();
+  priors.reset();
+  broker.reset();
+  // Had it been slower than the broker, the library would have ended it with another code.
+  CHECK(reader.wait(5s) == 0);
+  CHECK(library_fault_count() == faults);
 }
 
 TEST_CASE("a second broker is refused in words") {
