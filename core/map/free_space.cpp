@@ -32,7 +32,7 @@ void FreeSpace::set_scan(const RegisteredScan& scan, const Eigen::Isometry3d& T_
     int column = 0;
     int row = 0;
     pixel_of(p_lidar, column, row);
-    float& shortest = shortest_m_[static_cast<std::size_t>(row * kColumns + column)];
+    float& shortest = shortest_m_[index_of(column, row)];
     const float range = p_lidar.norm();
     shortest = shortest == 0.0F ? range : std::min(shortest, range);
   }
@@ -55,13 +55,13 @@ bool FreeSpace::passes_through(const Eigen::Vector3f& p_lidar, const Eigen::Vect
   int column = 0;
   int row = 0;
   pixel_of(p_lidar, column, row);
-  if (shortest_m_[static_cast<std::size_t>(row * kColumns + column)] == 0.0F) {
+  if (shortest_m_[index_of(column, row)] == 0.0F) {
     return false;
   }
   for (int r = std::max(row - 1, 0); r <= std::min(row + 1, kRows - 1); ++r) {
     for (int c = column - 1; c <= column + 1; ++c) {
       const int wrapped = (c + kColumns) % kColumns;
-      const float shortest = shortest_m_[static_cast<std::size_t>(r * kColumns + wrapped)];
+      const float shortest = shortest_m_[index_of(wrapped, r)];
       if (shortest != 0.0F && shortest < needed) {
         return false;
       }

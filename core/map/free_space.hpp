@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "core/estimates.hpp"
@@ -26,6 +27,9 @@ class FreeSpace {
                                     float margin_m) const;
 
  private:
+  [[nodiscard]] static std::size_t index_of(int column, int row) {
+    return static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(column);
+  }
   static void pixel_of(const Eigen::Vector3f& p_lidar, int& column, int& row);
 
   std::array<float, static_cast<std::size_t>(kColumns) * kRows> shortest_m_{};  // 0 is unknown

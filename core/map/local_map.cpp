@@ -40,7 +40,10 @@ bool LocalMap::wants(const PoseEstimate& pose) const {
 }
 
 bool LocalMap::update(const RegisteredScan& scan, std::vector<MapPoint>& evicted) {
-  if (scan.point_count == 0 || !scan.pose.T_map_base.matrix().allFinite() || !wants(scan.pose)) {
+  constexpr double kFarthestM = 1e8;  // beyond it a tile's key would not fit, nor would any robot
+  const auto& pose = scan.pose.T_map_base.matrix();
+  if (scan.point_count == 0 || !pose.allFinite() || pose.cwiseAbs().maxCoeff() > kFarthestM ||
+      !wants(scan.pose)) {
     return false;
   }
   const bool moved = !started_ || tile_of(last_pose_.T_map_base.translation()) !=

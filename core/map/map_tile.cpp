@@ -133,7 +133,8 @@ std::size_t MapTile::coarse_index(const Eigen::Vector3f& p_tile, Eigen::Vector3f
   const int y = clamp_cell(p_tile.y() / kEdge, kCoarsePerEdge);
   const int z = clamp_cell(p_tile.z() / kEdge, kCoarsePerEdge);
   centre_tile = (Eigen::Vector3i(x, y, z).cast<float>().array() + 0.5F) * kEdge;
-  return static_cast<std::size_t>((x * kCoarsePerEdge + y) * kCoarsePerEdge + z);
+  const int index = (x * kCoarsePerEdge + y) * kCoarsePerEdge + z;
+  return static_cast<std::size_t>(index);
 }
 
 const Moments& MapTile::coarse_at(const Eigen::Vector3f& p_tile, Eigen::Vector3f& centre_tile) const {

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -33,6 +34,7 @@ class MapTile {
  public:
   /// Coarse cells of 1 m give far walls a normal, where the rings are farther apart than the cells.
   static constexpr int kCoarsePerEdge = 8;
+  static constexpr std::size_t kCoarseCells = std::size_t{kCoarsePerEdge} * kCoarsePerEdge * kCoarsePerEdge;
 
   /// `cells_per_edge`: 8 … 80.
   MapTile(const TileKey& key, int cells_per_edge);
@@ -91,8 +93,8 @@ class MapTile {
   std::vector<MapCell> cells_;
   std::vector<std::int32_t> table_;  // open addressing on the cell key; -1 is empty
   std::vector<KeptPoint> points_;
-  std::array<Moments, kCoarsePerEdge * kCoarsePerEdge * kCoarsePerEdge> coarse_{};
-  std::array<std::uint16_t, kCoarsePerEdge * kCoarsePerEdge * kCoarsePerEdge> coarse_planes_{};
+  std::array<Moments, kCoarseCells> coarse_{};
+  std::array<std::uint16_t, kCoarseCells> coarse_planes_{};
   std::shared_ptr<const TileIndex> index_;
   bool changed_ = false;
 };

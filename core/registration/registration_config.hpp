@@ -52,8 +52,8 @@ struct RegistrationConfig {
   double step_distance_error = 0.05;
   /// Smallest error of a step's translation [m], 1e-4 … 1.
   double step_translation_floor_m = 0.002;
-  /// Smallest error of a step's rotation [deg], 1e-3 … 10. A gyro is better than this for a tenth of a second;
-  /// its filter, which corrects itself at times, is not.
+  /// Smallest error of a step's rotation [deg], 1e-3 … 10. A gyro is better than this for a tenth of a
+  /// second; its filter, which corrects itself at times, is not.
   double step_rotation_floor_deg = 0.2;
   /// Error of a step's rotation as share of the turn, 0 … 1: clocks of lidar and IMU that differ by 5 ms are
   /// 5 % of a scan.
