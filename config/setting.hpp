@@ -33,7 +33,7 @@ struct Setting {
 
   std::string key;  ///< with its section, "registration.max_range_m"
   Target target;
-  std::string unit{};                                          ///< empty: none
+  std::string unit{};                                        ///< empty: none
   double lowest = -std::numeric_limits<double>::infinity();  ///< numbers; each element of lists
   double highest = std::numeric_limits<double>::infinity();
   std::string doc{};  ///< what it is and why it has its default

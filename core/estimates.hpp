@@ -39,9 +39,9 @@ struct Prior {
   Eigen::Vector3d v_base_m_s = Eigen::Vector3d::Zero();    ///< velocity of base_link in base_link
   Eigen::Vector3d w_base_rad_s = Eigen::Vector3d::Zero();  ///< angular rate in base_link, gyro bias taken out
 
-  double roll_pitch_variance_rad2 = 0.0;  ///< of roll and of pitch, each
-  double yaw_rate_variance_rad2_s2 = 0.0; ///< of the angular rate about z, bias included
-  double velocity_variance_m2_s2 = 0.0;   ///< of each axis of v_base_m_s
+  double roll_pitch_variance_rad2 = 0.0;   ///< of roll and of pitch, each
+  double yaw_rate_variance_rad2_s2 = 0.0;  ///< of the angular rate about z, bias included
+  double velocity_variance_m2_s2 = 0.0;    ///< of each axis of v_base_m_s
 
   bool attitude_valid = false;  ///< gravity has been found
   bool velocity_valid = false;  ///< wheels are present and fresh; else v_base_m_s is zero and xy do not move
@@ -60,9 +60,9 @@ enum class Method : std::uint8_t {
 
 /// Where a pose comes from.
 enum class PoseMode : std::uint8_t {
-  kRegistered,      ///< the ICP converged on this scan
-  kPriorOnly,       ///< no scan, or the registration was rejected: dead reckoning from the last good pose
-  kInitializing,    ///< first scans: the map is being started
+  kRegistered,    ///< the ICP converged on this scan
+  kPriorOnly,     ///< no scan, or the registration was rejected: dead reckoning from the last good pose
+  kInitializing,  ///< first scans: the map is being started
 };
 
 /// Pose of base_link at the end of a scan (or between scans, with mode kPriorOnly).
@@ -70,8 +70,8 @@ struct PoseEstimate {
   std::int64_t stamp_ns = 0;
   std::uint32_t sequence = 0;  ///< sequence of the scan; of the last scan if there is none
   PoseMode mode = PoseMode::kInitializing;
-  Method method = Method::k3Dof;          ///< the method that was asked for
-  Method effective_method = Method::k3Dof; ///< what ran: 3-DOF without any height runs as 4-DOF
+  Method method = Method::k3Dof;            ///< the method that was asked for
+  Method effective_method = Method::k3Dof;  ///< what ran: 3-DOF without any height runs as 4-DOF
   HeightSource height_source = HeightSource::kNone;
   bool degenerate = false;  ///< the scan did not constrain every free direction; the prior filled it
 
@@ -81,12 +81,13 @@ struct PoseEstimate {
   Matrix6d covariance = Matrix6d::Zero();
 
   std::uint32_t iterations = 0;
-  std::uint32_t sampled_points = 0;   ///< points that took part
-  std::uint32_t matched_pairs = 0;    ///< of them, with an accepted correspondence in the last iteration
-  double overlap = 0.0;               ///< matched_pairs / sampled_points, 0 … 1
-  double residual_rms_m = 0.0;        ///< weighted point-to-plane rms
-  Eigen::Vector3d smallest_eigenvalues = Eigen::Vector3d::Zero();  ///< of the information matrix per pair, ascending
-  double registration_ms = 0.0;       ///< CPU time of deskew to solve; filled by whoever runs the stage
+  std::uint32_t sampled_points = 0;  ///< points that took part
+  std::uint32_t matched_pairs = 0;   ///< of them, with an accepted correspondence in the last iteration
+  double overlap = 0.0;              ///< matched_pairs / sampled_points, 0 … 1
+  double residual_rms_m = 0.0;       ///< weighted point-to-plane rms
+  Eigen::Vector3d smallest_eigenvalues =
+      Eigen::Vector3d::Zero();   ///< of the information matrix per pair, ascending
+  double registration_ms = 0.0;  ///< CPU time of deskew to solve; filled by whoever runs the stage
 };
 
 /// A deskewed scan in the base_link frame at the pose's time, thinned for the map.

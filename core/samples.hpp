@@ -13,17 +13,17 @@ inline constexpr double kGravity = 9.80665;
 
 /// One inertial sample, in the IMU's own frame. At rest and level accel reads (0, 0, +g).
 struct ImuSample {
-  std::int64_t stamp_ns = 0;                                       ///< when it was measured, robot clock
-  Eigen::Vector3d gyro_rad_s = Eigen::Vector3d::Zero();            ///< angular rate
-  Eigen::Vector3d accel_m_s2 = Eigen::Vector3d::Zero();            ///< specific force
-  Eigen::Quaterniond q_world_imu = Eigen::Quaterniond::Identity(); ///< the IMU's own attitude, if it has one
-  bool has_attitude = false;                                       ///< q_world_imu was measured
+  std::int64_t stamp_ns = 0;                                        ///< when it was measured, robot clock
+  Eigen::Vector3d gyro_rad_s = Eigen::Vector3d::Zero();             ///< angular rate
+  Eigen::Vector3d accel_m_s2 = Eigen::Vector3d::Zero();             ///< specific force
+  Eigen::Quaterniond q_world_imu = Eigen::Quaterniond::Identity();  ///< the IMU's own attitude, if it has one
+  bool has_attitude = false;                                        ///< q_world_imu was measured
 };
 
 /// One barometer sample, of the robot or of a base station.
 struct PressureSample {
-  std::int64_t stamp_ns = 0;   ///< when it was measured; a base station's is already mapped to the robot clock
-  double pressure_pa = 0.0;    ///< absolute pressure, compensated by the sensor's own coefficients
+  std::int64_t stamp_ns = 0;  ///< when it was measured; a base station's is already mapped to the robot clock
+  double pressure_pa = 0.0;   ///< absolute pressure, compensated by the sensor's own coefficients
   double temperature_c = 0.0;  ///< temperature of the sensor, NaN if it has none
 };
 
@@ -40,25 +40,26 @@ struct ScanPoint {
   float x_m = 0.0F;
   float y_m = 0.0F;
   float z_m = 0.0F;
-  std::uint16_t time_4us = 0;   ///< firing time after Scan::stamp_ns, in units of 4 us (262 ms at most)
-  std::uint8_t ring = 0;        ///< laser, 0 is the lowest
-  std::uint8_t intensity = 0;   ///< calibrated reflectivity
+  std::uint16_t time_4us = 0;  ///< firing time after Scan::stamp_ns, in units of 4 us (262 ms at most)
+  std::uint8_t ring = 0;       ///< laser, 0 is the lowest
+  std::uint8_t intensity = 0;  ///< calibrated reflectivity
 };
 static_assert(sizeof(ScanPoint) == 16);
 
 /// Unit of ScanPoint::time_4us [ns].
 inline constexpr std::int64_t kPointTimeUnitNs = 4'000;
 
-/// One revolution of the lidar. 1.1 MiB: holds a full HDL-32E revolution at 10 Hz or a dual-return VLP-16 one.
+/// One revolution of the lidar. 1.1 MiB: holds a full HDL-32E revolution at 10 Hz or a dual-return VLP-16
+/// one.
 struct Scan {
   static constexpr std::uint32_t kMaxPoints = 70'000;
 
-  std::int64_t stamp_ns = 0;      ///< time of the earliest possible point, robot clock
-  std::int64_t end_stamp_ns = 0;  ///< time of the latest point, robot clock
-  std::uint32_t sequence = 0;     ///< counts the scans of this run
-  std::uint32_t point_count = 0;  ///< points[0 … point_count-1] are valid
-  std::uint32_t packets_lost = 0; ///< packets missing in this revolution, from the gaps in time
-  ScanPoint points[kMaxPoints];   // NOLINT(modernize-avoid-c-arrays): payload in shared memory
+  std::int64_t stamp_ns = 0;       ///< time of the earliest possible point, robot clock
+  std::int64_t end_stamp_ns = 0;   ///< time of the latest point, robot clock
+  std::uint32_t sequence = 0;      ///< counts the scans of this run
+  std::uint32_t point_count = 0;   ///< points[0 … point_count-1] are valid
+  std::uint32_t packets_lost = 0;  ///< packets missing in this revolution, from the gaps in time
+  ScanPoint points[kMaxPoints];    // NOLINT(modernize-avoid-c-arrays): payload in shared memory
 
   Scan() {}  // NOLINT: user-written, so that loaning a chunk does not zero a megabyte
 };

@@ -15,6 +15,8 @@ constexpr std::uint64_t kBytesAtEnd = 16'384;
 /// Stamps farther than this from the median of their neighbours are absurd [ns].
 constexpr std::int64_t kNeighbourhoodNs = 3'600'000'000'000;
 constexpr std::int64_t kToleranceNs = 5'000'000'000;
+/// Two files that one recorder starts and ends together do so within this [ns]: a few samples of 10 Hz.
+constexpr std::int64_t kTogetherNs = 300'000'000;
 
 /// Lowest and highest stamp among those near the median.
 StampSpan robust_span(std::vector<std::int64_t>& stamps_ns) {
@@ -77,7 +79,10 @@ BaseClock tie_base_clock(const std::optional<StampSpan>& robot, const std::optio
   const std::int64_t start_ns = robot->first_ns - base->first_ns;
   const std::int64_t end_ns = robot->last_ns - base->last_ns;
   const std::int64_t middle_ns = start_ns + (end_ns - start_ns) / 2;
-  if (std::abs(start_ns - end_ns) <= kToleranceNs && std::abs(middle_ns) > kToleranceNs) {
+  const std::int64_t disagreement_ns = std::abs(start_ns - end_ns);
+  const bool same_tightly = disagreement_ns <= kTogetherNs && std::abs(middle_ns) > kTogetherNs;
+  const bool same_loosely = disagreement_ns <= kToleranceNs && std::abs(middle_ns) > kToleranceNs;
+  if (same_tightly || same_loosely) {
     return {middle_ns, "base-station clock is off by " + seconds(-middle_ns) +
                            ": its file starts and ends that much away from the robot's"};
   }

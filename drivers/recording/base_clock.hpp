@@ -22,8 +22,8 @@ std::optional<StampSpan> pressure_span(const std::filesystem::path& file);
 std::optional<StampSpan> imu_span(const std::filesystem::path& file);
 
 /// Ties the base station's clock to the robot's. Both record the same run, so:
-/// - starts and ends that differ by the same amount (within 5 s), by more than 5 s: that amount is the
-/// clock's offset;
+/// - starts and ends that differ by the same amount: that amount is the clock's offset. The same means within
+///   0.3 s for an offset of at least 0.3 s, within 5 s for one of at least 5 s;
 /// - a base-station span that covers the robot's, or else overlaps it: its clock is trusted;
 /// - a longer span that does not cover it: centred on the robot's;
 /// - a shorter span without overlap: the starts are put together.

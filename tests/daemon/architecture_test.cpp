@@ -50,9 +50,10 @@ void check_none(const std::string& folder, const std::vector<std::string>& forbi
 }  // namespace
 
 TEST_CASE("core has no threads, no I/O, no logging, no clock, and knows nothing of who uses it") {
-  check_none("core", {"thread", "mutex", "condition_variable", "future", "iostream", "fstream", "cstdio", "chrono",
-                      "filesystem", "unistd.h", "sys/", "spdlog", "iceoryx", "dds/", "toml++", "CLI/", "drivers/",
-                      "ipc/", "config/", "daemon/", "tools/"});
+  check_none("core",
+             {"thread", "mutex",      "condition_variable", "future", "iostream", "fstream", "cstdio",
+              "chrono", "filesystem", "unistd.h",           "sys/",   "spdlog",   "iceoryx", "dds/",
+              "toml++", "CLI/",       "drivers/",           "ipc/",   "config/",  "daemon/", "tools/"});
 }
 
 TEST_CASE("drivers build on core alone") {
@@ -63,7 +64,8 @@ TEST_CASE("the estimator names no DDS, and one pair of files names iceoryx") {
   check_none("daemon", {"iceoryx"});
   for (const Include& include : includes_below("daemon")) {
     if (include.file.find("/daemon/bridge/") != std::string::npos) continue;
-    CHECK_MESSAGE(!starts_with_any(include.what, {"dds/", "ipc/dds/"}), include.file << " includes " << include.what);
+    CHECK_MESSAGE(!starts_with_any(include.what, {"dds/", "ipc/dds/"}),
+                  include.file << " includes " << include.what);
   }
   for (const Include& include : includes_below("ipc")) {
     if (include.file.find("/ipc/shared_memory.cpp") != std::string::npos) continue;

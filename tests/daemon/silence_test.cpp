@@ -5,7 +5,8 @@
 
 using isobar::SilenceBridge;
 
-TEST_CASE("before the first scan poses are due at once, so that a robot has a pose as soon as it knows gravity") {
+TEST_CASE(
+    "before the first scan poses are due at once, so that a robot has a pose as soon as it knows gravity") {
   const SilenceBridge bridge;
   CHECK(bridge.due(0));
   CHECK(bridge.in_order(-5));
