@@ -205,7 +205,7 @@ void add_echo_command(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--interface", options->network_interface, "network interface; chosen if not given")
       ->type_name("NAME");
-  command->add_option("--namespace", options->ros_namespace, "the robot's namespace, as dds.topic_prefix")
+  command->add_option("--namespace", options->ros_namespace, "the robot's namespace, as dds.ros_namespace")
       ->type_name("NAME");
   command->add_option("--rate", options->rate_hz, "lines a second and topic at most [Hz]")
       ->check(CLI::Range(1e-3, 1e6))

@@ -40,7 +40,7 @@ void run(const SimulateOptions& options) {
 
 void add_simulate_command(CLI::App& app) {
   const auto options = std::make_shared<SimulateOptions>();
-  CLI::App* command = app.add_subcommand("simulate", "make a recording of a simulated robot");
+  CLI::App* command = app.add_subcommand("simulate", "Make a recording of a simulated robot");
   command->add_option("scenario", options->request.name, "one of those that --list names");
   command->add_option("--seed", options->request.seed, "draws the world, the path and the sensors' errors")
       ->capture_default_str();

@@ -48,14 +48,14 @@ function(isobar_program name)
 endfunction()
 
 # isobar_test(NAME LABEL unit|integration SOURCES … DEPENDS …): one doctest program, one CTest entry.
-# The sources name no main(); tests/test_main.cpp has the only one.
+# The sources name no main(); tests/test_main.cpp has the only one, compiled once.
 function(isobar_test name)
   cmake_parse_arguments(arg "" "LABEL" "DEPENDS;SOURCES" ${ARGN})
   if(NOT arg_LABEL)
     set(arg_LABEL unit)
   endif()
-  add_executable(${name} ${arg_SOURCES} ${CMAKE_SOURCE_DIR}/tests/test_main.cpp)
-  target_link_libraries(${name} PRIVATE isobar_options Eigen3::Eigen ${arg_DEPENDS})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE isobar_options isobar_test_main Eigen3::Eigen ${arg_DEPENDS})
   target_compile_definitions(${name} PRIVATE
     ISOBAR_SOURCE_DIR="${CMAKE_SOURCE_DIR}" ISOBAR_SHARED_DATA="${CMAKE_SOURCE_DIR}/../shared/data")
   add_test(NAME ${name} COMMAND ${name})

@@ -28,7 +28,7 @@ std::unique_ptr<RegisteredScan> scan_of_sphere() {
   for (int azimuth = 0; azimuth < 720; ++azimuth) {
     for (int ring = -15; ring <= 15; ring += 2) {
       const Eigen::Vector3f p = ray(0.5F * static_cast<float>(azimuth), static_cast<float>(ring), 10.0F);
-      scan->points[scan->point_count++] = ScanPoint{p.x(), p.y(), p.z()};
+      scan->points[scan->point_count++] = ScanPoint{p.x(), p.y(), p.z(), 0, 0, 0};
     }
   }
   return scan;

@@ -43,7 +43,7 @@ void fill_scan(RegisteredScan& scan, double x_m, std::int64_t stamp_ns, const Ra
       const Eigen::Vector3d direction(std::cos(elevation) * std::cos(azimuth),
                                       std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
       const Eigen::Vector3f p = (direction * range_of(direction)).cast<float>();
-      scan.points[scan.point_count++] = ScanPoint{p.x(), p.y(), p.z()};
+      scan.points[scan.point_count++] = ScanPoint{p.x(), p.y(), p.z(), 0, 0, 0};
     }
   }
 }

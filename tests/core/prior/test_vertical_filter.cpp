@@ -31,7 +31,6 @@ TEST_CASE("the covariance is propagated as F P F^T + Q") {
   Q(V::kVz, V::kVz) = 1e-4 * dt;
   Q(V::kAccelBias, V::kAccelBias) = std::pow(config.accel_bias_walk_m_s2_sqrt_s, 2) * dt;
   Q(V::kSlope, V::kSlope) = std::pow(config.slope_walk_rad_sqrt_s, 2) * dt;
-  Q(V::kOffset, V::kOffset) = std::pow(config.offset_walk_m_sqrt_s, 2) * dt;
   Q(V::kTurbulence, V::kTurbulence) = std::pow(config.turbulence_sigma_m, 2) * (1.0 - keep * keep);
   Q(V::kWeather, V::kWeather) = std::pow(config.weather_walk_m_sqrt_s, 2) * dt;
   const V::Matrix expected = F * filter.covariance() * F.transpose() + Q;
@@ -42,6 +41,7 @@ TEST_CASE("the covariance is propagated as F P F^T + Q") {
 TEST_CASE("the error of every state stays within the filter's own covariance (NEES)") {
   HeightConfig config;
   config.turbulence_sigma_m = 0.03;
+  config.offset_learning_s = 1e3;  // all along: after it, height and offset are counted differently
   std::mt19937 random(11);
   std::normal_distribution<double> normal(0.0, 1.0);
   const double dt = 0.01;
@@ -65,7 +65,6 @@ TEST_CASE("the error of every state stays within the filter's own covariance (NE
       vz += accel * dt;
       bias += config.accel_bias_walk_m_s2_sqrt_s * std::sqrt(dt) * normal(random);
       slope += config.slope_walk_rad_sqrt_s * std::sqrt(dt) * normal(random);
-      offset += config.offset_walk_m_sqrt_s * std::sqrt(dt) * normal(random);
       n = keep * n + config.turbulence_sigma_m * std::sqrt(1.0 - keep * keep) * normal(random);
       filter.predict(accel + bias + std::sqrt(density / dt) * normal(random), dt, density, false);
       if (i % 3 == 0) filter.update_pressure(z + offset + n + 0.04 * normal(random), 0.0, 0.04 * 0.04);
@@ -80,6 +79,27 @@ TEST_CASE("the error of every state stays within the filter's own covariance (NE
   // Chi-squared with 360 degrees of freedom: 6 +- 0.45 a run (1 sigma); three of them.
   CHECK(nees / runs > 4.7);
   CHECK(nees / runs < 7.4);
+}
+
+TEST_CASE("a zone of other pressure entered after the learning time never becomes part of the offset") {
+  HeightConfig config;
+  V filter(config);
+  filter.start(0.0, 0.01);
+  const auto drive = [&](double seconds, double pressure_height_m) {
+    for (int i = 0; i < static_cast<int>(seconds / 0.02); ++i) {
+      filter.predict(0.0, 0.02, 1e-4, false);
+      filter.update_pressure(pressure_height_m, 0.0, 1e-3);
+      filter.update_climb(0.0, 0.6, 1e-3);
+    }
+  };
+  drive(config.offset_learning_s + 1.0, 5.0);
+  CHECK(filter.value(V::kOffset) == doctest::Approx(5.0).epsilon(1e-3));
+  CHECK(filter.variance(V::kOffset) == 0.0);
+  drive(300.0, 4.85);
+  drive(300.0, 5.0);
+  // Back where the pressure is the start's, so is the height: the turbulence alone may differ, by less than
+  // its sigma.
+  CHECK(std::abs(filter.value(V::kZ)) < 0.02);
 }
 
 TEST_CASE("a late pressure is compared with the height of its own time") {

@@ -23,7 +23,7 @@ void fill(RegisteredScan& scan) {
   for (std::uint32_t i = 0; i < scan.point_count; ++i) {
     const float range = 1.0F / (0.02F + 0.9F * uniform(random));
     const float azimuth = 6.2831853F * uniform(random);
-    scan.points[i] = ScanPoint{range * std::cos(azimuth), range * std::sin(azimuth), 0.0F};
+    scan.points[i] = ScanPoint{range * std::cos(azimuth), range * std::sin(azimuth), 0.0F, 0, 0, 0};
   }
 }
 
@@ -86,7 +86,7 @@ TEST_CASE("an empty scan and one that fills the memory are both thinned") {
   CHECK(sampler.sample().empty());
   scan->point_count = RegisteredScan::kMaxPoints;
   for (std::uint32_t i = 0; i < scan->point_count; ++i) {
-    scan->points[i] = ScanPoint{static_cast<float>(i % 300), static_cast<float>(i / 300), 0.0F};
+    scan->points[i] = ScanPoint{static_cast<float>(i % 300), static_cast<float>(i / 300), 0.0F, 0, 0, 0};
   }
   sampler.thin(*scan);
   CHECK(scan->point_count == RegisteredScan::kMaxPoints);

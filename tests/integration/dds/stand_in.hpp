@@ -61,7 +61,7 @@ inline PoseEstimate pose_at(std::int64_t start_ns, std::uint64_t step) {
 
 /// Point i of every cloud.
 inline ScanPoint point_at(std::uint32_t i) {
-  ScanPoint point;
+  ScanPoint point{};
   point.x_m = 0.25F * static_cast<float>(i);
   point.y_m = -1.5F;
   point.z_m = 0.001F * static_cast<float>(i % 1000);

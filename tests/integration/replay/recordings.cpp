@@ -118,7 +118,7 @@ std::uint64_t count_of(const ReplaySummary& summary, const std::string& name) {
 
 double largest_error_m(const std::filesystem::path& recording, const std::filesystem::path& out) {
   const auto evaluated = report::evaluate_methods(report::load_reference(recording), {{"run", out}});
-  return evaluated.methods.at(0).evaluation.ate_max_m;
+  return evaluated.methods.at(0).evaluation.figures.ate_max_m;
 }
 
 std::string bytes_of(const std::filesystem::path& file) {
