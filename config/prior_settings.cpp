@@ -153,8 +153,8 @@ void add_height(HeightConfig& height, std::vector<Setting>& settings) {
   add("turbulence_sigma_m", height.turbulence_sigma_m, "m", 0.0, 10.0,
       "Local slow pressure noise (turbulence, ventilation) as a height, rms.");
   add("turbulence_time_s", height.turbulence_time_s, "s", 0.1, 600.0, "How long it lasts.");
-  add("offset_walk_m_sqrt_s", height.offset_walk_m_sqrt_s, "m/sqrt(s)", 0.0, 1.0,
-      "Random walk of the difference between the two barometers: warm-up, ageing.");
+  add("offset_learning_s", height.offset_learning_s, "s", 0.0, 1e6,
+      "The offset between the barometers is learnt this long from the first pressure, then constant.");
   add("weather_walk_m_sqrt_s", height.weather_walk_m_sqrt_s, "m/sqrt(s)", 0.0, 10.0,
       "Random walk of the weather where no base station takes it out.");
   add("warm_up_sigma_m", height.warm_up_sigma_m, "m", 0.0, 10.0,

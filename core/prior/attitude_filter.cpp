@@ -11,6 +11,7 @@ namespace isobar {
 namespace {
 
 constexpr int kAngle = 0;
+constexpr int kYaw = 2;
 constexpr int kVelocity = 3;
 constexpr int kGyroBias = 6;
 constexpr int kAccelBias = 9;
@@ -78,13 +79,25 @@ void AttitudeFilter::predict(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vec
   P_.diagonal().segment<3>(kVelocity).array() += accel_density * dt_s;
   P_.diagonal().segment<3>(kGyroBias).array() += squared(config_.gyro_bias_walk_rad_s_sqrt_s) * dt_s;
   P_.diagonal().segment<3>(kAccelBias).array() += squared(config_.accel_bias_walk_m_s2_sqrt_s) * dt_s;
+  turn_world_with_heading();
   rate_noise_variance_ = gyro_density / 0.1;  // of the mean over one scan
+}
+
+void AttitudeFilter::turn_world_with_heading() {
+  // In a world turned by the yaw error a, the velocity's error is dv - a (e_z x v), and the yaw's is none.
+  P_.row(kVelocity) += velocity_.y() * P_.row(kYaw);
+  P_.row(kVelocity + 1) -= velocity_.x() * P_.row(kYaw);
+  P_.col(kVelocity) += velocity_.y() * P_.col(kYaw);
+  P_.col(kVelocity + 1) -= velocity_.x() * P_.col(kYaw);
+  P_.row(kYaw).setZero();
+  P_.col(kYaw).setZero();
 }
 
 void AttitudeFilter::bridge(const Eigen::Vector3d& turn_rad, double dt_s, double turn_sigma_rad) {
   q_world_base_ = (q_world_base_ * rotation_of(turn_rad)).normalized();
   P_.diagonal().segment<3>(kAngle).array() += squared(turn_sigma_rad);
   P_.diagonal().segment<3>(kVelocity).array() += squared(std::min(dt_s, 1.0));
+  turn_world_with_heading();
 }
 
 void AttitudeFilter::update_wheels(double vx_m_s, double vy_m_s, double dt_s, bool use_vertical) {

@@ -21,8 +21,13 @@ namespace isobar {
 /// which a pendulum's is: the tilt then comes from the mean over seconds. All inputs are in base_link's axes,
 /// already rotated from the IMU's.
 ///
-/// World: z up, yaw 0 at the start. Error state: [angle (world), velocity (world), gyro bias, accel bias]
-/// (base axes).
+/// World: z up, yaw 0 at the start, and turning with the error of the yaw: nothing here observes heading, so
+/// the world is *defined* as the one whose heading the filter has. The error of the yaw is thereby zero, that
+/// of the velocity counts in that world, and no update ever turns the heading: it is the gyro's integral and
+/// nothing else, as dead reckoning must be. (A heading in the error state would be correlated with the gyro
+/// bias; the first standstill after minutes of driving would then turn the robot by degrees in one step.)
+///
+/// Error state: [angle (world; its z is 0), velocity (world), gyro bias, accel bias] (base axes).
 class AttitudeFilter {
  public:
   static constexpr int kStates = 12;
@@ -77,6 +82,7 @@ class AttitudeFilter {
   /// Scalar measurement `residual` = H x + noise. False if it lies outside the gate.
   bool update(const Row& H, double residual, double variance, double gate_sigma);
   void apply(const Eigen::Matrix<double, kStates, 1>& error);
+  void turn_world_with_heading();
   void propagate_covariance(const Eigen::Vector3d& force_world, double dt_s);
 
   AttitudeConfig config_;

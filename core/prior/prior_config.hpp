@@ -110,9 +110,10 @@ struct HeightConfig {
   double turbulence_sigma_m = 0.04;
   double turbulence_time_s = 10.0;
 
-  /// Random walk of the difference between the two barometers [m/sqrt(s)], 0 … 1: warm-up, ageing, 1 cm in 10
-  /// min.
-  double offset_walk_m_sqrt_s = 4e-4;
+  /// The offset between the two barometers is learnt during this long after the first pressure [s], 0 … 1e6,
+  /// and constant from then on. Long enough to average turbulence; short enough that a ventilation zone
+  /// entered later is not taken for an error of the beginning, which would shift all heights for good.
+  double offset_learning_s = 15.0;
   /// Random walk of the weather where no base station takes it out [m/sqrt(s)], 0 … 10. Fronts move 100 to
   /// 130 Pa an hour, 2 to 3 mm/s, for hours: over ten minutes this walk grows as far, 1.2 m.
   double weather_walk_m_sqrt_s = 0.05;

@@ -52,9 +52,20 @@ void VerticalFilter::predict(double up_accel_m_s2, double dt_s, double accel_den
   P_(kVz, kVz) += accel_density * dt_s;
   P_(kAccelBias, kAccelBias) += squared(config_.accel_bias_walk_m_s2_sqrt_s) * dt_s;
   P_(kSlope, kSlope) += squared(config_.slope_walk_rad_sqrt_s) * dt_s;
-  P_(kOffset, kOffset) += squared(config_.offset_walk_m_sqrt_s) * dt_s;
   P_(kTurbulence, kTurbulence) += squared(config_.turbulence_sigma_m) * (1.0 - keep * keep);
+  if (offset_age_s_ >= 0.0) age_offset(dt_s);
   if (weather_moves) P_(kWeather, kWeather) += squared(config_.weather_walk_m_sqrt_s) * dt_s;
+}
+
+void VerticalFilter::age_offset(double dt_s) {
+  if (offset_age_s_ >= config_.offset_learning_s) return;
+  offset_age_s_ += dt_s;
+  if (offset_age_s_ < config_.offset_learning_s) return;
+  // From here on height is counted from where the pressure says it began: z + (b_p - its estimate).
+  P_.row(kZ) += P_.row(kOffset);
+  P_.col(kZ) += P_.col(kOffset);
+  P_.row(kOffset).setZero();
+  P_.col(kOffset).setZero();
 }
 
 VerticalFilter::Vector VerticalFilter::pressure_row(double delay_s) const {
@@ -83,6 +94,7 @@ VerticalFilter::Innovation VerticalFilter::pressure_innovation(double height_m, 
 
 void VerticalFilter::update_pressure(double height_m, double delay_s, double variance_m2) {
   update(pressure_row(delay_s), height_m, variance_m2);
+  if (offset_age_s_ < 0.0) offset_age_s_ = 0.0;
 }
 
 VerticalFilter::Innovation VerticalFilter::climb_innovation(double climb_m_s, double forward_m_s,

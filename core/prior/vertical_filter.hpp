@@ -59,11 +59,13 @@ class VerticalFilter {
   [[nodiscard]] Vector pressure_row(double delay_s) const;
   [[nodiscard]] Vector climb_row(double forward_m_s) const;
   [[nodiscard]] Innovation innovation(const Vector& h, double measured, double variance) const;
+  void age_offset(double dt_s);
   void update(const Vector& h, double measured, double variance);
 
   HeightConfig config_;
   Vector x_ = Vector::Zero();
   Matrix P_ = Matrix::Zero();
+  double offset_age_s_ = -1.0;  // since the first pressure; negative before it
 };
 
 }  // namespace isobar
