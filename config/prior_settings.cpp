@@ -41,8 +41,10 @@ void add_air(AirTemperatureConfig& air, std::vector<Setting>& settings) {
     settings.push_back({std::string("altimeter.air.") + name, &value, unit, lowest, highest, doc});
   };
   add("fixed_c", air.fixed_c, "degC", -60.0, 60.0,
-      "Air temperature where mode is fixed, and until a thermometer has spoken. 15 is the standard "
-      "atmosphere's.");
+      "Air temperature where mode is fixed, and until a thermometer has spoken. Buildings are heated to "
+      "20.");
+  add("expected_self_heating_k", air.expected_self_heating_k, "K", -10.0, 30.0,
+      "What the coldest barometer is expected to read above the air; taken off.");
   add("max_self_heating_k", air.max_self_heating_k, "K", 0.0, 30.0,
       "Most that a barometer warms itself above the air. Chips near a processor read 2 to 8 K too warm.");
   add("fall_time_s", air.fall_time_s, "s", 1.0, 1e6,

@@ -17,10 +17,11 @@ namespace isobar {
 ///   - what they said first is closer than what they say later (a sensor powered just now has not warmed up),
 ///   - a fall is real (colder air, or a colder place), a rise mostly is not.
 /// The estimate starts at the lowest first reading, follows the lowest sensor down within a minute and up
-/// within an hour, and never stays more than the largest believable self-heating below the coldest sensor. It
-/// is slow and continuous, so that the heights computed with it do not jump. Humidity (up to +1.3 K of
-/// virtual temperature at 20 degC and 50 %) is left out: it has the opposite sign of the self-heating that
-/// remains in sensors that were already warm.
+/// within an hour, and never stays more than the largest believable self-heating below the coldest sensor;
+/// what even the coldest is expected to warm itself by is taken off at the end. It is slow and continuous, so
+/// that the heights computed with it do not jump. Humidity (up to +1.3 K of virtual temperature at 20 degC
+/// and 50 %) is left out: it has the opposite sign of the self-heating that remains in sensors that were
+/// already warm.
 class AirTemperatureTracker {
  public:
   static constexpr std::size_t kSensors = 2;
@@ -38,7 +39,9 @@ class AirTemperatureTracker {
   }
 
   /// Estimate [degC]; the configured value until a thermometer has spoken.
-  [[nodiscard]] double temperature_c() const { return estimate_c_; }
+  [[nodiscard]] double temperature_c() const {
+    return started_ ? estimate_c_ - config_.expected_self_heating_k : config_.fixed_c;
+  }
 
  private:
   struct Thermometer {

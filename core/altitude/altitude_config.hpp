@@ -17,8 +17,13 @@ struct AirTemperatureConfig {
   AirTemperatureMode mode = AirTemperatureMode::kAuto;
 
   /// Air temperature [degC], -60 … 60. Used where mode is kFixed, and by kAuto until a thermometer has spoken
-  /// (or if none ever does). 15 is the international standard atmosphere's at sea level.
-  double fixed_c = 15.0;
+  /// (or if none ever does). 20 is what buildings are heated to; outdoors, say what it is.
+  double fixed_c = 20.0;
+
+  /// What the coldest barometer is expected to read above the air [K], -10 … 30; taken off. Even a ventilated
+  /// base station's chip warms itself by 0.3 to 1.2 K and the thermometers are good to 0.5 K: half a kelvin
+  /// (2 cm at 12 m) is the middle between that and a thermometer in the air itself.
+  double expected_self_heating_k = 0.5;
 
   /// Most that a barometer warms itself above the air [K], 0 … 30. The estimate never falls further than
   /// this below the coldest sensor of the moment: what it remembers of a colder place or hour must not stay.

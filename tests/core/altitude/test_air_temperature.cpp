@@ -10,10 +10,16 @@ using namespace isobar;
 
 namespace {
 std::int64_t at(double t) { return static_cast<std::int64_t>(t * 1e9); }
+
+AirTemperatureConfig thermometers_are_right() {
+  AirTemperatureConfig config;
+  config.expected_self_heating_k = 0.0;
+  return config;
+}
 }  // namespace
 
 TEST_CASE("self-heating of both sensors hardly reaches the estimate") {
-  AirTemperatureTracker tracker({});
+  AirTemperatureTracker tracker(thermometers_are_right());
   for (double t = 0.0; t < 600.0; t += 0.5) {
     const double heat = 1.0 - std::exp(-t / 180.0);
     tracker.add(0, at(t), 20.0 + 6.0 * heat);
@@ -25,7 +31,7 @@ TEST_CASE("self-heating of both sensors hardly reaches the estimate") {
 }
 
 TEST_CASE("the coldest sensor is followed within minutes, without a jump") {
-  AirTemperatureTracker tracker({});
+  AirTemperatureTracker tracker(thermometers_are_right());
   double before = 0.0;
   double largest_step = 0.0;
   for (double t = 0.0; t < 400.0; t += 0.1) {
@@ -40,7 +46,7 @@ TEST_CASE("the coldest sensor is followed within minutes, without a jump") {
 }
 
 TEST_CASE("a visit to the cold does not stay beyond the largest self-heating") {
-  AirTemperatureTracker tracker({});
+  AirTemperatureTracker tracker(thermometers_are_right());
   for (double t = 0.0; t < 1200.0; t += 0.5) {
     tracker.add(0, at(t), t > 200.0 && t < 600.0 ? -10.0 : 22.0);
     tracker.add(1, at(t), 22.0);
@@ -50,7 +56,10 @@ TEST_CASE("a visit to the cold does not stay beyond the largest self-heating") {
 }
 
 TEST_CASE("a sensor that fell silent no longer counts") {
-  AirTemperatureTracker tracker({AirTemperatureMode::kAuto, 15.0, 2.0, 60.0, 60.0, 5.0, 2.0});
+  AirTemperatureConfig config = thermometers_are_right();
+  config.max_self_heating_k = 2.0;
+  config.rise_time_s = 60.0;
+  AirTemperatureTracker tracker(config);
   for (double t = 0.0; t < 900.0; t += 1.0) {
     if (t < 100.0) tracker.add(0, at(t), 5.0);
     tracker.add(1, at(t), 20.0);
@@ -59,12 +68,12 @@ TEST_CASE("a sensor that fell silent no longer counts") {
 }
 
 TEST_CASE("broken readings and a fixed temperature change nothing") {
-  AirTemperatureTracker tracker({});
-  CHECK(tracker.temperature_c() == 15.0);
+  AirTemperatureTracker tracker(thermometers_are_right());
+  CHECK(tracker.temperature_c() == AirTemperatureConfig{}.fixed_c);
   tracker.add(0, at(0.0), std::numeric_limits<double>::quiet_NaN());
   tracker.add(0, at(0.1), 1e9);
   tracker.add(7, at(0.1), 10.0);
-  CHECK(tracker.temperature_c() == 15.0);
+  CHECK(tracker.temperature_c() == AirTemperatureConfig{}.fixed_c);
   tracker.add(0, at(1.0), 10.0);
   tracker.add(0, at(0.5), -50.0);  // back in time
   CHECK(tracker.temperature_c() == doctest::Approx(10.0));
@@ -74,4 +83,14 @@ TEST_CASE("broken readings and a fixed temperature change nothing") {
   AirTemperatureTracker constant(fixed);
   constant.add(0, at(0.0), 25.0);
   CHECK(constant.temperature_c() == -3.0);
+}
+
+TEST_CASE(
+    "what even the coldest sensor warms itself by is taken off, but not from a temperature that is given") {
+  AirTemperatureConfig config;
+  config.expected_self_heating_k = 0.7;
+  AirTemperatureTracker tracker(config);
+  CHECK(tracker.temperature_c() == config.fixed_c);
+  for (double t = 0.0; t < 30.0; t += 0.1) tracker.add(0, at(t), 18.0);
+  CHECK(tracker.temperature_c() == doctest::Approx(17.3));
 }
