@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <type_traits>
 
 namespace isobar {
 
@@ -35,16 +36,17 @@ struct WheelSample {
   double wz_rad_s = 0.0;
 };
 
-/// One lidar return in the sensor's frame (x forward, y left, z up).
+/// One lidar return in the sensor's frame (x forward, y left, z up). Without initial values: with them every
+/// loan of a chunk for 70 000 points would write a megabyte of zeros.
 struct ScanPoint {
-  float x_m = 0.0F;
-  float y_m = 0.0F;
-  float z_m = 0.0F;
-  std::uint16_t time_4us = 0;  ///< firing time after Scan::stamp_ns, in units of 4 us (262 ms at most)
-  std::uint8_t ring = 0;       ///< laser, 0 is the lowest
-  std::uint8_t intensity = 0;  ///< calibrated reflectivity
+  float x_m;
+  float y_m;
+  float z_m;
+  std::uint16_t time_4us;  ///< firing time after Scan::stamp_ns, in units of 4 us (262 ms at most)
+  std::uint8_t ring;       ///< laser, 0 is the lowest
+  std::uint8_t intensity;  ///< calibrated reflectivity
 };
-static_assert(sizeof(ScanPoint) == 16);
+static_assert(sizeof(ScanPoint) == 16 && std::is_trivially_default_constructible_v<ScanPoint>);
 
 /// Unit of ScanPoint::time_4us [ns].
 inline constexpr std::int64_t kPointTimeUnitNs = 4'000;

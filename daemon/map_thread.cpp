@@ -35,6 +35,7 @@ void MapThread::stop() noexcept {
 void MapThread::loop() noexcept {
   (void)apply_to_this_thread(settings_);
   while (waiter_.wait() != ipc::Waiter::Event::kStopped) drain();
+  drain();
   points_.clear();
   map_.append_points(points_);
   write_evicted();
@@ -47,16 +48,12 @@ void MapThread::drain() noexcept {
     if (map_.update(*scan, points_)) {
       snapshots_.publish(map_.snapshot());
       own_.update_ms = timer.elapsed_ms();
-      ++own_.updates;
     }
     write_evicted();
     publish_cloud(scan->pose.stamp_ns);
-    ++own_.scans;
   }
   own_.dropped_scans = scans_.dropped();
   own_.cells = map_.cell_count();
-  own_.tiles = map_.tile_count();
-  own_.seen_through = map_.seen_through_count();
   status_.put(own_);
 }
 
@@ -81,11 +78,8 @@ void MapThread::publish_cloud(std::int64_t stamp_ns) noexcept {
   std::uint32_t count = 0;
   for (std::size_t i = 0; i < points_.size(); i += stride) {
     const MapPoint& point = points_[i];
-    ScanPoint& out = cloud->points[count++];
-    out.x_m = static_cast<float>(point.p_map.x());
-    out.y_m = static_cast<float>(point.p_map.y());
-    out.z_m = static_cast<float>(point.p_map.z());
-    out.intensity = point.intensity;
+    const Eigen::Vector3f p_map = point.p_map.cast<float>();
+    cloud->points[count++] = {p_map.x(), p_map.y(), p_map.z(), 0, 0, point.intensity};
   }
   cloud->stamp_ns = stamp_ns;
   cloud->sequence = cloud_sequence_++;

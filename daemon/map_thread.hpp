@@ -16,12 +16,8 @@ namespace isobar {
 
 /// What the map thread says of itself.
 struct MapStatus {
-  std::uint64_t scans = 0;
   std::uint64_t dropped_scans = 0;
-  std::uint64_t updates = 0;
   std::uint64_t cells = 0;
-  std::uint64_t tiles = 0;
-  std::uint64_t seen_through = 0;
   double update_ms = 0.0;  ///< CPU time of the last update
 };
 

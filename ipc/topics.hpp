@@ -21,7 +21,7 @@ struct MapCloud {
   std::int64_t stamp_ns = 0;      ///< time of the last scan that is in the map
   std::uint32_t sequence = 0;     ///< counts the published maps
   std::uint32_t point_count = 0;  ///< points[0 … point_count-1] are valid
-  ScanPoint points[kMaxPoints];   // NOLINT(modernize-avoid-c-arrays): p_map; time and ring carry nothing
+  ScanPoint points[kMaxPoints];   // NOLINT(modernize-avoid-c-arrays): p_map; time and ring are 0
 
   MapCloud() {}  // NOLINT: user-written, so that loaning a chunk does not zero a megabyte
 };
@@ -71,7 +71,8 @@ struct HealthReport {
   }
 };
 
-/// A topic: one row of the table below. One process publishes it, any number read it.
+/// A topic: one row of the table below. Any number read it; isobard writes it, samples also come from
+/// isobar-dds.
 template <class Payload>
 struct Topic {
   static_assert(std::is_trivially_destructible_v<Payload>);
