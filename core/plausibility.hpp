@@ -33,8 +33,8 @@ inline constexpr PlausibleRange kPlausibleWheelMS{-20.0, 20.0};
 inline constexpr PlausibleRange kPlausibleWheelRadS{-40.0, 40.0};
 /// Norm of an attitude quaternion as printed with few decimals; it is normalised afterwards.
 inline constexpr PlausibleRange kPlausibleQuaternionNorm{0.9, 1.1};
-/// Stamps [ns since 1970] lie between 0 and the year 2200; int64 overflows in 2262, and sums of stamps must
-/// not.
+/// Stamps [ns since 1970] lie between 0 and the year 2100; int64 overflows in 2262, and stamps with an offset
+/// must not.
 inline constexpr std::int64_t kPlausibleStampLowestNs = 0;
 inline constexpr std::int64_t kPlausibleStampHighestNs = 4'102'444'800LL * 1'000'000'000LL;
 

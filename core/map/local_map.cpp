@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <tuple>
+
+#include "core/geometry.hpp"
 
 namespace isobar {
 
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 PlaneCriteria criteria_of(const MapConfig& config) {
   PlaneCriteria criteria;

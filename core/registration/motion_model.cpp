@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "core/geometry.hpp"
 
 namespace isobar {
 
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 // What a lost robot may be off by at most: beyond this the search would cover everything.
 constexpr double kLargestDeviationM = 2.0;
 constexpr double kLargestDeviationRad = 0.5;
@@ -18,6 +18,8 @@ constexpr double kVelocityGain = 0.5;
 constexpr double kVerticalVelocityGain = 0.3;
 constexpr double kLongestVelocityStepS = 0.5;
 constexpr double kFreeMotionFloorM = 0.02;
+// How fast a robot turns of which the IMU says nothing, 1 sigma [rad/s].
+constexpr double kUnseenRateRadS = 0.5;
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
@@ -69,7 +71,10 @@ Eigen::Vector3d MotionModel::translation_step_map(const Prior& now) const {
 
 Prediction MotionModel::predict(const Prior& now, const MethodTraits& method) const {
   Prediction prediction;
-  const Eigen::Matrix3d R_map_odom_full = T_map_base_.linear() * last_.T_odom_base.linear().transpose();
+  // Between priors of which one is unknown there is no turn: the scan finds it.
+  const bool followed = now.attitude_valid && last_.attitude_valid;
+  const Eigen::Matrix3d& R_odom_base = followed ? last_.T_odom_base.linear() : now.T_odom_base.linear();
+  const Eigen::Matrix3d R_map_odom_full = T_map_base_.linear() * R_odom_base.transpose();
   const Eigen::Matrix3d R_map_odom =
       method.attitude_from_gravity ? yaw_only(R_map_odom_full) : R_map_odom_full;
   const Eigen::Vector3d step = translation_step_map(now);
@@ -90,10 +95,11 @@ Prediction MotionModel::predict(const Prior& now, const MethodTraits& method) co
   } else {
     translation += kFreeMotionFloorM + 0.5 * config_.free_acceleration_m_s2 * dt * dt;
   }
-  const double turn =
-      Eigen::AngleAxisd(last_.T_odom_base.linear().transpose() * now.T_odom_base.linear()).angle();
-  const double rotation = config_.step_rotation_floor_deg * kRadPerDeg + config_.step_rotation_share * turn +
-                          std::sqrt(std::max(now.yaw_rate_variance_rad2_s2, 0.0)) * dt;
+  const double turn = Eigen::AngleAxisd(R_odom_base.transpose() * now.T_odom_base.linear()).angle();
+  const double rate_error =
+      std::max(std::sqrt(std::max(now.yaw_rate_variance_rad2_s2, 0.0)), followed ? 0.0 : kUnseenRateRadS);
+  const double rotation =
+      config_.step_rotation_floor_deg * kRadPerDeg + config_.step_rotation_share * turn + rate_error * dt;
   prediction.deviation.head<3>().setConstant(std::min(rotation, kLargestDeviationRad));
   prediction.deviation.tail<3>().setConstant(std::min(translation, kLargestDeviationM));
   if (method.z_prediction == ZPrediction::kAltimeter) {

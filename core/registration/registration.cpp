@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "core/geometry.hpp"
 
 namespace isobar {
 
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 // The first iterations only have to come near: a third of the points do that.
 constexpr int kCoarseIterations = 2;
 constexpr std::size_t kCoarseStride = 3;
@@ -61,6 +61,7 @@ Registration::Registration(const RegistrationConfig& config, Method method,
       asked_(method),
       traits_(traits_of(method, HeightSource::kNone)),
       traits_with_height_(traits_of(method, HeightSource::kDifferential)),
+      traits_without_imu_(traits_of(Method::k6Dof, HeightSource::kNone)),
       T_base_lidar_(T_base_lidar),
       motion_(config),
       deskewer_(T_base_lidar, config.min_range_m, config.max_range_m),
@@ -76,6 +77,9 @@ bool Registration::ready(const Scan& scan) const {
 }
 
 const MethodTraits& Registration::traits_for(const Prior& prior) const {
+  if (!prior.attitude_valid && traits_.registers && motion_.started()) {
+    return traits_without_imu_;
+  }
   return prior.height_source == HeightSource::kNone ? traits_ : traits_with_height_;
 }
 
@@ -94,15 +98,24 @@ void Registration::describe(const Prior& prior, const MethodTraits& traits, Pose
   pose.height_source = prior.height_source;
 }
 
+void Registration::prior_without_imu(std::int64_t stamp_ns, Prior& end) const {
+  if (!history_.at(stamp_ns, end)) {
+    end = stamp_ns < history_.oldest().stamp_ns ? history_.oldest() : history_.newest();
+    end.stamp_ns = stamp_ns;
+  }
+  end.attitude_valid = false;
+  end.velocity_valid = false;
+  end.standing_still = false;
+}
+
 bool Registration::begin(const Scan& scan, Prior& end, PoseEstimate& pose) {
-  if (!history_.at(scan.end_stamp_ns, end)) {
-    if (history_.empty()) {
-      pose = last_;
-      pose.stamp_ns = scan.end_stamp_ns;
-      return false;
-    }
-    end = scan.end_stamp_ns < history_.oldest().stamp_ns ? history_.oldest() : history_.newest();
-    end.stamp_ns = scan.end_stamp_ns;
+  if (history_.empty()) {
+    pose = last_;
+    pose.stamp_ns = scan.end_stamp_ns;
+    return false;
+  }
+  if (!history_.dense_at(scan.end_stamp_ns) || !history_.at(scan.end_stamp_ns, end)) {
+    prior_without_imu(scan.end_stamp_ns, end);
   }
   describe(end, traits_for(end), pose);
   pose.sequence = scan.sequence;
@@ -142,7 +155,8 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
   } else {
     pose.T_map_base = prediction.T_map_base;
     twist_covariance = prediction.deviation.cwiseAbs2().asDiagonal();
-    motion_.keep_prediction(end, prediction);
+    // Where the IMU is silent the way goes on from the last scan that knew its prior, once it is back.
+    if (end.attitude_valid) motion_.keep_prediction(end, prediction);
   }
   finish(end, traits, twist_covariance, pose);
 }

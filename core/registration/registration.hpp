@@ -35,7 +35,8 @@ class Registration {
   /// `out`. Never fails: what cannot be registered gets the prior's pose and mode kPriorOnly.
   void register_scan(const Scan& scan, const MapSnapshot& map, RegisteredScan& out);
 
-  /// Pose at the newest prior, for the time between scans and without any. False before gravity is known.
+  /// Pose at the newest prior, for the time between scans and without any. False until a scan has started the
+  /// map.
   bool propagate(PoseEstimate& out) const;
 
   /// Starts the next scan at this pose of base_link in the map (yaw and position are used; roll, pitch, and
@@ -48,6 +49,7 @@ class Registration {
 
   [[nodiscard]] const MethodTraits& traits_for(const Prior& prior) const;
   void describe(const Prior& prior, const MethodTraits& traits, PoseEstimate& pose) const;
+  void prior_without_imu(std::int64_t stamp_ns, Prior& end) const;
   bool begin(const Scan& scan, Prior& end, PoseEstimate& pose);
   [[nodiscard]] PairNoise pair_noise(const MethodTraits& traits, const Prior& prior) const;
   bool solve(const MapSnapshot& map, const Prediction& prediction, const MethodTraits& traits,
@@ -60,6 +62,7 @@ class Registration {
   Method asked_;
   MethodTraits traits_;              // while there is no height
   MethodTraits traits_with_height_;  // once there is
+  MethodTraits traits_without_imu_;  // while the IMU is silent: the scans alone say how the robot moves
   Eigen::Isometry3d T_base_lidar_;
   PriorHistory history_;
   MotionModel motion_;
