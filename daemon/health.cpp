@@ -29,6 +29,15 @@ void add_count(HealthReport& report, const char* name, std::uint64_t now, std::u
              static_cast<double>(now));
 }
 
+/// Where samples of this kind may come from.
+std::string input_of(const Config& config, datagram::Kind kind) {
+  using datagram::Kind;
+  const bool by_dds = kind == Kind::kBasePressure
+                          ? config.dds.receive_base_pressure
+                          : config.dds.receive_sensors && (kind == Kind::kImu || kind == Kind::kWheel);
+  return "UDP port " + std::to_string(config.input.port) + (by_dds ? " or over DDS" : "");
+}
+
 void add_stream(HealthReport& report, const std::string& name, std::int64_t last_ns, std::int64_t now_ns,
                 double rate_hz, const std::string& where) {
   if (last_ns == 0) {
@@ -53,7 +62,9 @@ void HealthMonitor::fill(const StatusSnapshot& now, HealthReport& report) {
   fill_lidar(now, elapsed_s, report);
   fill_samples(now, elapsed_s, report);
   fill_estimate(now, report);
-  for (const std::string& refusal : refusals_) report.add("realtime", HealthLevel::kWarning, refusal, 0.0);
+  for (std::size_t i = 0; i < refusals_.size(); ++i) {  // numbered: news() knows an entry by its name
+    report.add("realtime/" + std::to_string(i + 1), HealthLevel::kWarning, refusals_[i], 0.0);
+  }
   last_ = now;
 }
 
@@ -83,24 +94,32 @@ void HealthMonitor::fill_lidar(const StatusSnapshot& now, double elapsed_s, Heal
 void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, HealthReport& report) const {
   constexpr const char* kNames[] = {"imu", "barometer", "base_station",
                                     "wheels"};  // NOLINT(modernize-avoid-c-arrays)
-  const std::string where = "UDP port " + std::to_string(config_.input.port);
   const auto& counters = now.inertial.counters;
   const auto& before = last_.inertial.counters;
   for (std::size_t kind = 0; kind < datagram::kKinds; ++kind) {
-    add_stream(report, kNames[kind], now.inertial.last_sample_ns[kind], now.now_ns,
-               per_second(counters.samples[kind], before.samples[kind], elapsed_s), where);
+    add_stream(report, kNames[kind], now.prior.last_sample_ns[kind], now.now_ns,
+               per_second(now.prior.samples[kind], last_.prior.samples[kind], elapsed_s),
+               input_of(config_, static_cast<datagram::Kind>(kind)));
     add_count(report, (std::string(kNames[kind]) + "/lost").c_str(), counters.lost[kind], before.lost[kind],
               "samples missing, by their numbers");
   }
   add_count(report, "input/refused", counters.malformed + counters.implausible + counters.unknown_kind,
             before.malformed + before.implausible + before.unknown_kind,
             "lines malformed or implausible, refused");
+  add_count(report, "input/clock_steps", now.inertial.clock_steps, last_.inertial.clock_steps,
+            "a sender's clock was set");
+  add_count(report, "input/dropped_by_kernel", now.inertial.dropped_by_kernel,
+            last_.inertial.dropped_by_kernel, "datagrams dropped by the kernel: the machine is too busy");
+  add_count(report, "input/no_memory", now.inertial.samples_without_memory,
+            last_.inertial.samples_without_memory, "samples dropped: no free chunk of shared memory");
+  add_count(report, "input/dropped", now.prior.dropped_samples, last_.prior.dropped_samples,
+            "samples that came faster than they could be used");
 }
 
 void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& report) const {
   const PriorStatus& prior = now.prior;
   report.add("attitude", prior.attitude_valid ? HealthLevel::kOk : HealthLevel::kStale,
-             prior.attitude_valid ? "gravity found" : "waiting for the IMU to find gravity", 0.0);
+             prior.attitude_valid ? "gravity found" : "gravity not found yet, it needs the IMU", 0.0);
   const bool height_good = prior.height_source == HeightSource::kDifferential;
   report.add("height", height_good ? HealthLevel::kOk : HealthLevel::kWarning,
              fmt::format("source: {}, sd {:.3f} m", report::height_source_name(prior.height_source),
@@ -122,6 +141,8 @@ void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& repor
             "scans that did not fit the map; their pose is the prior's");
   add_count(report, "registration/dropped", registration.dropped_scans, last_.registration.dropped_scans,
             "scans dropped: they came faster than they could be registered");
+  add_count(report, "registration/priors_dropped", registration.dropped_priors,
+            last_.registration.dropped_priors, "priors that the registration did not get");
   add_count(report, "registration/bridged", registration.bridged, last_.registration.bridged,
             "poses without a scan: the lidar was silent");
   report.add("map", HealthLevel::kOk, "cells in memory", static_cast<double>(now.map.cells));
@@ -141,7 +162,8 @@ std::vector<std::string> HealthMonitor::news(const HealthReport& report) {
     if (known == levels_.end()) {
       levels_.emplace_back(name, HealthLevel::kOk);
       known = levels_.end() - 1;
-      if (entry.level == HealthLevel::kOk) continue;
+      // Figures that are well from the start are no news.
+      if (entry.level == HealthLevel::kOk && name.find('/') != std::string::npos) continue;
     } else if (known->second == entry.level) {
       continue;
     }

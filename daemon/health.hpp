@@ -33,7 +33,8 @@ class HealthMonitor {
 
   void fill(const StatusSnapshot& now, ipc::HealthReport& report);
 
-  /// The worst entry of each part that changed since the last call, for the log: "imu: ok: 200 samples/s".
+  /// Entries whose level changed since the last call, for the log: "imu: ok: 200.0 per second". At the first
+  /// call sensors that are well are news, too.
   [[nodiscard]] std::vector<std::string> news(const ipc::HealthReport& report);
 
  private:

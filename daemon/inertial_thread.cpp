@@ -47,7 +47,6 @@ void InertialThread::take_datagram(const ReceivedDatagram& received) noexcept {
   datagram::Sample sample;
   while (parser_.next(sample)) {
     to_robot_clock(sample, received.stamp_ns);
-    own_.last_sample_ns[static_cast<std::size_t>(sample.kind)] = received.stamp_ns;
     if (!publish(sample)) ++own_.samples_without_memory;
   }
 }
@@ -79,7 +78,8 @@ bool InertialThread::publish(const datagram::Sample& sample) noexcept {
 void InertialThread::report() noexcept {
   own_.counters = parser_.counters();
   own_.dropped_by_kernel = receiver_.dropped_by_kernel();
-  for (std::size_t kind = 0; kind < datagram::kKinds; ++kind) own_.clock_steps[kind] = anchors_[kind].steps();
+  own_.clock_steps = 0;
+  for (const ClockAnchor& anchor : anchors_) own_.clock_steps += anchor.steps();
   status_.put(own_);
 }
 

@@ -17,8 +17,7 @@ namespace isobar {
 /// What the inertial thread says of itself.
 struct InertialStatus {
   datagram::Counters counters;
-  std::array<std::int64_t, datagram::kKinds> last_sample_ns{};  ///< robot clock, by Kind, 0: none yet
-  std::array<std::uint64_t, datagram::kKinds> clock_steps{};    ///< by Kind
+  std::uint64_t clock_steps = 0;  ///< senders' clocks that were set
   std::uint64_t dropped_by_kernel = 0;
   std::uint64_t samples_without_memory = 0;
 };

@@ -27,33 +27,45 @@ void PriorThread::stop() noexcept {
 void PriorThread::loop() noexcept {
   (void)apply_to_this_thread(settings_);
   while (waiter_.wait() != ipc::Waiter::Event::kStopped) drain();
+  drain();
+}
+
+// Seen here, behind all the ways in which a sample comes: by UDP or over DDS.
+template <class Sample>
+ipc::Received<Sample> PriorThread::take(ipc::Subscriber<Sample>& from, datagram::Kind kind) noexcept {
+  ipc::Received<Sample> sample = from.take();
+  if (sample) {
+    ++own_.samples[static_cast<std::size_t>(kind)];
+    own_.last_sample_ns[static_cast<std::size_t>(kind)] = sample->stamp_ns;
+  }
+  return sample;
 }
 
 // The slow sensors first: what they measured before an IMU sample belongs into its prior.
 void PriorThread::drain() noexcept {
-  while (const auto sample = base_barometer_.take()) estimator_.add_base_pressure(*sample);
-  while (const auto sample = barometer_.take()) estimator_.add_pressure(*sample);
-  while (const auto sample = wheel_.take()) estimator_.add_wheel(*sample);
+  using datagram::Kind;
+  while (const auto sample = take(base_barometer_, Kind::kBasePressure)) {
+    estimator_.add_base_pressure(*sample);
+  }
+  while (const auto sample = take(barometer_, Kind::kPressure)) estimator_.add_pressure(*sample);
+  while (const auto sample = take(wheel_, Kind::kWheel)) estimator_.add_wheel(*sample);
   Prior prior;
-  while (const auto sample = imu_.take()) {
+  while (const auto sample = take(imu_, Kind::kImu)) {
     if (!estimator_.add_imu(*sample, prior)) continue;
     publisher_.send(prior);
-    report(prior);
+    describe(prior);
   }
+  own_.counters = estimator_.counters();
+  own_.dropped_samples = imu_.dropped() + barometer_.dropped() + base_barometer_.dropped() + wheel_.dropped();
+  status_.put(own_);
 }
 
-void PriorThread::report(const Prior& prior) noexcept {
-  PriorStatus status;
-  status.counters = estimator_.counters();
-  status.dropped_samples =
-      imu_.dropped() + barometer_.dropped() + base_barometer_.dropped() + wheel_.dropped();
-  status.stamp_ns = prior.stamp_ns;
-  status.height_m = prior.height_m;
-  status.height_variance_m2 = prior.height_variance_m2;
-  status.height_source = prior.height_source;
-  status.attitude_valid = prior.attitude_valid;
-  status.velocity_valid = prior.velocity_valid;
-  status_.put(status);
+void PriorThread::describe(const Prior& prior) noexcept {
+  own_.stamp_ns = prior.stamp_ns;
+  own_.height_m = prior.height_m;
+  own_.height_variance_m2 = prior.height_variance_m2;
+  own_.height_source = prior.height_source;
+  own_.attitude_valid = prior.attitude_valid;
 }
 
 }  // namespace isobar

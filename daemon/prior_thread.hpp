@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <thread>
 
 #include "core/prior/prior_estimator.hpp"
 #include "daemon/mailbox.hpp"
 #include "daemon/realtime.hpp"
+#include "drivers/datagram/datagram.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar {
@@ -13,13 +16,14 @@ namespace isobar {
 /// What the prior thread says of itself.
 struct PriorStatus {
   PriorCounters counters;
-  std::uint64_t dropped_samples = 0;  ///< lost because this thread came too late
-  std::int64_t stamp_ns = 0;          ///< of the newest prior, 0: none yet
+  std::array<std::uint64_t, datagram::kKinds> samples{};        ///< by Kind, however they came
+  std::array<std::int64_t, datagram::kKinds> last_sample_ns{};  ///< robot clock, by Kind, 0: none yet
+  std::uint64_t dropped_samples = 0;                            ///< lost because this thread came too late
+  std::int64_t stamp_ns = 0;                                    ///< of the newest prior, 0: none yet
   double height_m = 0.0;
   double height_variance_m2 = 0.0;
   HeightSource height_source = HeightSource::kNone;
   bool attitude_valid = false;
-  bool velocity_valid = false;
 };
 
 /// Samples in, one prior an IMU sample out.
@@ -38,7 +42,9 @@ class PriorThread {
  private:
   void loop() noexcept;
   void drain() noexcept;
-  void report(const Prior& prior) noexcept;
+  template <class Sample>
+  ipc::Received<Sample> take(ipc::Subscriber<Sample>& from, datagram::Kind kind) noexcept;
+  void describe(const Prior& prior) noexcept;
 
   ThreadSettings settings_;
   PriorEstimator estimator_;
@@ -48,6 +54,7 @@ class PriorThread {
   ipc::Subscriber<WheelSample> wheel_;
   ipc::Publisher<Prior> publisher_;
   ipc::Waiter waiter_;
+  PriorStatus own_;
   Mailbox<PriorStatus> status_;
   std::thread thread_;
 };

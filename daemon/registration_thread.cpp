@@ -33,10 +33,8 @@ void RegistrationThread::stop() noexcept {
 
 void RegistrationThread::loop() noexcept {
   (void)apply_to_this_thread(settings_);
-  while (waiter_.wait() != ipc::Waiter::Event::kStopped) {
-    drain();
-    status_.put(own_);
-  }
+  while (waiter_.wait() != ipc::Waiter::Event::kStopped) drain();
+  drain();
 }
 
 void RegistrationThread::drain() noexcept {
@@ -55,6 +53,7 @@ void RegistrationThread::drain() noexcept {
   }
   own_.dropped_scans = scans_.dropped();
   own_.dropped_priors = priors_.dropped();
+  status_.put(own_);
 }
 
 void RegistrationThread::register_oldest() noexcept {
@@ -72,9 +71,7 @@ void RegistrationThread::register_oldest() noexcept {
   out.pose.registration_ms = timer.elapsed_ms();
 
   ++own_.scans;
-  own_.registered += out.pose.mode == PoseMode::kRegistered ? 1 : 0;
   own_.from_prior += out.pose.mode == PoseMode::kPriorOnly ? 1 : 0;
-  own_.last_scan_ns = scan->end_stamp_ns;
   emit(out.pose, true);
   if (loaned != nullptr) registered_scans_.publish(loaned);
 }

@@ -19,12 +19,10 @@ namespace isobar {
 /// What the registration thread says of itself.
 struct RegistrationStatus {
   std::uint64_t scans = 0;
-  std::uint64_t registered = 0;
   std::uint64_t from_prior = 0;     ///< scans whose registration was refused
   std::uint64_t dropped_scans = 0;  ///< came faster than they could be registered
   std::uint64_t dropped_priors = 0;
   std::uint64_t bridged = 0;  ///< poses without a scan
-  std::int64_t last_scan_ns = 0;
   double overlap = 0.0;
   double registration_ms = 0.0;
   PoseMode mode = PoseMode::kInitializing;
