@@ -6,6 +6,7 @@
 #include <sys/file.h>
 #include <sys/inotify.h>
 #include <sys/random.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -81,6 +82,34 @@ int open_announced(std::uint64_t& instance) {
   return -1;
 }
 
+/// Opens and locks the file, or throws.
+int open_and_lock() {
+  // A file that a killed isobard of another user left behind may be opened, but not with O_CREAT: Debian sets
+  // fs.protected_regular.
+  int descriptor = ::open(kLockPath, O_RDWR | O_CLOEXEC);
+  if (descriptor < 0 && errno == ENOENT) {
+    descriptor = ::open(kLockPath, O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  }
+  if (descriptor < 0) {
+    throw ServiceError(std::string(kLockPath) + ": cannot be opened: " + reason());
+  }
+  struct flock request = lock_of(F_WRLCK, kHolderByte);
+  if (::fcntl(descriptor, F_OFD_SETLK, &request) != 0) {
+    ::close(descriptor);
+    throw ServiceError("another isobard is running on this machine (it holds " + std::string(kLockPath) +
+                       "); stop it first");
+  }
+  return descriptor;
+}
+
+/// Is this still the file that others find under the lock's name?
+bool is_in_place(int descriptor) noexcept {
+  struct stat opened {};
+  struct stat named {};
+  return ::fstat(descriptor, &opened) == 0 && ::stat(kLockPath, &named) == 0 &&
+         opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+}
+
 /// Closes a descriptor at the end of a block.
 class Descriptor {
  public:
@@ -101,15 +130,10 @@ class Descriptor {
 }  // namespace
 
 BrokerLock BrokerLock::acquire() {
-  const int descriptor = ::open(kLockPath, O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (descriptor < 0) {
-    throw ServiceError(std::string(kLockPath) + ": cannot be opened: " + reason());
-  }
-  struct flock request = lock_of(F_WRLCK, kHolderByte);
-  if (::fcntl(descriptor, F_OFD_SETLK, &request) != 0) {
+  int descriptor = open_and_lock();
+  while (!is_in_place(descriptor)) {  // its holder removed it between our opening and our lock
     ::close(descriptor);
-    throw ServiceError("another isobard is running on this machine (it holds " + std::string(kLockPath) +
-                       "); stop it first");
+    descriptor = open_and_lock();
   }
   BrokerLock lock(descriptor);
   if (library_lock_is_held()) {
@@ -147,8 +171,10 @@ BrokerLock::BrokerLock(BrokerLock&& other) noexcept : descriptor_(std::exchange(
 
 BrokerLock::~BrokerLock() {
   if (descriptor_ >= 0) {
-    // A failure leaves the number of a dead holder behind, which the lock's absence makes harmless.
+    // Removed while it is locked, so that an isobard of another user can start next. A failure leaves the
+    // number of a dead holder behind, which the lock's absence makes harmless.
     static_cast<void>(::ftruncate(descriptor_, 0) == 0);
+    static_cast<void>(::unlink(kLockPath) == 0);
     ::close(descriptor_);
   }
 }
