@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/inertial_thread.hpp"
 
+#include "daemon/receive_loop.hpp"
+
 namespace isobar {
 
 InertialThread::InertialThread(const std::string& address, std::uint16_t port, ThreadSettings settings)
@@ -23,23 +25,9 @@ void InertialThread::stop() noexcept {
 }
 
 void InertialThread::loop() noexcept {
-  constexpr int kReportEveryMs = 200;
   (void)apply_to_this_thread(settings_);
-  ReceivedDatagram received;
-  for (;;) {
-    switch (receiver_.receive(received, kReportEveryMs)) {
-      case UdpReceiver::Status::kDatagram:
-        take_datagram(received);
-        break;
-      case UdpReceiver::Status::kStopped:
-        report();
-        return;
-      case UdpReceiver::Status::kTimeout:
-      case UdpReceiver::Status::kError:
-        break;
-    }
-    report();
-  }
+  receive_until_stopped(
+      receiver_, [this](const ReceivedDatagram& datagram) { take_datagram(datagram); }, [this] { report(); });
 }
 
 void InertialThread::take_datagram(const ReceivedDatagram& received) noexcept {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/lidar_thread.hpp"
 
+#include "daemon/receive_loop.hpp"
+
 namespace isobar {
 
 LidarThread::LidarThread(const velodyne::VelodyneConfig& config, const std::string& address,
@@ -25,24 +27,10 @@ void LidarThread::stop() noexcept {
 }
 
 void LidarThread::loop() noexcept {
-  constexpr int kReportEveryMs = 200;
   (void)apply_to_this_thread(settings_);
   loaned_ = publisher_.loan();
-  ReceivedDatagram datagram;
-  for (;;) {
-    switch (receiver_.receive(datagram, kReportEveryMs)) {
-      case UdpReceiver::Status::kDatagram:
-        take_packet(datagram);
-        break;
-      case UdpReceiver::Status::kStopped:
-        report();
-        return;
-      case UdpReceiver::Status::kTimeout:
-      case UdpReceiver::Status::kError:
-        break;
-    }
-    report();
-  }
+  receive_until_stopped(
+      receiver_, [this](const ReceivedDatagram& datagram) { take_packet(datagram); }, [this] { report(); });
 }
 
 void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
