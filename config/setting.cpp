@@ -48,7 +48,7 @@ std::string_view section_doc(std::string_view section) {
     std::string_view section;
     std::string_view doc;
   };
-  static constexpr std::array<Doc, 21> kDocs{{
+  static constexpr std::array<Doc, 17> kDocs{{
       {"lidar", "The lidar, as a live run reads it from the network. A replay takes it from the recording."},
       {"imu", "Where the IMU sits on the robot. A replay takes it from the recording."},
       {"barometer", "Where the barometer sits on the robot. A replay takes it from the recording."},
