@@ -55,6 +55,7 @@ PressureStatus DifferentialAltimeter::add_base(const PressureSample& sample) {
   if (status == PressureStatus::kBadValue || status == PressureStatus::kBadTime) return status;
   air_.add(1, sample.stamp_ns, sample.temperature_c);
   if (status == PressureStatus::kRepeated) return status;
+  const double pressure_pa = sample.pressure_pa - base_gate_.jumped_pa();
   const double gap_s = first ? 0.0 : std::max(0.0, seconds_between(before_ns, sample.stamp_ns));
   base_since_ns_ = std::min(base_since_ns_, sample.stamp_ns);
   if (first || gap_s > config_.base_timeout_s) {
@@ -62,8 +63,8 @@ PressureStatus DifferentialAltimeter::add_base(const PressureSample& sample) {
     base_noise_.restart();
     base_since_ns_ = sample.stamp_ns;
   }
-  base_noise_.add(sample.pressure_pa);
-  base_filter_.add(sample.pressure_pa, gap_s, base_noise_.variance());
+  base_noise_.add(pressure_pa);
+  base_filter_.add(pressure_pa, gap_s, base_noise_.variance());
   return status;
 }
 
@@ -112,10 +113,12 @@ void DifferentialAltimeter::fill_height(const PressureSample& sample, AltimeterR
                     metres_per_pa * metres_per_pa * reference_variance_pa2;
 }
 
-PressureStatus DifferentialAltimeter::add_robot(const PressureSample& sample, AltimeterReading& out) {
+PressureStatus DifferentialAltimeter::add_robot(const PressureSample& measured, AltimeterReading& out) {
   const std::int64_t before_ns = robot_gate_.fresh_stamp_ns();
-  const PressureStatus status = robot_gate_.check(sample);
+  const PressureStatus status = robot_gate_.check(measured);
   if (status == PressureStatus::kBadValue || status == PressureStatus::kBadTime) return status;
+  PressureSample sample = measured;
+  sample.pressure_pa -= robot_gate_.jumped_pa();
   air_.add(0, sample.stamp_ns, sample.temperature_c);
   if (status == PressureStatus::kRepeated) return status;
   if (started_ && seconds_between(before_ns, sample.stamp_ns) > 1.0) robot_noise_.restart();

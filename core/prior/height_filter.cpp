@@ -31,6 +31,9 @@ constexpr double kMaxDelayS = 1.0;
 // A pressure that kept moving by more than this share of its offset is a ramp, not a step.
 constexpr double kRampShare = 0.5;
 constexpr double kRampMinM = 0.3;
+// Faster than this no height leaves what acceleration and wheels predict: the pressure itself has stepped.
+constexpr double kStepMinM = 0.3;
+constexpr double kUnfeltSpeed = 2.0;
 
 double squared(double x) { return x * x; }
 
@@ -76,6 +79,7 @@ void HeightFilter::bridge(double dt_s) {
   filter_.inflate(VerticalFilter::kVz, squared(std::min(kRideSpeed, kRideSpeed * dt_s)));
   restart_forks();
   gated_ = false;
+  has_used_ = false;
 }
 
 void HeightFilter::update_climb(double climb_m_s, double forward_m_s, double dt_s, double attitude_variance) {
@@ -149,12 +153,17 @@ PressureUse HeightFilter::gate(const AltimeterReading& reading,
                                const VerticalFilter::Innovation& innovation) {
   if (squared(innovation.value) <= squared(config_.gate_sigma) * innovation.variance) {
     gated_ = false;
+    has_used_ = true;
+    last_used_m_ = innovation.value;
+    last_height_m_ = reading.height_m;
+    last_used_ns_ = reading.stamp_ns;
     return PressureUse::kUsed;
   }
   if (!gated_) {
     gated_ = true;
     gated_since_ns_ = reading.stamp_ns;
     first_gated_m_ = innovation.value;
+    stepped_ = is_step(reading, innovation);
   }
   const double gated_s = seconds_between(gated_since_ns_, reading.stamp_ns);
   const double limit_s = ground_moves_ ? std::min(kRideGateS, config_.gate_time_s) : config_.gate_time_s;
@@ -164,9 +173,19 @@ PressureUse HeightFilter::gate(const AltimeterReading& reading,
   return PressureUse::kStep;
 }
 
+bool HeightFilter::is_step(const AltimeterReading& reading,
+                           const VerticalFilter::Innovation& innovation) const {
+  const double since_s = std::max(0.0, seconds_between(last_used_ns_, reading.stamp_ns));
+  const double noise_m = config_.gate_sigma * std::sqrt(2.0 * reading.noise_variance_m2);
+  const double limit_m = std::max(kStepMinM, noise_m) + kUnfeltSpeed * since_s;
+  // Both: a shock to the accelerometer moves the prediction, a fast lift the pressure; neither is a step.
+  return has_used_ && std::abs(innovation.value - last_used_m_) > limit_m &&
+         std::abs(reading.height_m - last_height_m_) > limit_m;
+}
+
 void HeightFilter::believe(const VerticalFilter::Innovation& innovation) {
   const double moved_m = innovation.value - first_gated_m_;
-  filter_.inflate(VerticalFilter::kZ, squared(innovation.value));
+  filter_.inflate(stepped_ ? VerticalFilter::kOffset : VerticalFilter::kZ, squared(innovation.value));
   const bool ramp = std::abs(moved_m) > std::max(kRampMinM, kRampShare * std::abs(innovation.value)) &&
                     moved_m * innovation.value > 0.0;
   if (!ramp) return;

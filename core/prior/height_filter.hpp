@@ -30,7 +30,9 @@ enum class PressureUse : std::uint8_t {
 ///   until both agree again.
 /// - *The pressure jumps* (door): it is left out for gate_time_s. If it then still stands elsewhere, the
 /// height follows: by a
-///   step where the pressure stepped, by a vertical speed where it ramps (a ride whose start was not felt).
+///   step where it drifted away, by a vertical speed where it ramps (a ride whose start was not felt). Where
+///   it went from one sample to the next, faster than anything rises, the height stays and the pressure's
+///   offset takes the step (another ventilation zone, a fault).
 class HeightFilter {
  public:
   explicit HeightFilter(const HeightConfig& config);
@@ -68,6 +70,8 @@ class HeightFilter {
 
   void handle_event(const AltimeterReading& reading);
   PressureUse gate(const AltimeterReading& reading, const VerticalFilter::Innovation& innovation);
+  [[nodiscard]] bool is_step(const AltimeterReading& reading,
+                             const VerticalFilter::Innovation& innovation) const;
   void believe(const VerticalFilter::Innovation& innovation);
   void watch_ground(double climb_m_s, double forward_m_s, double dt_s, double speed_variance);
   void restart_forks();
@@ -79,9 +83,14 @@ class HeightFilter {
   double accel_m_s2_ = 0.0;  // vertical, low-passed
   double agreeing_s_ = 0.0;  // how long wheels and filter have agreed again
   double disagreeing_s_ = 0.0;
+  double last_used_m_ = 0.0;  // innovation of the last pressure that was used, and its height
+  double last_height_m_ = 0.0;
   double first_gated_m_ = 0.0;
+  std::int64_t last_used_ns_ = 0;
   std::int64_t gated_since_ns_ = 0;
+  bool has_used_ = false;  // since the start or the last gap
   bool gated_ = false;
+  bool stepped_ = false;  // the pressure left the gate from one sample to the next
   bool ground_moves_ = false;
   bool weather_moves_ = true;
   bool started_ = false;
