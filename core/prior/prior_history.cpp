@@ -9,6 +9,8 @@ namespace isobar {
 namespace {
 
 constexpr double kSecondsPerNs = 1e-9;
+// Within this a constant twist tells well enough where the robot was.
+constexpr std::int64_t kLongestBlindNs = 500'000'000;
 
 double lerp(double a, double b, double f) { return a + f * (b - a); }
 
@@ -93,13 +95,8 @@ bool PriorHistory::covers(std::int64_t stamp_ns) const {
   return count_ > 0 && stamp_ns >= oldest().stamp_ns && stamp_ns - newest().stamp_ns <= max_extrapolation_ns_;
 }
 
-bool PriorHistory::at(std::int64_t stamp_ns, Prior& out) const {
-  if (!covers(stamp_ns)) return false;
-  if (stamp_ns >= newest().stamp_ns) {
-    out = extrapolate(newest(), stamp_ns, height_rate_m_s());
-    return true;
-  }
-  // First prior that is later than stamp_ns: it exists, and is not the oldest.
+// First prior that is later than stamp_ns, where one is and it is not the oldest.
+std::size_t PriorHistory::first_after(std::int64_t stamp_ns) const {
   std::size_t low = 1;
   std::size_t high = count_ - 1;
   while (low < high) {
@@ -110,7 +107,24 @@ bool PriorHistory::at(std::int64_t stamp_ns, Prior& out) const {
       low = middle + 1;
     }
   }
-  out = interpolate(nth(low - 1), nth(low), stamp_ns);
+  return low;
+}
+
+bool PriorHistory::dense_at(std::int64_t stamp_ns) const {
+  if (!covers(stamp_ns)) return false;
+  if (stamp_ns >= newest().stamp_ns) return true;
+  const std::size_t after = first_after(stamp_ns);
+  return nth(after).stamp_ns - nth(after - 1).stamp_ns <= kLongestBlindNs;
+}
+
+bool PriorHistory::at(std::int64_t stamp_ns, Prior& out) const {
+  if (!covers(stamp_ns)) return false;
+  if (stamp_ns >= newest().stamp_ns) {
+    out = extrapolate(newest(), stamp_ns, height_rate_m_s());
+    return true;
+  }
+  const std::size_t after = first_after(stamp_ns);
+  out = interpolate(nth(after - 1), nth(after), stamp_ns);
   return true;
 }
 

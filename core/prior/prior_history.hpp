@@ -34,6 +34,10 @@ class PriorHistory {
   /// True where at() would succeed.
   [[nodiscard]] bool covers(std::int64_t stamp_ns) const;
 
+  /// False where the priors next to `stamp_ns` are so far apart, or so long ago, that the motion between them
+  /// is not known: the IMU was silent.
+  [[nodiscard]] bool dense_at(std::int64_t stamp_ns) const;
+
   /// State at `stamp_ns`, interpolated, or extrapolated at the newest end. False, and `out` untouched, before
   /// the oldest or too far after the newest. O(log n), no allocation.
   bool at(std::int64_t stamp_ns, Prior& out) const;
@@ -46,6 +50,7 @@ class PriorHistory {
 
  private:
   [[nodiscard]] double height_rate_m_s() const;
+  [[nodiscard]] std::size_t first_after(std::int64_t stamp_ns) const;
   [[nodiscard]] const Prior& nth(std::size_t age_order) const {
     const std::size_t index = first_ + age_order;
     return ring_[index < ring_.size() ? index : index - ring_.size()];
