@@ -67,7 +67,6 @@ class MapTile {
   [[nodiscard]] std::vector<MapCell>& cells() { return cells_; }
   [[nodiscard]] const std::vector<MapCell>& cells() const { return cells_; }
   [[nodiscard]] const std::shared_ptr<const TileIndex>& index() const { return index_; }
-  [[nodiscard]] int cells_per_edge() const { return cells_per_edge_; }
   /// Sets or takes away a cell's plane.
   void set_plane(MapCell& cell, const Plane& plane);
   void clear_plane(MapCell& cell);

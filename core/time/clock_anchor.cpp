@@ -85,7 +85,6 @@ ClockAnchor::Finding ClockAnchor::re_anchor(std::int64_t offset_ns, std::int64_t
 
 ClockAnchor::Finding ClockAnchor::suspect(std::int64_t difference_ns, std::int64_t host_ns,
                                           bool device_regular) {
-  ++suspects_;
   const bool agrees = candidate_samples_ > 0 &&
                       within(difference_ns, candidate_low_ns_, config_.step_threshold_ns) &&
                       within(difference_ns, candidate_high_ns_, config_.step_threshold_ns);

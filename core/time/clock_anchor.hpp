@@ -59,9 +59,6 @@ class ClockAnchor {
   [[nodiscard]] bool anchored() const { return anchored_; }
   [[nodiscard]] std::int64_t offset_ns() const { return offset_ns_; }
   [[nodiscard]] std::uint64_t steps() const { return steps_; }  ///< re-anchorings since the start
-  [[nodiscard]] std::uint64_t suspect_stamps() const {
-    return suspects_;
-  }  ///< host stamps that were not believed
 
  private:
   Finding first(std::int64_t device_ns, std::int64_t host_ns);
@@ -87,7 +84,6 @@ class ClockAnchor {
   std::int64_t early_samples_ = 0;
   std::int64_t early_highest_ns_ = 0;
   std::uint64_t steps_ = 0;
-  std::uint64_t suspects_ = 0;
 };
 
 }  // namespace isobar

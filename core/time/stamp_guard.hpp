@@ -37,7 +37,6 @@ class StampGuard {
   StampVerdict check(std::int64_t stamp_ns);
 
   [[nodiscard]] std::int64_t newest_ns() const { return newest_ns_; }
-  [[nodiscard]] bool holding() const { return holding_; }
   /// Counters since the start. A jump is a confirmed one: a gap, or a clock that was set.
   [[nodiscard]] std::uint64_t duplicates() const { return duplicates_; }
   [[nodiscard]] std::uint64_t reordered() const { return reordered_; }
