@@ -58,9 +58,10 @@ struct AttitudeConfig {
 struct StandstillConfig {
   /// All must be quiet for this long [s], 0.1 … 5.
   double window_s = 0.6;
-  /// Rms of the angular rate about its mean, each axis [rad/s], and of the specific force [m/s^2].
+  /// Rms of the angular rate about its mean, each axis [rad/s], and of the specific force [m/s^2]. The gyro
+  /// decides; a force of 1.5 rms lets fans and a running engine (1 m/s^2) shake a robot that stands.
   double max_gyro_rms_rad_s = 0.02;
-  double max_accel_rms_m_s2 = 0.25;
+  double max_accel_rms_m_s2 = 1.5;
   /// Mean rate, bias taken out, as far as it is known [rad/s]: a robot turns faster than this or stands.
   double max_rate_rad_s = 0.02;
   /// Wheels: speed [m/s] and turn rate [rad/s] that count as zero.

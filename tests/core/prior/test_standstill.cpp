@@ -44,7 +44,7 @@ TEST_CASE("quiet sensors mean standstill, and the mean rate of the window is giv
 TEST_CASE("vibration, turning or rolling wheels are no standstill") {
   Shaker shaker;
   StandstillDetector vibrating{StandstillConfig{}};
-  shaker.feed(vibrating, 2.0, 0.0, 0.005, 0.5);
+  shaker.feed(vibrating, 2.0, 0.0, 0.005, 2.5);
   CHECK_FALSE(vibrating.standing());
   StandstillDetector turning{StandstillConfig{}};
   shaker.feed(turning, 2.0, 0.2, 0.005, 0.02);
