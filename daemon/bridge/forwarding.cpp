@@ -40,11 +40,11 @@ Forwarding::Forwarding(dds::PoseOutputs& poses, dds::CloudOutputs& clouds, bool 
       pose_in_(ipc::topics::kPose),
       barometer_in_(ipc::topics::kBarometer),
       health_in_(ipc::topics::kHealth),
-      scan_in_(ipc::topics::kRegisteredScan),
-      map_in_(ipc::topics::kMapCloud),
       pose_waiter_({&prior_in_.raw(), &pose_in_.raw(), &barometer_in_.raw(), &health_in_.raw()}),
-      cloud_waiter_({&scan_in_.raw(), &map_in_.raw()}),
       last_report_ns_(steady_ns()) {
+  if (with_clouds) {
+    clouds_in_.emplace();
+  }
   pose_thread_ = std::thread([this] { forward_poses(); });
   if (with_clouds) {
     cloud_thread_ = std::thread([this] { forward_clouds(); });
@@ -53,9 +53,9 @@ Forwarding::Forwarding(dds::PoseOutputs& poses, dds::CloudOutputs& clouds, bool 
 
 Forwarding::~Forwarding() {
   pose_waiter_.stop();
-  cloud_waiter_.stop();
   pose_thread_.join();
-  if (cloud_thread_.joinable()) {
+  if (clouds_in_) {
+    clouds_in_->waiter.stop();
     cloud_thread_.join();
   }
 }
@@ -132,14 +132,14 @@ void Forwarding::add_own_health() {
 }
 
 void Forwarding::forward_clouds() noexcept {
-  while (cloud_waiter_.wait_for(kRound) != ipc::Waiter::Event::kStopped) {
-    if (const auto scan = scan_in_.take_latest()) {
+  while (clouds_in_->waiter.wait_for(kRound) != ipc::Waiter::Event::kStopped) {
+    if (const auto scan = clouds_in_->scan.take_latest()) {
       clouds_.on_scan(*scan);
     }
-    if (const auto map = map_in_.take_latest()) {
+    if (const auto map = clouds_in_->map.take_latest()) {
       clouds_.on_map(*map);
     }
-    clouds_dropped_.store(scan_in_.dropped(), std::memory_order_relaxed);
+    clouds_dropped_.store(clouds_in_->scan.dropped(), std::memory_order_relaxed);
     cloud_failures_.store(clouds_.failures(), std::memory_order_relaxed);
   }
 }

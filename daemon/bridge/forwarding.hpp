@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <thread>
 
 #include "daemon/bridge/receiving.hpp"
@@ -35,6 +36,13 @@ class Forwarding {
   [[nodiscard]] std::chrono::nanoseconds silence() const noexcept;
 
  private:
+  /// Made only if clouds are wanted: isobard makes no map cloud that nobody reads.
+  struct CloudsIn {
+    ipc::Subscriber<RegisteredScan> scan{ipc::topics::kRegisteredScan};
+    ipc::Subscriber<ipc::MapCloud> map{ipc::topics::kMapCloud};
+    ipc::Waiter waiter{{&scan.raw(), &map.raw()}};
+  };
+
   void forward_poses() noexcept;
   void forward_clouds() noexcept;
   void forward_health();
@@ -47,10 +55,8 @@ class Forwarding {
   ipc::Subscriber<PoseEstimate> pose_in_;
   ipc::Subscriber<PressureSample> barometer_in_;
   ipc::Subscriber<ipc::HealthReport> health_in_;
-  ipc::Subscriber<RegisteredScan> scan_in_;
-  ipc::Subscriber<ipc::MapCloud> map_in_;
   ipc::Waiter pose_waiter_;
-  ipc::Waiter cloud_waiter_;
+  std::optional<CloudsIn> clouds_in_;
   dds::DiagnosticsBuilder diagnostics_;
   std::atomic<std::uint64_t> rounds_{0};
   std::atomic<std::int64_t> last_data_ns_{0};  ///< steady clock, 0: never
