@@ -23,18 +23,21 @@ class OutputSink : public EstimateSink {
   void on_pose(const PoseEstimate& pose, const Prior& prior) override {
     output_.add_pose(pose, prior);
     if (pose.mode != PoseMode::kRegistered) return;
-    ran_as_asked_ += pose.effective_method == pose.method ? 1 : 0;
-    ran_otherwise_ += pose.effective_method == pose.method ? 0 : 1;
+    if (pose.effective_method == pose.method) return;
+    const bool without_imu = pose.effective_method == Method::k6Dof && pose.method != Method::k6DofAltitude;
+    without_imu_ += without_imu ? 1 : 0;
+    without_height_ += without_imu ? 0 : 1;
   }
   void on_evicted(const std::vector<MapPoint>& points) override { output_.add_map_points(points); }
 
-  [[nodiscard]] std::uint64_t ran_otherwise() const { return ran_otherwise_; }
-  [[nodiscard]] std::uint64_t ran_as_asked() const { return ran_as_asked_; }
+  /// Scans that a method with less to go by registered.
+  [[nodiscard]] std::uint64_t without_height() const { return without_height_; }
+  [[nodiscard]] std::uint64_t without_imu() const { return without_imu_; }
 
  private:
   RunOutput& output_;
-  std::uint64_t ran_as_asked_ = 0;
-  std::uint64_t ran_otherwise_ = 0;
+  std::uint64_t without_height_ = 0;
+  std::uint64_t without_imu_ = 0;
 };
 
 void say_what_is_missing(const recording::Manifest& manifest, ReplaySummary& summary) {
@@ -56,13 +59,44 @@ std::vector<RunCount> collect_counts(const recording::RecordingReader& reader, c
   return counts;
 }
 
+/// A sensor that is named but gave nothing usable is as good as missing: its file says why not.
+void say_what_is_useless(const recording::Manifest& manifest, const LockStep& pipeline,
+                         ReplaySummary& summary) {
+  const PriorCounters& used = pipeline.prior_estimator().counters();
+  const auto say = [&](bool named, std::uint64_t samples, const char* what) {
+    if (named && samples == 0) summary.warnings.emplace_back(what);
+  };
+  say(true, used.imu_accepted, "the [imu] gave no usable sample: gravity and motion are unknown");
+  say(manifest.barometer.has_value(), used.pressure_accepted,
+      "the [barometer] gave no usable sample: 3-DOF runs as 4-DOF");
+  say(manifest.base_barometer.has_value(), used.base_accepted,
+      "the [base_barometer] gave no usable sample: the height is against the robot's own start");
+  say(manifest.wheel.has_value(), used.wheel_accepted,
+      "the [wheel] gave no usable sample: constant velocity between scans");
+  if (summary.registered == 0) {
+    summary.warnings.emplace_back("no scan could be registered: the poses are no more than the prior's");
+  }
+}
+
+/// What became of the packets, by count.
+std::string refusals(const std::vector<RunCount>& counts) {
+  std::string text;
+  for (const RunCount& count : counts) {
+    const bool is_lidar = count.name.rfind("lidar", 0) == 0;
+    if (is_lidar && count.count > 0)
+      text += (text.empty() ? "" : ", ") + count.name + ": " + std::to_string(count.count);
+  }
+  return text.empty() ? "the file holds no packet" : text;
+}
+
 /// A scan that nobody could decode must not end in an empty trajectory without a word.
 void refuse_empty_run(const ReplaySummary& summary, const LockStep& pipeline,
                       const std::filesystem::path& recording) {
   if (summary.scans > 0) return;
   const auto& lidar = pipeline.decoder().counters();
-  std::string why = "no lidar scan could be decoded";
-  if (lidar.wrong_model > 0) why += ": " + pipeline.decoder().wrong_model_message();
+  std::string why = "no lidar scan could be decoded: ";
+  if (lidar.wrong_model > 0) why += pipeline.decoder().wrong_model_message() + "; ";
+  why += refusals(summary.counts);
   throw DataError(recording.string() + ": " + why);
 }
 
@@ -100,10 +134,15 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   summary.map_points = output.map_points();
   summary.recorded_s = last_ns > first_ns ? static_cast<double>(last_ns - first_ns) * 1e-9 : 0.0;
   summary.counts = collect_counts(reader, pipeline);
-  if (sink.ran_otherwise() > 0 && reader.manifest().barometer) {
-    summary.warnings.emplace_back("no height from pressure for " + std::to_string(sink.ran_otherwise()) +
+  if (sink.without_height() > 0 && reader.manifest().barometer) {
+    summary.warnings.emplace_back("no height from pressure for " + std::to_string(sink.without_height()) +
                                   " scans: 3-DOF ran as 4-DOF there");
   }
+  if (sink.without_imu() > 0) {
+    summary.warnings.emplace_back("the IMU was silent for " + std::to_string(sink.without_imu()) +
+                                  " scans: they were registered as 6-DOF");
+  }
+  say_what_is_useless(reader.manifest(), pipeline, summary);
   output.close(summary.counts);
   refuse_empty_run(summary, pipeline, recording);
   summary.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();

@@ -157,7 +157,8 @@ void add_experiment_command(CLI::App& app) {
                    "three-floors, elevator, moulin; `isobar simulate --list` names all")
       ->required();
   command->add_option("--seed", options->seed, "draws the world and the errors of all sensors")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   command->add_flag("--short", options->short_form, "the short form of the scenario");
   command->add_option("--out", options->out,
                       "folder for recording, runs and report (default: out/SCENARIO-SEED)");

@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <string>
 
 #include "core/errors.hpp"
 #include "tools/commands.hpp"
@@ -25,6 +27,10 @@ int run(int argc, char** argv) {
 #if ISOBAR_WITH_DDS
   isobar::tools::add_echo_command(app);
 #endif
+  const auto named = [&](const CLI::App* command) { return command->get_name() == argv[1]; };
+  if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(named).empty()) {
+    throw isobar::UsageError(std::string(argv[1]) + ": no such command; `isobar --help` names them");
+  }
   try {
     app.parse(argc, argv);
     return 0;
@@ -45,6 +51,9 @@ int main(int argc, char** argv) {
   } catch (const isobar::Error& error) {
     std::fprintf(stderr, "isobar: %s\n", error.what());
     return error.exit_code();
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::fprintf(stderr, "isobar: %s: %s\n", error.path1().c_str(), error.code().message().c_str());
+    return isobar::ServiceError("").exit_code();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "isobar: unexpected: %s\n", error.what());
     return 70;

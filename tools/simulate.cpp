@@ -43,7 +43,8 @@ void add_simulate_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("simulate", "Make a recording of a simulated robot");
   command->add_option("scenario", options->request.name, "one of those that --list names");
   command->add_option("--seed", options->request.seed, "draws the world, the path and the sensors' errors")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--out", options->out_dir, "folder for the recording, made if missing");
   command->add_flag("--short", options->request.short_form, "30 to 60 s instead of the whole run");
   command->add_option("--stop-after", options->request.stop_after_s, "cut the run short [s]")
