@@ -33,6 +33,9 @@ void report_absence(dds::PoseOutputs& outputs, dds::DiagnosticsBuilder& builder)
   outputs.write_diagnostics(builder);
 }
 
+Forwarding::CloudsIn::CloudsIn()
+    : scan(ipc::topics::kRegisteredScan), map(ipc::topics::kMapCloud), waiter({&scan.raw(), &map.raw()}) {}
+
 Forwarding::Forwarding(dds::PoseOutputs& poses, dds::CloudOutputs& clouds, bool with_clouds)
     : poses_(poses),
       clouds_(clouds),

@@ -38,9 +38,10 @@ class Forwarding {
  private:
   /// Made only if clouds are wanted: isobard makes no map cloud that nobody reads.
   struct CloudsIn {
-    ipc::Subscriber<RegisteredScan> scan{ipc::topics::kRegisteredScan};
-    ipc::Subscriber<ipc::MapCloud> map{ipc::topics::kMapCloud};
-    ipc::Waiter waiter{{&scan.raw(), &map.raw()}};
+    CloudsIn();
+    ipc::Subscriber<RegisteredScan> scan;
+    ipc::Subscriber<ipc::MapCloud> map;
+    ipc::Waiter waiter;
   };
 
   void forward_poses() noexcept;
