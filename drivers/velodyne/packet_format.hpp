@@ -51,7 +51,7 @@ struct ModelTraits {
 
   /// Time covered by one packet [ns]: dual return repeats every firing in a second block.
   [[nodiscard]] constexpr std::int64_t packet_duration_ns(bool dual) const {
-    return (dual ? kBlocks / 2 : kBlocks) * firings_per_block * firing_cycle_ns;
+    return std::int64_t{dual ? kBlocks / 2 : kBlocks} * firings_per_block * firing_cycle_ns;
   }
   /// Firing time after the packet's timestamp [ns]. block: 0 … 11; channel: 0 … 31.
   [[nodiscard]] constexpr std::int64_t firing_offset_ns(int block, int channel, bool dual) const {

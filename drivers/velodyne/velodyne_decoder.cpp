@@ -304,8 +304,9 @@ void VelodyneDecoder::decode_block(const Packet& packet, int block, std::uint32_
     }
     const std::int64_t firing_ns = traits_.firing_offset_ns(block, channel, packet.dual);
     // Rounded to the resolution of the sensor's own azimuths: at most 0.005 deg, 0.9 mm at 10 m.
-    const auto beyond = static_cast<std::uint32_t>(
-        azimuth_step * static_cast<double>(firing_ns - block_start_ns) / block_ns + 0.5);
+    const double counts = azimuth_step * static_cast<double>(firing_ns - block_start_ns) / block_ns;
+    // Never negative, and lround would cost a call a point.
+    const auto beyond = static_cast<std::uint32_t>(counts + 0.5);  // NOLINT(bugprone-incorrect-roundings)
     const std::size_t azimuth = (block_azimuth + beyond) % kFullTurn;
     if ((azimuth + kFullTurn - mask_start_) % kFullTurn < mask_width_) {
       continue;
