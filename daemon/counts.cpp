@@ -31,6 +31,8 @@ std::vector<RunCount> counts_of(const PriorCounters& counters) {
       {"imu samples", counters.imu_accepted, ""},
       {"imu samples with bad values", counters.imu_bad_value, ""},
       {"imu samples with bad times", counters.imu_bad_time, ""},
+      {"imu starts without gravity", counters.imu_wrong_gravity,
+       counters.imu_wrong_gravity > 0 ? "the mean specific force is not 9.8 m/s^2: is it in g?" : ""},
       {"imu gaps", counters.imu_gaps, ""},
       {"imu restarts", counters.imu_restarts, ""},
       {"barometer samples", counters.pressure_accepted, ""},

@@ -169,7 +169,8 @@ void add_experiment_command(CLI::App& app) {
       ->check(CLI::Range(1, 64));
   command->callback([options] {
     if (options->out.empty()) {
-      options->out = "out/" + options->scenario + "-" + std::to_string(options->seed);
+      options->out = "out/" + options->scenario + "-" + std::to_string(options->seed) +
+                     (options->short_form ? "-short" : "");
     }
     run(*options);
   });

@@ -27,6 +27,10 @@ constexpr double kUnseenRate = 0.2;
 constexpr double kUnseenTurn = 0.3;
 // Roll and pitch from the first accelerations of a robot that may be moving [rad].
 constexpr double kStartSigmaRad = 0.02;
+// A robot's mean specific force over the start is gravity within a third: anything else is another unit (g)
+// or a broken sensor, and would put the map on its side.
+constexpr double kLeastGravity = 6.5;
+constexpr double kMostGravity = 13.0;
 // Vertical speed at the start of a platform on wheels, and of one that hangs [m/s].
 constexpr double kStartClimbOnWheels = 0.05;
 constexpr double kStartClimbHanging = 0.3;
@@ -69,6 +73,7 @@ struct PriorEstimator::State {
   // Start of the attitude: specific force summed in the axes of the newest sample.
   Eigen::Vector3d start_force_sum = Eigen::Vector3d::Zero();
   double start_elapsed_s = 0.0;
+  int start_samples = 0;
   double yaw_before_rad = 0.0;
 
   Eigen::Vector3d gyro_before = Eigen::Vector3d::Zero();
@@ -88,6 +93,7 @@ struct PriorEstimator::State {
   std::int64_t height_start_ns = 0;
 
   void align(const Eigen::Vector3d& gyro, const Eigen::Vector3d& force, double dt_s);
+  void restart_alignment();
   void bridge_gap(const Eigen::Vector3d& gyro, double dt_s);
   void restart_clock(double dt_s);
   void move(const Eigen::Vector3d& gyro, const Eigen::Vector3d& force, double dt_s, bool gap);
@@ -111,15 +117,27 @@ void PriorEstimator::State::align(const Eigen::Vector3d& gyro, const Eigen::Vect
   const Eigen::Vector3d turn = (gyro - attitude.gyro_bias_rad_s()) * dt_s;
   start_force_sum = rotation_of(turn).conjugate() * start_force_sum + force;
   start_elapsed_s += dt_s;
-  if (start_elapsed_s < config.attitude.start_time_s || start_force_sum.norm() < 1e-3) return;
+  ++start_samples;
+  if (start_elapsed_s < config.attitude.start_time_s) return;
+  const double mean_force_m_s2 = start_force_sum.norm() / start_samples;
+  if (mean_force_m_s2 < kLeastGravity || mean_force_m_s2 > kMostGravity) {
+    ++counters.imu_wrong_gravity;
+    restart_alignment();
+    return;
+  }
   attitude.start(start_force_sum, yaw_before_rad, kStartSigmaRad);
-  start_force_sum.setZero();
-  start_elapsed_s = 0.0;
+  restart_alignment();
   const bool on_wheels = wheels.valid(imu_gate.stamp_ns());
   if (!height.started()) {
     height_start_ns = imu_gate.stamp_ns();
     height.start(above_base(p_base_imu), on_wheels ? kStartClimbOnWheels : kStartClimbHanging);
   }
+}
+
+void PriorEstimator::State::restart_alignment() {
+  start_force_sum.setZero();
+  start_elapsed_s = 0.0;
+  start_samples = 0;
 }
 
 void PriorEstimator::State::bridge_gap(const Eigen::Vector3d& gyro, double dt_s) {
@@ -142,8 +160,7 @@ void PriorEstimator::State::restart_clock(double dt_s) {
   altimeter.restart_clock();
   wheels = WheelOdometer(config.dead_reckoning);
   if (height.started()) height.bridge(dt_s);
-  start_force_sum.setZero();
-  start_elapsed_s = 0.0;
+  restart_alignment();
   has_device_before = false;
 }
 

@@ -15,6 +15,8 @@ namespace isobar {
 /// What became of the samples. Refused samples change nothing else.
 struct PriorCounters {
   std::uint64_t imu_accepted = 0;
+  /// Starts refused because the specific force is not gravity's: in g instead of m/s^2, or a broken sensor.
+  std::uint64_t imu_wrong_gravity = 0;
   std::uint64_t imu_bad_value = 0;  ///< not finite, or beyond the sensor's range
   std::uint64_t imu_bad_time = 0;   ///< not newer than the one before, or a jump not yet confirmed
   std::uint64_t imu_gaps = 0;       ///< steps of time longer than PriorLimits::imu_gap_s

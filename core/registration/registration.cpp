@@ -83,12 +83,6 @@ const MethodTraits& Registration::traits_for(const Prior& prior) const {
   return prior.height_source == HeightSource::kNone ? traits_ : traits_with_height_;
 }
 
-void Registration::set_pose(const Eigen::Isometry3d& T_map_base) {
-  if (!history_.empty()) {
-    motion_.start_at(history_.newest(), T_map_base);
-  }
-}
-
 void Registration::describe(const Prior& prior, const MethodTraits& traits, PoseEstimate& pose) const {
   pose = PoseEstimate{};
   pose.stamp_ns = prior.stamp_ns;

@@ -39,10 +39,6 @@ class Registration {
   /// map.
   bool propagate(PoseEstimate& out) const;
 
-  /// Starts the next scan at this pose of base_link in the map (yaw and position are used; roll, pitch, and
-  /// for 3-DOF z, come from the prior).
-  void set_pose(const Eigen::Isometry3d& T_map_base);
-
  private:
   // Wider than this a search finds the wrong wall more often than the right one.
   static constexpr double kLargestSearchM = 2.0;

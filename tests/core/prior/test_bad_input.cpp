@@ -195,3 +195,18 @@ TEST_CASE("random garbage never gives anything that is not finite") {
   }
   CHECK(estimator.counters().imu_accepted > 1000);
 }
+
+TEST_CASE(
+    "An accelerometer in g is no gravity: the attitude waits, the refusals are counted, metres are taken") {
+  Bench bench;
+  for (int i = 0; i < 400; ++i) {  // 2 s
+    bench.now_ns += 5'000'000;
+    ImuSample sample = bench.imu();
+    sample.accel_m_s2 /= kGravity;
+    bench.estimator.add_imu(sample, bench.prior);
+  }
+  CHECK_FALSE(bench.prior.attitude_valid);
+  CHECK(bench.estimator.counters().imu_wrong_gravity >= 3);  // one every 0.5 s
+  bench.stand(1.0);
+  CHECK(bench.prior.attitude_valid);
+}
