@@ -61,3 +61,15 @@ function(isobar_test name)
   add_test(NAME ${name} COMMAND ${name})
   set_tests_properties(${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 300)
 endfunction()
+
+# isobar_has_threads(NAME …): tests of this folder with a second thread or process. They carry the label `threads`,
+# and the target thread_tests builds them: the ones that ThreadSanitizer has something to say about.
+add_custom_target(thread_tests)
+function(isobar_has_threads)
+  foreach(name ${ARGN})
+    set_property(TEST ${name} APPEND PROPERTY LABELS threads)
+    if(TARGET ${name})
+      add_dependencies(thread_tests ${name})
+    endif()
+  endforeach()
+endfunction()
