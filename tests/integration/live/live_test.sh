@@ -1,18 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # isobard as a service, on the UDP packets of a played recording, with isobar-dds and an echo beside it.
-# Usage: live_test.sh ISOBAR ISOBARD ISOBAR-DDS   (in a network and mount namespace of its own where root)
+# Usage: live_test.sh ISOBAR ISOBARD ISOBAR-DDS   (through tests/ipc/isolated, where root)
 set -euo pipefail
 isobar=$1 isobard=$2 bridge=$3
-
-if [ "${ISOBAR_LIVE_INSIDE:-}" != yes ] && [ "$(id -u)" -eq 0 ] && unshare -mni true 2>/dev/null; then
-  exec env ISOBAR_LIVE_INSIDE=yes unshare -mni "$0" "$@"
-fi
-if [ "${ISOBAR_LIVE_INSIDE:-}" = yes ]; then
-  mount -t tmpfs none /tmp
-  mount -t tmpfs -o size=400m none /dev/shm
-  ip link set lo up
-fi
 
 work=$(mktemp -d)
 pids=()
@@ -88,7 +79,7 @@ largest=$(grep -o '"ate_max_m": *[-0-9.e]*' "$work/figures.json" | sed 's/.*: */
 awk -v e="$largest" 'BEGIN { exit !(e < 0.3) }' || fail "position off by $largest m"
 ok "position within 30 cm (largest error $largest m)"
 
-if [ "${ISOBAR_LIVE_INSIDE:-}" = yes ]; then
+if [ "${ISOBAR_ISOLATED:-}" = yes ]; then
   mount -o remount,size=32m /dev/shm
   expect_exit 69 "/dev/shm" "$isobard" --config "$work/isobar.toml"
 fi
