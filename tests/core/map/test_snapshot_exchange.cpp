@@ -79,7 +79,9 @@ TEST_CASE("two readers beside a writer that swaps always see a whole and never a
     second.join();
     CHECK(faults[0] == 0);
     CHECK(faults[1] == 0);
-    CHECK(most_retired <= 2);  // one a reader
+    // Two a reader: while the writer looks through its list, a reader may let go of one snapshot that was
+    // seen pinned and be about to take a later one, which it read before the swap.
+    CHECK(most_retired <= 4);
     CHECK(exchange.pin()->numbers.front() == kSwaps);
   }
   CHECK(alive == 0);
