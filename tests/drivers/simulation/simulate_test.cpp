@@ -66,7 +66,9 @@ TEST_CASE("the same seed gives the same bytes in every file, another seed gives 
     const bool wheels = name != "moulin";
     CHECK(first.size() == (wheels ? 8 : 7));
     CHECK(first.count("wheel.csv") == (wheels ? 1 : 0));
-    for (const auto& [file, bytes] : first) {
+    for (const auto& entry : first) {
+      const auto& file = entry.first;
+      const auto& bytes = entry.second;
       CAPTURE(file);
       CHECK(bytes.size() > 50);
       CHECK((second.at(file) == bytes));
