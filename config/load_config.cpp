@@ -133,7 +133,7 @@ class Assign {
       place_.fail_with_value(setting_.choices.empty() ? "must be a text in quotation marks"
                                                       : "must be one of " + join(setting_.choices));
     }
-    const std::string value = *node_.value<std::string>();
+    std::string value = *node_.value<std::string>();
     if (!setting_.choices.empty() &&
         std::find(setting_.choices.begin(), setting_.choices.end(), value) == setting_.choices.end()) {
       place_.fail_with_value("must be one of " + join(setting_.choices));
