@@ -59,7 +59,7 @@ function(isobar_test name)
   target_compile_definitions(${name} PRIVATE
     ISOBAR_SOURCE_DIR="${CMAKE_SOURCE_DIR}" ISOBAR_SHARED_DATA="${CMAKE_SOURCE_DIR}/../shared/data")
   add_test(NAME ${name} COMMAND ${name})
-  set_tests_properties(${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 300)
+  set_tests_properties(${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 900)
 endfunction()
 
 # isobar_has_threads(NAME …): tests of this folder with a second thread or process. They carry the label `threads`,
