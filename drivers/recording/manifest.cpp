@@ -69,15 +69,16 @@ class ManifestText {
     }
     const std::string rule =
         "must be three numbers within -" + number_text(limit) + " … " + number_text(limit);
+    const std::string name = section_name + "." + key;
     const toml::array* array = node->as_array();
     if (array == nullptr || array->size() != 3) {
-      fail(*node, section_name + "." + key, rule);
+      fail(*node, name, rule);
     }
     Eigen::Vector3d result;
     for (std::size_t i = 0; i < 3; ++i) {
       const auto value = (*array)[i].value<double>();
       if (!value || !(std::abs(*value) <= limit)) {
-        fail(*node, section_name + "." + key, rule);
+        fail(*node, name, rule);
       }
       result[static_cast<Eigen::Index>(i)] = *value;
     }
