@@ -8,9 +8,9 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 
 #include "core/errors.hpp"
+#include "core/toml_text.hpp"
 
 namespace isobar {
 namespace {
@@ -27,29 +27,12 @@ std::string float_text(double value) {
   return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
 }
 
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      result += '\\';
-      result += c;
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
-      std::array<char, 8> escape{};
-      std::snprintf(escape.data(), escape.size(), "\\u%04X", static_cast<unsigned>(c));
-      result += escape.data();
-    } else {
-      result += c;
-    }
-  }
-  return result + "\"";
-}
-
 struct ValueText {
   const Setting& setting;
 
   std::string operator()(const double* value) const { return float_text(*value); }
   std::string operator()(const bool* value) const { return *value ? "true" : "false"; }
-  std::string operator()(const std::string* value) const { return quoted(*value); }
+  std::string operator()(const std::string* value) const { return quoted_toml(*value); }
   std::string operator()(const Eigen::Vector3d* v) const {
     return "[" + float_text(v->x()) + ", " + float_text(v->y()) + ", " + float_text(v->z()) + "]";
   }
@@ -61,10 +44,10 @@ struct ValueText {
     return "[" + text + "]";
   }
   std::string operator()(const Method* value) const {
-    return quoted(setting.choices.at(static_cast<std::size_t>(*value)));
+    return quoted_toml(setting.choices.at(static_cast<std::size_t>(*value)));
   }
   std::string operator()(const AirTemperatureMode* value) const {
-    return quoted(setting.choices.at(static_cast<std::size_t>(*value)));
+    return quoted_toml(setting.choices.at(static_cast<std::size_t>(*value)));
   }
   template <typename Integer>
   std::string operator()(const Integer* value) const {

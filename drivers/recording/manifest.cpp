@@ -3,12 +3,12 @@
 
 #include <toml++/toml.h>
 
-#include <array>
 #include <cmath>
 #include <fstream>
 #include <sstream>
 
 #include "core/errors.hpp"
+#include "core/toml_text.hpp"
 #include "drivers/recording/number_text.hpp"
 
 namespace isobar::recording {
@@ -172,23 +172,6 @@ toml::table parse_toml(std::string_view text, const std::string& file) {
   }
 }
 
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      result += '\\';
-      result += c;
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
-      std::array<char, 8> escape{};
-      std::snprintf(escape.data(), escape.size(), "\\u%04X", static_cast<unsigned>(c));
-      result += escape.data();
-    } else {
-      result += c;
-    }
-  }
-  return result + "\"";
-}
-
 std::string triple_text(const Eigen::Vector3d& v) {
   return "[" + number_text(v.x()) + ", " + number_text(v.y()) + ", " + number_text(v.z()) + "]";
 }
@@ -198,7 +181,7 @@ std::string sensor_text(const char* name, const std::optional<SensorEntry>& sens
   if (!sensor) {
     return {};
   }
-  std::string text = std::string("\n[") + name + "]\nfile    = " + quoted(sensor->file) + "\n";
+  std::string text = std::string("\n[") + name + "]\nfile    = " + quoted_toml(sensor->file) + "\n";
   if (position) {
     text += "xyz_m   = " + triple_text(sensor->mount.xyz_m) + "\n";
   }
@@ -256,10 +239,10 @@ Manifest parse_manifest(std::string_view content, const std::string& file,
 void write_manifest(const std::filesystem::path& folder, const Manifest& manifest) {
   const std::filesystem::path file = folder / kManifestFile;
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << "version = 1\ndescription = " << quoted(manifest.description) << "\n";
+  out << "version = 1\ndescription = " << quoted_toml(manifest.description) << "\n";
   if (manifest.lidar) {
-    out << "\n[lidar]\nmodel   = " << quoted(manifest.lidar->model)
-        << "\nfile    = " << quoted(manifest.lidar->file) << "\nport    = " << manifest.lidar->port
+    out << "\n[lidar]\nmodel   = " << quoted_toml(manifest.lidar->model)
+        << "\nfile    = " << quoted_toml(manifest.lidar->file) << "\nport    = " << manifest.lidar->port
         << "\nxyz_m   = " << triple_text(manifest.lidar->mount.xyz_m)
         << "\nrpy_deg = " << triple_text(manifest.lidar->mount.rpy_deg) << "\n";
   }
