@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 namespace isobar {
@@ -26,6 +27,9 @@ struct PressureSample {
   std::int64_t stamp_ns = 0;  ///< when it was measured; a base station's is already mapped to the robot clock
   double pressure_pa = 0.0;   ///< absolute pressure, compensated by the sensor's own coefficients
   double temperature_c = 0.0;  ///< temperature of the sensor, NaN if it has none
+  /// White noise of this sample as its sender knows it [Pa^2], NaN if it does not.
+  double variance_pa2 = std::numeric_limits<double>::quiet_NaN();
+  std::uint8_t station = 0;  ///< of base stations, which one: 0 the first, 1 the second
 };
 
 /// Wheel odometry: twist of base_link in base_link.
