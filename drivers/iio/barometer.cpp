@@ -47,7 +47,7 @@ std::int64_t Barometer::begin(std::int64_t now_ns) noexcept {
   faults_.starts(now_ns);
   if (const int error = channel_.open(); error != 0) {
     ++faults_.counters().io_errors;
-    const char* what = error == ENOENT ? "the device is not there, or has no such channel" : "no answer";
+    const char* what = error == ENOENT ? "no such device or channel" : "no answer";
     return faults_.fail(BarometerState::kNoAnswer, what, now_ns, error);
   }
   // A converter's in_temp is the converter's, not the transducer's.

@@ -6,22 +6,9 @@
 
 #include "drivers/barometer/fault_watch.hpp"
 #include "drivers/iio/channel.hpp"
-#include "drivers/setra278/span.hpp"
+#include "drivers/iio/settings.hpp"
 
 namespace isobar::iio {
-
-/// Where a barometer of the kernel is.
-struct Settings {
-  std::string folder = "/sys/bus/iio/devices/iio:device0";
-  int rate_hz = 10;  ///< how often it is read, 1 … 100
-};
-
-/// Where the converter behind a Setra 278 is.
-struct SetraSettings {
-  Settings device;
-  std::string channel = "in_voltage0";
-  setra278::Span span;
-};
 
 /// A barometer that the kernel reads: one with a driver of its own (in_pressure, and in_temp where it has
 /// one), or a Setra 278 behind a converter. Its noise is not known here: variance_pa2 stays NaN.

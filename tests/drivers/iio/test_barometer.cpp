@@ -144,7 +144,7 @@ TEST_CASE("a device that vanishes is asked for again, and comes back with anothe
   CHECK(bench.fault().find("the file holds no number") == 0);
   folder.remove("in_pressure_raw");
   bench.run(3.0);
-  CHECK(bench.fault() == "the device is not there, or has no such channel (No such file or directory)");
+  CHECK(bench.fault() == "no such device or channel (No such file or directory)");
   folder.put("in_pressure_scale", "0.0005");
   folder.put("in_pressure_raw", "200000");
   bench.run(6.0);
