@@ -31,8 +31,8 @@ Sensor::Sensor(const Settings& settings, std::unique_ptr<RegisterBus> bus, std::
           std::clamp(std::int64_t{250'000'000} / settings.pressure_rate_hz, kFastestPollNs, kSlowestPollNs)),
       pressure_time_ns_(to_ns(measurement_time_s(settings.pressure_oversampling))),
       temperature_time_ns_(to_ns(measurement_time_s(settings.temperature_oversampling))),
-      temperature_silence_ns_(BarometerTimes::silence_ns(settings.temperature_rate_hz)),
-      faults_(BarometerTimes::silence_ns(settings.pressure_rate_hz)),
+      temperature_silence_ns_(barometer_silence_ns(settings.temperature_rate_hz)),
+      faults_(barometer_silence_ns(settings.pressure_rate_hz)),
       stuck_(stuck_time_ns) {}
 
 BarometerDevice::Step Sensor::step(std::int64_t now_ns) noexcept {

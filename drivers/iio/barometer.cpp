@@ -30,7 +30,7 @@ Barometer::Barometer(std::string place, const Settings& settings, const std::str
       channel_(settings.folder, channel),
       thermometer_(settings.folder, "in_temp"),
       span_(span),
-      faults_(BarometerTimes::silence_ns(settings.rate_hz)),
+      faults_(barometer_silence_ns(settings.rate_hz)),
       stuck_(stuck_time_ns) {}
 
 BarometerDevice::Step Barometer::step(std::int64_t now_ns) noexcept {

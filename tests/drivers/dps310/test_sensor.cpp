@@ -230,6 +230,22 @@ TEST_CASE("a sensor whose bits freeze is flagged within 2 s and gives no sample 
   CHECK(bench.time_until(BarometerState::kMeasuring, 10.0) < 5.5);
 }
 
+TEST_CASE("values that cannot be air are refused, counted, flagged within 0.5 s and gone when they are") {
+  Bench bench;
+  bench.run(2.0);
+  const std::size_t good = bench.samples.size();
+  bench.chip.temperature_c = 95.0;
+  bench.run(0.3);  // the next temperature
+  const std::size_t before = bench.samples.size();
+  CHECK(bench.time_until(BarometerState::kImplausible, 3.0) < 0.5);
+  CHECK(bench.fault() == "temperature outside -40 ... 85 degrees C");
+  CHECK(bench.samples.size() == before);
+  CHECK(before < good + 12);
+  CHECK(bench.sensor.status().counters.implausible > 5);
+  bench.chip.temperature_c = 21.0;
+  CHECK(bench.time_until(BarometerState::kMeasuring, 10.0) < 5.5);
+}
+
 TEST_CASE("noise of data-sheet size is never mistaken for a frozen sensor") {
   for (const Settings& settings :
        {with_rates(32, 16, 4, 8), with_rates(8, 64, 1, 1), with_rates(64, 8, 4, 1)}) {

@@ -43,7 +43,8 @@ class Folder {
 };
 
 struct Bench {
-  explicit Bench(BarometerDevice& barometer) : device(barometer) {}
+  template <class Settings>
+  explicit Bench(const Settings& settings, std::int64_t stuck_ns = 0) : device(settings, stuck_ns) {}
   /// Runs for so long; `before_each` sets what the next reading finds.
   void run(double seconds, const std::function<void()>& before_each = {}) {
     const std::int64_t end_ns = now_ns + static_cast<std::int64_t>(seconds * 1e9);
@@ -58,7 +59,7 @@ struct Bench {
   [[nodiscard]] std::string fault() const { return device.status().fault.data(); }
   [[nodiscard]] BarometerState state() const { return device.status().state; }
 
-  BarometerDevice& device;
+  iio::Barometer device;
   std::int64_t now_ns = 1'000'000'000;
   std::vector<PressureSample> samples;
 };
@@ -72,23 +73,21 @@ TEST_CASE("a processed pressure in kPa and a temperature in thousandths of a deg
   const Folder folder;
   folder.put("in_pressure_input", "100.843250");
   folder.put("in_temp_input", "21400");
-  iio::Barometer barometer(at(folder), 0);
-  Bench bench(barometer);
+  Bench bench(at(folder));
   bench.run(2.0);
   REQUIRE(bench.samples.size() >= 18);
   CHECK(bench.samples[0].pressure_pa == doctest::Approx(100'843.25).epsilon(1e-12));
   CHECK(bench.samples[0].temperature_c == doctest::Approx(21.4));
   CHECK(std::isnan(bench.samples[0].variance_pa2));
   CHECK(bench.samples[1].stamp_ns - bench.samples[0].stamp_ns == 100'000'000);
-  CHECK(barometer.place() == "barometer " + folder.path());
+  CHECK(bench.device.place() == "barometer " + folder.path());
 }
 
 TEST_CASE("a raw pressure takes scale and offset, its own or those of all channels of its kind") {
   const Folder folder;
   folder.put("in_pressure_raw", "4130000");
   folder.put("in_pressure_scale", "0.000024414");
-  iio::Barometer barometer(at(folder), 0);
-  Bench bench(barometer);
+  Bench bench(at(folder));
   bench.run(0.5);
   REQUIRE_FALSE(bench.samples.empty());
   CHECK(bench.samples[0].pressure_pa == doctest::Approx(4'130'000 * 0.000024414 * 1e3));
@@ -99,21 +98,19 @@ TEST_CASE("a raw pressure takes scale and offset, its own or those of all channe
   adc.put("in_voltage_scale", "0.125000000");
   adc.put("in_voltage0_offset", "800");
   adc.put("in_temp_input", "55000");  // the converter's own: says nothing of the air
-  iio::Barometer setra(setra_at(adc), 0);
-  Bench volts(setra);
+  Bench volts(setra_at(adc));
   volts.run(0.5);
   REQUIRE_FALSE(volts.samples.empty());
   CHECK(volts.samples[0].pressure_pa == doctest::Approx(60e3 + (12'800 * 0.125e-3) / 2.5 * 50e3));
   CHECK(std::isnan(volts.samples[0].temperature_c));
-  CHECK(setra.place() == "Setra 278 on " + adc.path() + " in_voltage0");
+  CHECK(volts.device.place() == "Setra 278 on " + adc.path() + " in_voltage0");
 }
 
 TEST_CASE("a Setra whose wire opens is flagged within 0.5 s with the reason, and measures again afterwards") {
   const Folder folder;
   folder.put("in_voltage0_raw", "1600");
   folder.put("in_voltage0_scale", "1");
-  iio::Barometer barometer(setra_at(folder), 0);
-  Bench bench(barometer);
+  Bench bench(setra_at(folder));
   bench.run(1.0);
   const std::size_t good = bench.samples.size();
   REQUIRE(good > 5);
@@ -122,7 +119,7 @@ TEST_CASE("a Setra whose wire opens is flagged within 0.5 s with the reason, and
   CHECK(bench.state() == BarometerState::kImplausible);
   CHECK(bench.fault() == "voltage at or below the span: wire open, or no supply?");
   CHECK(bench.samples.size() == good);
-  CHECK(barometer.status().counters.implausible >= 3);
+  CHECK(bench.device.status().counters.implausible >= 3);
   folder.put("in_voltage0_raw", "1601");
   bench.run(5.0);
   CHECK(bench.state() == BarometerState::kMeasuring);
@@ -133,8 +130,7 @@ TEST_CASE("a device that vanishes is asked for again, and comes back with anothe
   const Folder folder;
   folder.put("in_pressure_raw", "100000");
   folder.put("in_pressure_scale", "0.001");
-  iio::Barometer barometer(at(folder), 0);
-  Bench bench(barometer);
+  Bench bench(at(folder));
   bench.run(1.0);
   REQUIRE(bench.state() == BarometerState::kMeasuring);
   // The open file of a real sysfs fails with ENODEV; here its content goes.
@@ -155,17 +151,16 @@ TEST_CASE("a device that vanishes is asked for again, and comes back with anothe
 TEST_CASE("a value that freezes is flagged within 2 s; where that is switched off, it is not") {
   for (const bool watched : {true, false}) {
     const Folder folder;
-    iio::Barometer barometer(at(folder), watched ? kStuckNs : 0);
-    Bench bench(barometer);
+    Bench bench(at(folder), watched ? kStuckNs : 0);
     int count = 0;
     folder.put("in_pressure_input", "99.5");
     bench.run(5.0, [&] { folder.put("in_pressure_input", "99." + std::to_string(500 + ++count % 7)); });
     REQUIRE(bench.state() == BarometerState::kMeasuring);
     bench.run(2.0);
     CHECK((bench.state() == BarometerState::kStuck) == watched);
-    CHECK(barometer.status().counters.stuck == (watched ? 1 : 0));
+    CHECK(bench.device.status().counters.stuck == (watched ? 1 : 0));
     bench.run(20.0);
-    CHECK(barometer.status().counters.stuck == (watched ? 1 : 0));
+    CHECK(bench.device.status().counters.stuck == (watched ? 1 : 0));
     bench.run(6.0, [&] { folder.put("in_pressure_input", "99." + std::to_string(500 + ++count % 7)); });
     CHECK(bench.state() == BarometerState::kMeasuring);
   }
@@ -176,13 +171,12 @@ TEST_CASE("hPa where the kernel promises kPa, text and infinities are refused an
     CAPTURE(text);
     const Folder folder;
     folder.put("in_pressure_input", text);
-    iio::Barometer barometer(at(folder), 0);
-    Bench bench(barometer);
+    Bench bench(at(folder));
     bench.run(2.0);
     CHECK(bench.samples.empty());
     CHECK(bench.state() != BarometerState::kMeasuring);
     CHECK_FALSE(bench.fault().empty());
-    CHECK(barometer.status().counters.implausible + barometer.status().counters.io_errors > 0);
+    CHECK(bench.device.status().counters.implausible + bench.device.status().counters.io_errors > 0);
   }
 }
 
@@ -191,8 +185,7 @@ TEST_CASE("a thermometer that fails costs the temperature, not the pressure") {
   folder.put("in_pressure_input", "100.0");
   folder.put("in_temp_raw", "85");
   folder.put("in_temp_scale", "250");
-  iio::Barometer barometer(at(folder), 0);
-  Bench bench(barometer);
+  Bench bench(at(folder));
   bench.run(1.0);
   REQUIRE_FALSE(bench.samples.empty());
   CHECK(bench.samples.back().temperature_c == doctest::Approx(21.25));
