@@ -11,6 +11,7 @@
 
 #include "drivers/dps310/sensor.hpp"
 #include "drivers/dps310/smbus.hpp"
+#include "tests/core/registration/allocation_count.hpp"
 #include "tests/drivers/dps310/chip_model.hpp"
 
 using namespace isobar;
@@ -311,9 +312,9 @@ TEST_CASE(
     const auto matches = [&](std::int32_t raw) {
       const double ts = (sample.temperature_c - 110.0) / -293.0;
       const RawResult result{raw, static_cast<std::int32_t>(std::lround(ts * scale_factor(1)))};
-      return std::abs(
-                 compensate(test::kKnownCoefficients, result, scale_factor(4), scale_factor(1)).pressure_pa -
-                 sample.pressure_pa) < 1e-6;
+      return std::abs(compensate(dps310::test::kKnownCoefficients, result, scale_factor(4), scale_factor(1))
+                          .pressure_pa -
+                      sample.pressure_pa) < 1e-6;
     };
     if (std::none_of(bench.chip.pressures.begin(), bench.chip.pressures.end(), matches)) ++invented;
   }
@@ -374,7 +375,7 @@ TEST_CASE("whatever bytes the bus delivers, every sample that comes out is finit
   std::uint64_t samples = 0;
   std::uint64_t implausible = 0;
   for (int run = 0; run < 300; ++run) {
-    CoefficientBytes coefficients = test::kKnownBytes;
+    CoefficientBytes coefficients = dps310::test::kKnownBytes;
     for (int flips = run % 3; flips > 0; --flips) coefficients[any() % kCoefficientBytes] = any();
     std::array<std::uint8_t, kResultBytes> results{};
     std::array<std::uint8_t, 256> written{};
@@ -414,6 +415,47 @@ TEST_CASE("whatever bytes the bus delivers, every sample that comes out is finit
   }
   CHECK(samples > 100);  // the test reaches behind the checks
   CHECK(implausible > 1'000);
+}
+
+TEST_CASE("neither samples nor faults nor new starts allocate memory") {
+  // A chip that is sound for 2000 accesses, silent for 500, and sound again.
+  std::uint64_t accesses = 0;
+  std::array<std::uint8_t, 3> written{0x54, 0x23, kShiftPressure};
+  std::uint8_t count = 0;
+  const auto byte = [&](std::uint8_t address) -> std::uint8_t {
+    const bool silent = ++accesses % 2'500 > 2'000;
+    if (address >= kCoefficients && address < kCoefficients + kCoefficientBytes) {
+      return dps310::test::kKnownBytes[address - kCoefficients];
+    }
+    switch (address) {
+      case kProductId:
+        return kDps310Id;
+      case kMeasurementConfig:
+        ++count;
+        return silent ? 0xC7 : 0xF7;
+      case kPressureConfig:
+      case kTemperatureConfig:
+        return written[address - kPressureConfig];
+      case kConfig:
+        return written[2];
+      case kPressureResult:
+        return 0xFE;  // about 96 kPa
+      case kPressureResult + 2:
+        return count;  // never the same twice: not stuck
+      case kTemperatureResult:
+        return 0x20;
+      default:
+        return 0;
+    }
+  };
+  Sensor sensor({}, std::make_unique<FreeBus>(byte), kStuckNs);
+  std::int64_t now_ns = 1'000'000'000;
+  const std::size_t before = isobar::test::allocation_count();
+  for (int i = 0; i < 5'000; ++i) now_ns = sensor.step(now_ns).next_ns;
+  CHECK(isobar::test::allocation_count() == before);
+  CHECK(sensor.status().counters.samples > 100);
+  CHECK(sensor.status().counters.silent > 0);
+  CHECK(sensor.status().counters.starts > 1);
 }
 
 TEST_CASE("a bus of the kernel that is not there, or is none, is an error of the system and no crash") {
