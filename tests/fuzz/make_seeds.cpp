@@ -94,6 +94,8 @@ int main(int count, char** arguments) {
   save("fuzz_toml", "config", show_config(Config{}));
   save("fuzz_toml", "short",
        "method = \"4dof\"\n[lidar]\nmodel = \"HDL-32E\"\nxyz_m = [0.1, 0, 0.45]\n[map]\ncell_m = 0.3\n");
+  save("fuzz_dps310", "sound", std::string(600, '\0'));
+  save("fuzz_dps310", "free", std::string(40, '\0') + std::string(400, '\x21'));
   save(
       "fuzz_datagram", "all",
       "imu,1,1700000000000000000,0.1,0.2,-0.3,0,0,9.81,1,0,0,0\nbaro,1,1700000000000000000,100000.5,20.25\r\n"
