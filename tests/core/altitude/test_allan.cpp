@@ -121,7 +121,7 @@ TEST_CASE("bias instability is a floor that neither white noise nor a walk expla
     }
   }
   const auto points = overlapping_allan(values, kDt);
-  CHECK(slope(points, 10.0 * kDt, 300.0 * kDt) == doctest::Approx(0.0).epsilon(1.0).scale(0.1));
+  CHECK(std::abs(slope(points, 10.0 * kDt, 300.0 * kDt)) < 0.1);
   const AllanNoise noise = identify_noise(points);
   const double floor = 0.664 * noise.bias_instability;
   for (const AllanPoint& point : points) {
