@@ -15,6 +15,7 @@ void add_evaluate_command(CLI::App& app);    ///< evaluate.cpp: reference and es
 void add_experiment_command(CLI::App& app);  ///< experiment.cpp: simulate, run all methods, table, report
 void add_config_command(CLI::App& app);      ///< config.cpp: check, show
 void add_play_command(CLI::App& app);        ///< play.cpp: recording -> UDP in real time
-void add_echo_command(CLI::App& app);        ///< echo.cpp: what a DDS subscriber receives
+void add_noise_command(CLI::App& app);  ///< noise.cpp: pressures -> sigma, Allan deviation, filter settings
+void add_echo_command(CLI::App& app);   ///< echo.cpp: what a DDS subscriber receives
 
 }  // namespace isobar::tools
