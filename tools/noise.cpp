@@ -173,6 +173,7 @@ void run(const NoiseArguments& arguments) {
                                report::fixed(result.times_s[noise.still.end - 1], 1) + " s.",
                            typed_command(arguments),
                            noise,
+                           cm_per_pa,
                            std::move(designs),
                            chosen,
                            std::move(result.times_s),

@@ -8,22 +8,19 @@ namespace isobar::report {
 
 namespace {
 
-// Height of a pascal at sea level and 20 degrees, for a feeling of it.
-constexpr double kCmPerPa = 8.5;
-
 std::string tiles(const NoiseReport& report) {
   const SensorNoise& noise = report.noise;
   std::string html = "<ul class=\"tiles\">\n";
   html += tile("White noise of a sample, 1 sigma", fixed(noise.sigma_pa, 3) + " Pa",
-               fixed(kCmPerPa * noise.sigma_pa, 1) + " cm; from the Allan deviation " +
+               fixed(report.cm_per_pa * noise.sigma_pa, 1) + " cm; from the Allan deviation " +
                    fixed(noise.allan_sigma_pa(), 3) + " Pa");
   html += tile("Bias instability", fixed(noise.parts.bias_instability, 3) + " Pa",
-               fixed(kCmPerPa * noise.parts.bias_instability, 2) + " cm");
+               fixed(report.cm_per_pa * noise.parts.bias_instability, 2) + " cm");
   html += tile("Random walk", fixed(noise.parts.walk, 4) + " Pa/√s",
                "trend " + fixed(3600.0 * noise.parts.ramp, 0) + " Pa an hour");
   html += tile("After a low-pass of " + fixed(report.chosen.delay_s, 2) + " s",
                fixed(report.chosen.output_sigma_pa, 3) + " Pa",
-               fixed(kCmPerPa * report.chosen.output_sigma_pa, 2) + " cm of white noise");
+               fixed(report.cm_per_pa * report.chosen.output_sigma_pa, 2) + " cm of white noise");
   return html + "</ul>\n";
 }
 
@@ -72,7 +69,7 @@ std::string designs_table(const NoiseReport& report) {
     html += "<tr><td>" + fixed(design.delay_s, 2) + "</td><td>" + fixed(design.bandwidth_hz, 3) +
             "</td><td>" + fixed(design.gain, 4) + "</td><td>" + fixed(design.walk_pa_sqrt_s, 4) +
             "</td><td>" + fixed(design.output_sigma_pa, 4) + "</td><td>" +
-            fixed(kCmPerPa * design.output_sigma_pa, 2) + "</td></tr>\n";
+            fixed(report.cm_per_pa * design.output_sigma_pa, 2) + "</td></tr>\n";
   }
   return html + "</tbody></table></div>\n";
 }

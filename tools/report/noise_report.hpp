@@ -15,6 +15,7 @@ struct NoiseReport {
   std::string source;   ///< which samples, in words
   std::string command;  ///< that made it
   SensorNoise noise;
+  double cm_per_pa = 8.5;             ///< height of a pascal at the place of the recording
   std::vector<FilterDesign> designs;  ///< settings of the low-pass to choose from
   FilterDesign chosen;
   std::vector<double> times_s;  ///< of all samples, for the first picture
