@@ -60,10 +60,10 @@ TEST_CASE("the Allan deviation of a series counted by hand") {
 TEST_CASE("white noise falls with slope -1/2, and is the only part that is found") {
   const auto points = overlapping_allan(still_sensor(100'000, 0.35, 0.0, 0.0, 1), kDt);
   // 100 000 samples average 32 s a hundred times: a slope over three decades is good to 0.02.
-  CHECK(slope(points, kDt, 30.0) == doctest::Approx(-0.5).epsilon(0.05));
-  CHECK(points.front().deviation == doctest::Approx(0.35).epsilon(0.01));
+  CHECK(slope(points, kDt, 30.0) == doctest::Approx(-0.5).epsilon(0.05).scale(0.0));
+  CHECK(points.front().deviation == doctest::Approx(0.35).epsilon(0.01).scale(0.0));
   const AllanNoise noise = identify_noise(points);
-  CHECK(noise.white / std::sqrt(kDt) == doctest::Approx(0.35).epsilon(0.01));
+  CHECK(noise.white / std::sqrt(kDt) == doctest::Approx(0.35).epsilon(0.01).scale(0.0));
   // What is left over for the others is below the white noise of the longest useful average, 0.35 /
   // sqrt(3e4).
   CHECK(0.664 * noise.bias_instability < 0.004);
@@ -72,11 +72,11 @@ TEST_CASE("white noise falls with slope -1/2, and is the only part that is found
 
 TEST_CASE("a random walk rises with slope +1/2 and has the deviation of its closed form") {
   const auto points = overlapping_allan(still_sensor(100'000, 0.0, 0.06, 0.0, 2), kDt);
-  CHECK(slope(points, 0.5, 20.0) == doctest::Approx(0.5).epsilon(0.1));
+  CHECK(slope(points, 0.5, 20.0) == doctest::Approx(0.5).epsilon(0.1).scale(0.0));
   // One sample apart: half of the variance of a step. Many: K sqrt(tau / 3).
-  CHECK(points.front().deviation == doctest::Approx(0.06 * std::sqrt(0.5 * kDt)).epsilon(0.01));
+  CHECK(points.front().deviation == doctest::Approx(0.06 * std::sqrt(0.5 * kDt)).epsilon(0.01).scale(0.0));
   const AllanNoise noise = identify_noise(points);
-  CHECK(noise.walk == doctest::Approx(0.06).epsilon(0.03));
+  CHECK(noise.walk == doctest::Approx(0.06).epsilon(0.03).scale(0.0));
   CHECK(noise.white / std::sqrt(kDt) < 0.003);
 }
 
@@ -84,10 +84,11 @@ TEST_CASE("a ramp alone has the deviation R tau / sqrt(2), and is not taken for 
   const auto points = overlapping_allan(still_sensor(4'000, 0.0, 0.0, 0.03, 3), kDt);
   for (const AllanPoint& point : points) {
     // Sums of 4000 values of 1e5 Pa keep eight digits.
-    CHECK(point.deviation == doctest::Approx(0.03 * point.tau_s / std::numbers::sqrt2).epsilon(1e-5));
+    CHECK(point.deviation ==
+          doctest::Approx(0.03 * point.tau_s / std::numbers::sqrt2).epsilon(1e-5).scale(0.0));
   }
   const AllanNoise noise = identify_noise(points);
-  CHECK(noise.ramp == doctest::Approx(0.03).epsilon(1e-4));
+  CHECK(noise.ramp == doctest::Approx(0.03).epsilon(1e-4).scale(0.0));
   CHECK(noise.walk < 1e-3);
 }
 
@@ -95,14 +96,14 @@ TEST_CASE(
     "white noise, walk and weather are told apart in one series, and the model goes through the points") {
   const auto points = overlapping_allan(still_sensor(200'000, 0.35, 0.02, 0.01, 4), kDt);
   const AllanNoise noise = identify_noise(points);
-  CHECK(noise.white / std::sqrt(kDt) == doctest::Approx(0.35).epsilon(0.02));
+  CHECK(noise.white / std::sqrt(kDt) == doctest::Approx(0.35).epsilon(0.02).scale(0.0));
   // The walk shows between 10 and 30 s only, where some 300 averages are independent: 10 %, two of these.
-  CHECK(noise.walk == doctest::Approx(0.02).epsilon(0.2));
-  CHECK(noise.ramp == doctest::Approx(0.01).epsilon(0.1));
+  CHECK(noise.walk == doctest::Approx(0.02).epsilon(0.2).scale(0.0));
+  CHECK(noise.ramp == doctest::Approx(0.01).epsilon(0.1).scale(0.0));
   for (const AllanPoint& point : points) {
     if (point.uncertainty > 0.1) continue;
     CHECK(modelled_deviation(noise, point) ==
-          doctest::Approx(point.deviation).epsilon(0.02 + 2.0 * point.uncertainty));
+          doctest::Approx(point.deviation).epsilon(0.02 + 2.0 * point.uncertainty).scale(0.0));
   }
 }
 
@@ -126,17 +127,17 @@ TEST_CASE("bias instability is a floor that neither white noise nor a walk expla
   const double floor = 0.664 * noise.bias_instability;
   for (const AllanPoint& point : points) {
     if (point.samples < 10 || point.samples > 300) continue;
-    CHECK(point.deviation == doctest::Approx(floor).epsilon(0.15));
+    CHECK(point.deviation == doctest::Approx(floor).epsilon(0.15).scale(0.0));
   }
 }
 
 TEST_CASE("sigma does not mind motion, doors and spikes") {
   std::vector<double> values = still_sensor(4'000, 0.35, 0.0, 0.0, 6);
   // 0.0139 is the spread of a median of 4000: 1.17 / sqrt(4000), times a little for the overlap.
-  CHECK(robust_sigma(values) == doctest::Approx(0.35).epsilon(0.06));
+  CHECK(robust_sigma(values) == doctest::Approx(0.35).epsilon(0.06).scale(0.0));
   for (std::size_t i = 1000; i < 3000; ++i) values[i] -= 0.2 * static_cast<double>(i - 1000);  // 0.5 m/s up
   for (std::size_t i = 0; i < values.size(); i += 100) values[i] += 500.0;
-  CHECK(robust_sigma(values) == doctest::Approx(0.35).epsilon(0.12));
+  CHECK(robust_sigma(values) == doctest::Approx(0.35).epsilon(0.12).scale(0.0));
   CHECK(robust_sigma(std::vector<double>{1.0, 2.0}) == 0.0);
 }
 

@@ -57,7 +57,7 @@ TEST_CASE("ten steps of 3 cm are found in the white noise of two DPS310, however
     const Stairs up = stairs(kUneven, kUp, 0.03, 0.042, 0.0, seed);
     const FoundSteps found = find_steps(up.track, {0.03, 10});
     // sqrt(26) (4.2 / 3)^2 / 32 Hz; the worst of forty is some four sigmas of this long-tailed distribution.
-    CHECK(found.uncertainty_s == doctest::Approx(std::sqrt(26.0) * 1.96 / 32.0).epsilon(0.15));
+    CHECK(found.uncertainty_s == doctest::Approx(std::sqrt(26.0) * 1.96 / 32.0).epsilon(0.15).scale(0.0));
     CHECK(worst_s(found.times_s, up.times_s) < 1.5);
     CHECK(worst_s(find_steps(up.track, {0.03}).times_s, up.times_s) < 1.5);
   }
@@ -98,11 +98,11 @@ TEST_CASE("errors of a staircase counted by hand") {
   const StaircaseErrors errors = staircase_errors(track, plateaus);
   REQUIRE(errors.steps_m.size() == 2);
   // An odd number of samples leaves 2 mm / 70 in the mean.
-  CHECK(errors.steps_m[0] == doctest::Approx(0.01).epsilon(0.01));
-  CHECK(errors.steps_m[1] == doctest::Approx(-0.01).epsilon(0.01));
+  CHECK(errors.steps_m[0] == doctest::Approx(0.01).epsilon(0.01).scale(0.0));
+  CHECK(errors.steps_m[1] == doctest::Approx(-0.01).epsilon(0.01).scale(0.0));
   CHECK(errors.samples_m.size() == 70 + 89);  // a span ends before its end
   for (const double error_m : errors.samples_m) {
-    CHECK(std::abs(std::abs(error_m) - 0.01) == doctest::Approx(0.002).epsilon(0.05));
+    CHECK(std::abs(std::abs(error_m) - 0.01) == doctest::Approx(0.002).epsilon(0.05).scale(0.0));
   }
   // A plateau that nothing is left of is no plateau.
   CHECK(staircase_errors(track, shortened(plateaus, 6.0, 3.0)).steps_m.empty());
@@ -115,7 +115,7 @@ TEST_CASE("the figures of normal errors are 0.674 and 0.603 sigma") {
   for (double& error : errors) error = normal(random);
   const ErrorFigures figures = error_figures(errors);
   CHECK(figures.count == 100'000);
-  CHECK(figures.median_m == doctest::Approx(0.6745 * 0.02).epsilon(0.02));
-  CHECK(figures.sd_m == doctest::Approx(0.6028 * 0.02).epsilon(0.02));
+  CHECK(figures.median_m == doctest::Approx(0.6745 * 0.02).epsilon(0.02).scale(0.0));
+  CHECK(figures.sd_m == doctest::Approx(0.6028 * 0.02).epsilon(0.02).scale(0.0));
   CHECK(std::isnan(error_figures({}).median_m));
 }
