@@ -10,6 +10,7 @@
 #include "core/altitude/stamp.hpp"
 #include "core/errors.hpp"
 #include "core/plausibility.hpp"
+#include "drivers/recording/base_clock.hpp"
 #include "drivers/recording/csv_reader.hpp"
 #include "drivers/recording/number_text.hpp"
 
@@ -48,8 +49,10 @@ std::optional<std::string> parse_row(const CsvReader& csv, const PressureColumns
   if (!parse_number(pressure, sample.pressure_pa) || !std::isfinite(sample.pressure_pa)) {
     return columns.pressure + " must be a finite number (is '" + pressure + "')";
   }
+  sample.pressure_pa *= columns.pa_per_unit;
   if (!kPlausiblePressurePa.holds(sample.pressure_pa)) {
-    return columns.pressure + " must lie within 10000 … 120000 Pa (is " + pressure + ")";
+    return columns.pressure + " must lie within 10000 … 120000 Pa (is " + pressure +
+           (columns.pa_per_unit == 1.0 ? ")" : " in another unit)");
   }
   if (!parse_number(csv.field(2), sample.temperature_c)) {
     sample.temperature_c = std::numeric_limits<double>::quiet_NaN();
@@ -66,28 +69,35 @@ std::string likely_unit(double pressure) {
   return "";
 }
 
+/// Takes ":UNIT" off a column's name; 1 where there is none.
+double take_unit(std::string& name, const std::map<std::string, double>& units, const char* choices) {
+  const std::size_t colon = name.rfind(':');
+  if (colon == std::string::npos) return 1.0;
+  const auto unit = units.find(name.substr(colon + 1));
+  if (unit == units.end()) {
+    throw UsageError("--columns: \"" + name.substr(colon + 1) + "\" is none of " + choices);
+  }
+  name.resize(colon);
+  return unit->second;
+}
+
 }  // namespace
 
 PressureColumns parse_columns(const std::string& text) {
-  static const std::map<std::string, double> kUnits{{"ns", 1.0}, {"us", 1e3}, {"ms", 1e6}, {"s", 1e9}};
+  static const std::map<std::string, double> kTimes{{"ns", 1.0}, {"us", 1e3}, {"ms", 1e6}, {"s", 1e9}};
+  static const std::map<std::string, double> kPressures{{"Pa", 1.0}, {"hPa", 100.0}, {"kPa", 1000.0}};
   std::vector<std::string> names;
   std::istringstream stream(text);
   for (std::string name; std::getline(stream, name, ',');) names.push_back(name);
   if (names.size() < 2 || names.size() > 3) {
-    throw UsageError("--columns: \"" + text + "\": must be TIME[:UNIT],PRESSURE[,TEMPERATURE]");
+    throw UsageError("--columns: \"" + text + "\": must be TIME[:UNIT],PRESSURE[:UNIT][,TEMPERATURE]");
   }
   PressureColumns columns;
+  columns.ns_per_unit = take_unit(names[0], kTimes, "ns, us, ms, s");
+  columns.pa_per_unit = take_unit(names[1], kPressures, "Pa, hPa, kPa");
   columns.time = names[0];
   columns.pressure = names[1];
   columns.temperature = names.size() > 2 ? names[2] : "";
-  const std::size_t colon = names[0].rfind(':');
-  if (colon == std::string::npos) return columns;
-  const auto unit = kUnits.find(names[0].substr(colon + 1));
-  if (unit == kUnits.end()) {
-    throw UsageError("--columns: \"" + names[0].substr(colon + 1) + "\" is none of ns, us, ms, s");
-  }
-  columns.time = names[0].substr(0, colon);
-  columns.ns_per_unit = unit->second;
   return columns;
 }
 
@@ -105,7 +115,7 @@ PressureLog read_pressure_log(const std::filesystem::path& file, const PressureC
     }
     PressureSample sample;
     if (const auto rule = parse_row(csv, columns, sample)) {
-      if (unit.empty()) unit = likely_unit(sample.pressure_pa);
+      if (unit.empty() && columns.pa_per_unit == 1.0) unit = likely_unit(sample.pressure_pa);
       refuse(csv.lines().place() + *rule);
     } else if (!log.samples.empty() && sample.stamp_ns <= log.samples.back().stamp_ns) {
       refuse(csv.lines().place() + columns.time + " must be later than in the row before");
@@ -116,7 +126,7 @@ PressureLog read_pressure_log(const std::filesystem::path& file, const PressureC
     }
   }
   if (log.bad_rows > log.samples.size() + log.repeats) {
-    const std::string hint = unit.empty() ? "" : "; it looks like " + unit + ", convert it to Pa";
+    const std::string hint = unit.empty() ? "" : "; it looks like " + unit + ", say so with --columns";
     throw DataError(log.first_bad_row + hint + " (" + std::to_string(log.bad_rows) + " rows like this)");
   }
   if (log.samples.empty()) throw DataError(file.string() + ": holds no samples");
@@ -147,6 +157,30 @@ std::string left_out(const PressureLog& log) {
             " bad rows, the first: " + log.first_bad_row;
   }
   return text;
+}
+
+std::string tie_clocks(const PressureLog& moved, PressureLog& standing) {
+  const auto span = [](const PressureLog& log) {
+    return recording::StampSpan{log.samples.front().stamp_ns, log.samples.back().stamp_ns};
+  };
+  const recording::BaseClock clock = recording::tie_base_clock(span(moved), span(standing));
+  for (PressureSample& sample : standing.samples) sample.stamp_ns += clock.offset_ns;
+  return clock.reason;
+}
+
+std::optional<double> coldest_c(std::initializer_list<const std::vector<PressureSample>*> logs) {
+  std::optional<double> coldest;
+  for (const std::vector<PressureSample>* log : logs) {
+    double sum_c = 0.0;
+    double count = 0.0;
+    for (const PressureSample& sample : *log) {
+      if (!kPlausibleTemperatureC.holds(sample.temperature_c)) continue;
+      sum_c += sample.temperature_c;
+      count += 1.0;
+    }
+    if (count > 0.0 && (!coldest || sum_c / count < *coldest)) coldest = sum_c / count;
+  }
+  return coldest;
 }
 
 }  // namespace isobar::tools

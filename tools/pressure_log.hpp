@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,15 +18,17 @@ struct PressureColumns {
   std::string time = "t_ns";
   double ns_per_unit = 1.0;  ///< of the time column
   std::string pressure = "pressure_pa";
+  double pa_per_unit = 1.0;                   ///< of the pressure column
   std::string temperature = "temperature_c";  ///< may be missing from the file
 };
 
-/// "TIME[:UNIT],PRESSURE[,TEMPERATURE]", UNIT one of ns (default), us, ms, s. Throws UsageError.
+/// "TIME[:UNIT],PRESSURE[:UNIT][,TEMPERATURE]", units ns (default), us, ms, s and Pa (default), hPa, kPa.
+/// Throws UsageError.
 PressureColumns parse_columns(const std::string& text);
 
 /// What --columns says in a command's help.
 inline constexpr const char* kColumnsHelp =
-    "TIME[:ns|us|ms|s],PRESSURE[,TEMPERATURE]: other names of the columns; pressure in Pa";
+    "TIME[:ns|us|ms|s],PRESSURE[:Pa|hPa|kPa][,TEMPERATURE]: other names of the columns, their units";
 
 struct PressureLog {
   std::vector<PressureSample> samples;  ///< stamps ascend, no value twice in a row
@@ -42,5 +46,12 @@ PressureLog read_pressure_log(const std::filesystem::path& file, const PressureC
 
 /// One line about what was left out of a file, empty where nothing was.
 std::string left_out(const PressureLog& log);
+
+/// Moves a base's stamps to the other log's clock (recording/base_clock.hpp); returns how, in words.
+std::string tie_clocks(const PressureLog& moved, PressureLog& standing);
+
+/// Mean temperature of the coldest sensor: chips warm themselves, so it is the nearest to the air. Nothing
+/// where none has a thermometer.
+std::optional<double> coldest_c(std::initializer_list<const std::vector<PressureSample>*> logs);
 
 }  // namespace isobar::tools

@@ -16,7 +16,6 @@
 #include "core/errors.hpp"
 #include "core/evaluation/segments.hpp"
 #include "core/evaluation/text_table.hpp"
-#include "drivers/recording/base_clock.hpp"
 #include "drivers/recording/manifest.hpp"
 #include "drivers/simulation/sensitivity_rig.hpp"
 #include "tools/commands.hpp"
@@ -154,25 +153,8 @@ BarometerPair read_pair(const SensitivityArguments& arguments, const Files& file
     const std::string rest = left_out(*log);
     if (!rest.empty()) std::printf("%s: %s\n", file->c_str(), rest.c_str());
   }
-  const auto span = [](const PressureLog& log) {
-    return recording::StampSpan{log.samples.front().stamp_ns, log.samples.back().stamp_ns};
-  };
-  const recording::BaseClock clock = recording::tie_base_clock(span(moved), span(standing));
-  for (PressureSample& sample : standing.samples) sample.stamp_ns += clock.offset_ns;
-  std::printf("clocks: %s\n", clock.reason.c_str());
+  std::printf("clocks: %s\n", tie_clocks(moved, standing).c_str());
   return {arguments.sensor, std::move(moved.samples), std::move(standing.samples)};
-}
-
-/// Chips warm themselves: the colder one is nearer to the air.
-double air_temperature_k(const SensitivityArguments& arguments, const BarometerPair& pair) {
-  double coldest_c = arguments.air_c.value_or(NAN);
-  if (arguments.air_c) return coldest_c + kZeroCelsiusK;
-  for (const std::vector<PressureSample>* log : {&pair.moved, &pair.standing}) {
-    double sum_c = 0.0;
-    for (const PressureSample& sample : *log) sum_c += sample.temperature_c;
-    coldest_c = std::fmin(coldest_c, sum_c / static_cast<double>(log->size()));
-  }
-  return (std::isfinite(coldest_c) ? coldest_c : 20.0) + kZeroCelsiusK;
 }
 
 /// Levels that segments.csv names; a label that is a number is the level's true height in metres.
@@ -233,7 +215,8 @@ SensitivityExperiment from_recording(const SensitivityArguments& arguments) {
   options.lag_s = arguments.lag_s;
   // Found steps are known to some tenths of a second.
   options.settle_s = arguments.settle_s.value_or(files.segments.empty() ? 1.5 : 0.0);
-  options.air_temperature_k = air_temperature_k(arguments, pair);
+  options.air_temperature_k =
+      arguments.air_c.value_or(coldest_c({&pair.moved, &pair.standing}).value_or(20.0)) + kZeroCelsiusK;
   std::vector<Plateau> plateaus =
       files.segments.empty()
           ? found_plateaus(arguments, pair, options)

@@ -25,7 +25,7 @@ double interpolated(const FilteredPressure& series, std::int64_t stamp_ns) {
 
 }  // namespace
 
-FilteredPressure filter_log(std::span<const PressureSample> log, double lag_s, double wanted_sigma_pa) {
+FilteredPressure filter_log(std::span<const PressureSample> log, double lag_s) {
   FilteredPressure out;
   std::vector<double> pressures;
   pressures.reserve(log.size());
@@ -33,11 +33,7 @@ FilteredPressure filter_log(std::span<const PressureSample> log, double lag_s, d
   out.sigma_pa = robust_sigma(pressures);
   out.interval_s =
       seconds_between(log.front().stamp_ns, log.back().stamp_ns) / static_cast<double>(log.size() - 1);
-  if (lag_s > 0.0 && out.sigma_pa > 0.0) {
-    const bool slow = out.interval_s > lag_s && wanted_sigma_pa > 0.0 && wanted_sigma_pa < out.sigma_pa;
-    out.design = slow ? design_for_noise(out.sigma_pa, out.interval_s, wanted_sigma_pa)
-                      : design_for_lag(out.sigma_pa, out.interval_s, lag_s);
-  }
+  if (lag_s > 0.0 && out.sigma_pa > 0.0) out.design = design_for_lag(out.sigma_pa, out.interval_s, lag_s);
   const bool as_it_is = out.design.gain >= 1.0;
   PressureFilter filter(out.design.walk_pa_sqrt_s);
   std::int64_t before_ns = log.front().stamp_ns;

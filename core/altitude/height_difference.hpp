@@ -27,10 +27,9 @@ struct FilteredPressure {
   double interval_s = 0.0;  ///< mean time between samples
 };
 
-/// `lag_s` 0: the samples as they are. Stamps must ascend, at least two samples. A sensor whose samples come
-/// less often than the lag is filtered over as many of its own intervals as it takes to make its noise as
-/// small as `wanted_sigma_pa`, if that is given: a weather station of one row a minute.
-FilteredPressure filter_log(std::span<const PressureSample> log, double lag_s, double wanted_sigma_pa = 0.0);
+/// `lag_s` 0: the samples as they are. Stamps must ascend, at least two samples. For a base of one row a
+/// minute see weather_smoother.hpp.
+FilteredPressure filter_log(std::span<const PressureSample> log, double lag_s);
 
 /// dz = (R T / g) ln(standing / moved) at every sample of `moved`; the standing pressure is interpolated
 /// between its neighbours and held before the first and after the last. With equal lags weather and drafts

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -8,6 +9,7 @@
 
 #include "core/altitude/height_difference.hpp"
 #include "core/altitude/hypsometry.hpp"
+#include "core/altitude/weather_smoother.hpp"
 
 using namespace isobar;
 
@@ -81,20 +83,49 @@ TEST_CASE("through equal low-passes drafts that reach both sensors cancel, and a
   CHECK(largest > 0.5);
 }
 
-TEST_CASE("a base of one row a minute is smoothed over rows, and held beyond them") {
-  const auto moved = sampled(0.0, 3600.0, 0.1, 0.1, 5, [](double t) { return 94'000.0 + 0.02 * t; });
-  const auto rows = sampled(-1800.0, 5400.0, 60.0, 3.0, 6, [](double t) { return 94'200.0 + 0.02 * t; });
-  const FilteredPressure base = filter_log(rows, 1.0, 1.0);
-  CHECK(base.design.output_sigma_pa == doctest::Approx(1.0));
+TEST_CASE("a base of one row a minute is smoothed without lag, and carried on beyond its rows") {
+  // 90 Pa an hour, 7.6 m; rows with 3 Pa of noise, the last one four minutes before the end.
+  const auto weather = [](double t) { return 94'200.0 + 0.025 * t; };
+  const auto moved = sampled(0.0, 3600.0, 0.1, 0.1, 5, [&](double t) { return weather(t) - 200.0; });
+  const auto rows = sampled(30.0, 3360.0, 60.0, 3.0, 6, weather);
+  const FilteredPressure base = smooth_weather(rows);
+  // 55 rows: the median of their second differences is good to 20 %.
+  CHECK(base.sigma_pa == doctest::Approx(3.0).epsilon(0.4).scale(0.0));
   const HeightSeries series = height_difference(filter_log(moved, 1.0), base, kAirK);
-  double sum = 0.0;
+  double largest_m = 0.0;
+  double sum_m = 0.0;
   double squares = 0.0;
+  const double expected_m = hypsometric_height_m(94'200.0, 94'000.0, kAirK);
   for (const double height_m : series.heights_m) {
-    sum += height_m;
+    largest_m = std::max(largest_m, std::abs(height_m - expected_m));
+    sum_m += height_m;
     squares += height_m * height_m;
   }
   const auto count = static_cast<double>(series.heights_m.size());
-  const double deviation_m = std::sqrt(squares / count - std::pow(sum / count, 2));
-  // Weather of 72 Pa, 6 m, is gone; 1 Pa of the rows' noise is left, 9 cm.
-  CHECK(deviation_m < 0.12);
+  // Ten rows at a time are averaged: 1 Pa of their noise is left, 9 cm, twice that at the ends.
+  CHECK(std::sqrt(squares / count - std::pow(sum_m / count, 2)) < 0.12);
+  CHECK(largest_m < 0.4);
+}
+
+TEST_CASE("the smoother is the least-squares solution of its own model") {
+  // Three rows, of which the first and the last lie on a line: by symmetry the middle is pulled towards it,
+  // and all three keep their mean.
+  std::vector<PressureSample> rows(3);
+  for (std::size_t i = 0; i < 3; ++i)
+    rows[i].stamp_ns = kStartNs + 60'000'000'000 * static_cast<std::int64_t>(i);
+  rows[0].pressure_pa = rows[2].pressure_pa = 1e5;
+  rows[1].pressure_pa = 1e5 + 9.0;
+  WeatherModel model;
+  model.rate_sigma_pa_s = 1e-9;
+  // A walk alone: minimise sum (p - x)^2 / 9 + (x1 - x0)^2 / q + (x2 - x1)^2 / q, q = 60 walk^2. With
+  // a = 9 / q: x0 = x2 = a x1 / (1 + a), x1 = 9 (1 + a) / (1 + 3 a).
+  const double a = 9.0 / (60.0 * model.walk_pa_sqrt_s * model.walk_pa_sqrt_s);
+  const FilteredPressure smooth = smooth_weather(rows, model);
+  REQUIRE(smooth.pressures_pa.size() == 5);
+  const double middle_pa = 9.0 * (1.0 + a) / (1.0 + 3.0 * a);
+  // Nothing known of the level is 1e4 Pa here: its share is 1e-7 of the noise.
+  CHECK(smooth.pressures_pa[2] - 1e5 == doctest::Approx(middle_pa).epsilon(1e-5).scale(0.0));
+  CHECK(smooth.pressures_pa[1] - 1e5 == doctest::Approx(a * middle_pa / (1.0 + a)).epsilon(1e-5).scale(0.0));
+  CHECK(smooth.pressures_pa[3] == doctest::Approx(smooth.pressures_pa[1]));
+  CHECK(smooth.pressures_pa[4] == doctest::Approx(smooth.pressures_pa[3]));
 }

@@ -68,6 +68,7 @@ TEST_CASE("isobar noise writes a report, and ends with the right code on each mi
   CHECK(noise({"noise", path("still.csv"), "--noise", "0.5"}) == 64);
   CHECK(noise({"noise", path("still.csv"), "--columns", "t_ns"}) == 64);
   CHECK(noise({"noise", path("still.csv"), "--columns", "t_ns:hours,pressure_pa"}) == 64);
+  CHECK(noise({"noise", path("still.csv"), "--columns", "t_ns,pressure_pa:mmHg"}) == 64);
   CHECK(noise({"noise", path("still.csv"), "--columns", "time:s,pressure_pa"}) == 65);
   CHECK(noise({"noise", path("none.csv")}) == 65);
   write_text_file(path("empty.csv"), "t_ns,pressure_pa,temperature_c\n");
@@ -108,6 +109,9 @@ TEST_CASE("other names and units of the columns are understood to the nanosecond
   };
   CHECK(first_stamp("timestamp:us,p", "p,timestamp\n94212.4,1760456485602394\n") ==
         1'760'456'485'602'394'000);
+  write_text_file(file, still_log(0.01));
+  const auto in_hpa = tools::read_pressure_log(file, tools::parse_columns("t_ns,pressure_pa:hPa"));
+  CHECK(in_hpa.samples.front().pressure_pa == doctest::Approx(101'000.0).epsilon(1e-4));
   CHECK(first_stamp("timestamp:s,p", "timestamp,p\n1760456485.602394123,94212.4\n") ==
         1'760'456'485'602'394'123);
   CHECK(first_stamp("Time (s):s,\xC3\xBCp", "\"Time (s)\",\xC3\xBCp\n1.25E0,94212.4\n") == 1'250'000'000);
