@@ -181,6 +181,15 @@ std::vector<Plateau> named_plateaus(const std::filesystem::path& file, const Bar
   return plateaus;
 }
 
+/// What does not count on both sides of a step that was found, to some tenths of a second: a share of the
+/// time on a level, so that enough is left of short ones.
+double found_settle_s(const std::vector<double>& step_times_s) {
+  if (step_times_s.size() < 2) return 1.5;
+  const double dwell_s =
+      (step_times_s.back() - step_times_s.front()) / static_cast<double>(step_times_s.size() - 1);
+  return std::clamp(0.15 * dwell_s, 0.5, 1.5);
+}
+
 /// Levels that the heights themselves show.
 std::vector<Plateau> found_plateaus(const SensitivityArguments& arguments, const BarometerPair& pair,
                                     const StudyOptions& options) {
@@ -203,7 +212,8 @@ std::vector<Plateau> found_plateaus(const SensitivityArguments& arguments, const
   std::printf("%zu steps found, each to %.2f s:", found.times_s.size(), found.uncertainty_s);
   for (const double time_s : found.times_s) std::printf(" %.1f", time_s);
   std::printf(" s\n");
-  return plateaus_between(track, found.times_s, options.step_m, options.settle_s, options.settle_s);
+  const double settle_s = arguments.settle_s.value_or(found_settle_s(found.times_s));
+  return plateaus_between(track, found.times_s, options.step_m, settle_s, settle_s);
 }
 
 SensitivityExperiment from_recording(const SensitivityArguments& arguments) {
@@ -213,8 +223,7 @@ SensitivityExperiment from_recording(const SensitivityArguments& arguments) {
   StudyOptions options;
   options.step_m = *arguments.step_m;
   options.lag_s = arguments.lag_s;
-  // Found steps are known to some tenths of a second.
-  options.settle_s = arguments.settle_s.value_or(files.segments.empty() ? 1.5 : 0.0);
+  options.settle_s = arguments.settle_s.value_or(0.0);
   options.air_temperature_k =
       arguments.air_c.value_or(coldest_c({&pair.moved, &pair.standing}).value_or(20.0)) + kZeroCelsiusK;
   std::vector<Plateau> plateaus =

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/altitude/still_period.hpp"
 #include "core/evaluation/staircase.hpp"
 
 namespace isobar::evaluation {
@@ -43,19 +44,11 @@ Blocks blocks_of(const HeightTrack& track, double step_m) {
   return blocks;
 }
 
-/// Density of the white noise, in squared steps times seconds: from second differences of the samples.
+/// Density of the white noise, in squared steps times seconds.
 double noise_density(const HeightTrack& track, double step_m) {
-  const std::size_t count = track.heights_m.size();
-  if (count < 3) return 0.0;
-  std::vector<double> differences;
-  for (std::size_t i = 2; i < count; ++i) {
-    differences.push_back(
-        std::abs(track.heights_m[i] - 2.0 * track.heights_m[i - 1] + track.heights_m[i - 2]));
-  }
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  const double sigma = *middle / (0.6745 * std::sqrt(6.0) * step_m);
-  return sigma * sigma * (track.times_s.back() - track.times_s.front()) / static_cast<double>(count - 1);
+  const double sigma = robust_sigma(track.heights_m) / step_m;
+  const double span_s = track.times_s.back() - track.times_s.front();
+  return sigma * sigma * span_s / static_cast<double>(track.times_s.size() - 1);
 }
 
 /// A sequence of levels.
@@ -182,13 +175,16 @@ Sequence sequence_of_number(Viterbi& viterbi, std::size_t number, double penalty
   return best;
 }
 
-/// The best staircase that only rises or only sinks; one that turns round only where it fits far better,
-/// because drafts of a step's height come and go.
-Sequence best_sequence(const Blocks& blocks, const StepSearch& search, double penalty) {
-  constexpr double kFarBetter = 0.6;
+/// The best staircase that only rises or only sinks; one that turns round only where it leaves far less that
+/// white noise does not explain, because drafts of a step's height come and go.
+Sequence best_sequence(const Blocks& blocks, const StepSearch& search, double penalty, double noise_misfit) {
+  constexpr double kFarLess = 0.35;
   const auto of = [&](Direction direction) {
     Viterbi viterbi(blocks, search.min_dwell_s, direction);
     return search.steps > 0 ? sequence_of_number(viterbi, search.steps, penalty) : viterbi.sequence(penalty);
+  };
+  const auto unexplained = [&](const Sequence& sequence) {
+    return std::max(0.0, sequence.misfit - noise_misfit);
   };
   const auto full = [&](const Sequence& sequence) {
     return sequence.misfit + penalty * static_cast<double>(sequence.changes.size());
@@ -197,7 +193,8 @@ Sequence best_sequence(const Blocks& blocks, const StepSearch& search, double pe
   Sequence down = of(Direction::kDown);
   if (full(down) < full(one_way)) one_way = std::move(down);
   Sequence either = of(Direction::kEither);
-  return full(either) < kFarBetter * full(one_way) ? either : one_way;
+  const bool turns = unexplained(either) < kFarLess * unexplained(one_way) && full(either) < full(one_way);
+  return turns ? either : one_way;
 }
 
 std::size_t sample_at(const HeightTrack& track, double time_s) {
@@ -244,8 +241,10 @@ FoundSteps find_steps(const HeightTrack& track, const StepSearch& search) {
   // cost more; and the best that white noise makes of T seconds, z sqrt(4 density T) - T, is z^2 density.
   constexpr double kNoiseSigmas = 3.5;
   const double penalty = std::max(0.4 * search.min_dwell_s, 0.5 * kNoiseSigmas * kNoiseSigmas * density);
+  const double span_s = track.times_s.back() - track.times_s.front();
+  const double noise_misfit = span_s * density / blocks.length_s;
   std::vector<double>& times = found.times_s;
-  for (const std::size_t change : best_sequence(blocks, search, penalty).changes) {
+  for (const std::size_t change : best_sequence(blocks, search, penalty, noise_misfit).changes) {
     times.push_back(blocks.begins_s[change]);
   }
   for (std::size_t i = 0; i < times.size(); ++i) {

@@ -68,6 +68,8 @@ TEST_CASE("steps that sink, turn round, or stand on a sensor that drifts are fou
   CHECK(worst_s(find_steps(down.track, {0.03}).times_s, down.times_s) < 1.0);
   const Stairs turning = stairs(kUneven, {1, 1, -1, 1, -1, -1, 1, -1, 1, 1}, 0.13, 0.042, 0.0, 6);
   CHECK(worst_s(find_steps(turning.track, {0.13}).times_s, turning.times_s) < 0.2);
+  const Stairs fine = stairs(kUneven, {1, -1, 1, -1, 1, -1, 1, -1, 1, -1}, 0.03, 0.042, 0.0, 16);
+  CHECK(worst_s(find_steps(fine.track, {0.03}).times_s, fine.times_s) < 1.5);
   // 1 cm a minute: a barometer that warms up by half a kelvin.
   const Stairs drifting = stairs(kUneven, kUp, 0.03, 0.03, 1.7e-4, 7);
   CHECK(worst_s(find_steps(drifting.track, {0.03}).times_s, drifting.times_s) < 1.0);
