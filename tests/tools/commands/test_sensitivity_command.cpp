@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -115,6 +116,10 @@ TEST_CASE("isobar experiment sensitivity writes its report, from the simulator a
   CHECK(html.find("Five steps of 13 cm") != std::string::npos);
   CHECK(html.find("Setra 278") != std::string::npos);
 
+  const std::string errors = read_text_file(path("simulated") + "/errors.csv");
+  // A header, then two experiments of 5 and 10 steps, two sensors, raw and filtered, two runs.
+  CHECK(std::count(errors.begin(), errors.end(), '\n') == 1 + (5 + 10) * 2 * 2 * 2);
+
   RigRequest request;
   request.step_m = 0.13;
   request.steps = 5;
@@ -148,6 +153,12 @@ TEST_CASE("isobar experiment sensitivity writes its report, from the simulator a
     CHECK(sensitivity({"--recording", path("rig"), "--step", "0.13", "--out", path("levels")}) == 0);
   }
 
+  // Levels at another time than the samples.
+  write_text_file(path("late.csv"),
+                  "t_start_ns,t_end_ns,label\n1800000000000000000,1800000001000000000,0\n"
+                  "1800000002000000000,1800000003000000000,0.13\n");
+  CHECK(sensitivity({"--recording", path("rig"), "--step", "0.13", "--segments", path("late.csv"), "--out",
+                     path("no")}) == 65);
   CHECK(sensitivity({"--recording", path("rig")}) == 64);
   CHECK(sensitivity({"--recording", path("rig") + "/barometer.csv", "--step", "0.13"}) == 64);
   CHECK(sensitivity({"--recording", path("none"), "--step", "0.13"}) == 65);
