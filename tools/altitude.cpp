@@ -8,6 +8,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/altitude/height_difference.hpp"
 #include "core/altitude/hypsometry.hpp"
@@ -16,8 +18,10 @@
 #include "core/errors.hpp"
 #include "core/evaluation/trajectory.hpp"
 #include "drivers/recording/csv_writer.hpp"
+#include "drivers/recording/sample_csv.hpp"
 #include "tools/commands.hpp"
 #include "tools/height_errors.hpp"
+#include "tools/inertial_heights.hpp"
 #include "tools/pressure_log.hpp"
 #include "tools/report/text_file.hpp"
 
@@ -35,6 +39,7 @@ struct AltitudeArguments {
   std::string base_columns;
   double lag_s = 1.0;
   std::optional<double> air_c;
+  std::filesystem::path imu;
   std::filesystem::path reference;
   std::filesystem::path out;
 };
@@ -48,6 +53,9 @@ PressureLog read_log(const std::filesystem::path& file, const std::string& colum
   return log;
 }
 
+/// With an IMU there is no low-pass.
+double lag_s(const AltitudeArguments& arguments) { return arguments.imu.empty() ? arguments.lag_s : 0.0; }
+
 /// The base's pressure as a function of time, and how it was made of its rows.
 FilteredPressure read_base(const AltitudeArguments& arguments, const PressureLog& moved,
                            std::vector<PressureSample>& rows) {
@@ -60,12 +68,37 @@ FilteredPressure read_base(const AltitudeArguments& arguments, const PressureLog
       "base: one row in %.2f s, %s\n", interval_s,
       slow ? "smoothed as weather (level and rate); its clock is trusted" : tie_clocks(moved, base).c_str());
   rows = std::move(base.samples);
-  return slow ? smooth_weather(rows) : filter_log(rows, arguments.lag_s);
+  return slow ? smooth_weather(rows) : filter_log(rows, lag_s(arguments));
+}
+
+std::vector<ImuSample> read_imu(const std::filesystem::path& file) {
+  recording::CsvReader csv = recording::open_imu_csv(file);
+  recording::Tally malformed;
+  recording::Tally implausible;
+  std::vector<ImuSample> samples;
+  for (ImuSample sample; recording::next_sample(csv, sample, malformed, implausible);)
+    samples.push_back(sample);
+  std::printf("%s: %zu samples, %llu bad rows %s\n", file.c_str(), samples.size(),
+              static_cast<unsigned long long>(malformed.count + implausible.count),
+              (malformed.count > 0 ? malformed : implausible).first_message.c_str());
+  return samples;
+}
+
+HeightSeries carried_by_imu(const AltitudeArguments& arguments, const HeightSeries& raw, double sigma_m) {
+  const HeightSource source =
+      arguments.base.empty() ? HeightSource::kSingleBarometer : HeightSource::kDifferential;
+  HeightSeries series = inertial_heights(read_imu(arguments.imu), raw, sigma_m, source);
+  if (series.heights_m.empty()) {
+    throw DataError(arguments.imu.string() + ": no height: gravity was not found, or the times are others");
+  }
+  std::printf("no low-pass: vertical acceleration carries the height, %.3f m of white noise a sample\n",
+              sigma_m);
+  return series;
 }
 
 HeightSeries heights(const AltitudeArguments& arguments) {
   const PressureLog moved = read_log(arguments.barometer, arguments.columns);
-  const FilteredPressure filtered = filter_log(moved.samples, arguments.lag_s);
+  const FilteredPressure filtered = filter_log(moved.samples, lag_s(arguments));
   std::vector<PressureSample> rows;
   FilteredPressure base;
   if (arguments.base.empty()) {
@@ -76,11 +109,15 @@ HeightSeries heights(const AltitudeArguments& arguments) {
     base = read_base(arguments, moved, rows);
   }
   const double air_c = arguments.air_c.value_or(coldest_c({&moved.samples, &rows}).value_or(20.0));
-  std::printf(
-      "low-pass: lag %.2f s, taken off the stamps; white noise %.3f Pa a sample, %.3f Pa left; air %.1f "
-      "degC\n",
-      filtered.design.delay_s, filtered.sigma_pa, filtered.design.output_sigma_pa, air_c);
   HeightSeries series = height_difference(filtered, base, air_c + kZeroCelsiusK);
+  if (arguments.imu.empty()) {
+    std::printf("low-pass: lag %.2f s, taken off the stamps; white noise %.3f Pa a sample, %.3f Pa left\n",
+                filtered.design.delay_s, filtered.sigma_pa, filtered.design.output_sigma_pa);
+  } else {
+    const double m_per_pa = hypsometric_scale_m(air_c + kZeroCelsiusK) / filtered.pressures_pa.front();
+    series = carried_by_imu(arguments, series, m_per_pa * std::hypot(filtered.sigma_pa, base.sigma_pa));
+  }
+  std::printf("air %.1f degC\n", air_c);
   const double start_m = series.heights_m.front();
   for (double& height_m : series.heights_m) height_m -= start_m;
   return series;
@@ -131,6 +168,8 @@ void add_altitude_command(CLI::App& app) {
   command
       ->add_option("--air", arguments->air_c, "air temperature [degC] (default: the coldest thermometer's)")
       ->check(CLI::Range(-60.0, 60.0));
+  command->add_option("--imu", arguments->imu,
+                      "imu.csv of the moved one: its acceleration instead of a low-pass");
   command->add_option("--reference", arguments->reference, "trajectory (TUM) to compare the height with");
   command->add_option("--out", arguments->out, "CSV of the heights: t_ns,height_m");
   command->callback([arguments] { run(*arguments); });
