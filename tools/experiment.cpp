@@ -152,10 +152,9 @@ void add_experiment_command(CLI::App& app) {
   auto options = std::make_shared<ExperimentOptions>();
   CLI::App* command = app.add_subcommand(
       "experiment", "One of the paper's experiments: simulate, run all methods, table, report");
-  command
-      ->add_option("SCENARIO", options->scenario,
-                   "three-floors, elevator, moulin; `isobar simulate --list` names all")
-      ->required();
+  add_sensitivity_command(*command);
+  command->add_option("SCENARIO", options->scenario,
+                      "three-floors, elevator, moulin; `isobar simulate --list` names all");
   command->add_option("--seed", options->seed, "draws the world and the errors of all sensors")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
@@ -167,7 +166,9 @@ void add_experiment_command(CLI::App& app) {
   command->add_option("--jobs", options->jobs, "methods replayed at the same time")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
-  command->callback([options] {
+  command->callback([options, command] {
+    if (!command->get_subcommands().empty()) return;
+    if (options->scenario.empty()) throw UsageError("which scenario? `isobar experiment --help` names them");
     if (options->out.empty()) {
       options->out = "out/" + options->scenario + "-" + std::to_string(options->seed) +
                      (options->short_form ? "-short" : "");

@@ -119,9 +119,15 @@ Picture draw(const LineChart& chart) {
                      (chart.bands.empty() ? kLegendGap : kBandLabelHeight);
   const Box frame{kLeft, top, inner_width, chart.height - top - kBottom};
   const Range x = chart.x_range.value_or(data_range(chart, &Series::x));
-  const Range y = chart.y_range.value_or(padded(data_range(chart, &Series::y), 0.06, chart.min_y_width));
-  const Axes axes{frame, Scale::linear(padded(x, 0.0), frame.x, frame.right(), 90.0),
-                  Scale::linear(y, frame.bottom(), frame.y, 44.0), chart.x_label, chart.y_label};
+  const Range all_y = data_range(chart, &Series::y);
+  const Range y = chart.y_range.value_or(chart.is_logarithmic ? Range{0.8 * all_y.low, 1.25 * all_y.high}
+                                                              : padded(all_y, 0.06, chart.min_y_width));
+  const Axes axes{frame,
+                  chart.is_logarithmic ? Scale::logarithmic(x, frame.x, frame.right())
+                                       : Scale::linear(padded(x, 0.0), frame.x, frame.right(), 90.0),
+                  chart.is_logarithmic ? Scale::logarithmic(y, frame.bottom(), frame.y)
+                                       : Scale::linear(y, frame.bottom(), frame.y, 44.0),
+                  chart.x_label, chart.y_label};
   draw_bands(picture, chart, axes);
   draw_axes(picture, axes);
   picture.begin_clip(frame, chart.id);

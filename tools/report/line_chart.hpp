@@ -35,6 +35,7 @@ struct LineChart {
   std::optional<Range> y_range;  ///< else all of the data; lines are cut at it
   double min_y_width = 0.1;      ///< of a range taken from the data
   bool zero_line = false;
+  bool is_logarithmic = false;  ///< both axes; all data are > 0
   double width = 1040.0;
   double height = 340.0;
   std::string id;  ///< unique in the page

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -125,4 +126,18 @@ TEST_CASE("the box plot turns logarithmic only when the methods lie far apart") 
   CHECK(has_tick({1.0, 1.1, 1.2}, {2.0, 2.5, 3.0}, "0.0"));             // from zero
   CHECK_FALSE(has_tick({0.01, 0.011, 0.012}, {2.0, 2.5, 3.0}, "0.0"));  // ratios
   CHECK(has_tick({0.01, 0.011, 0.012}, {2.0, 2.5, 3.0}, "0.1"));
+}
+
+TEST_CASE("a chart with logarithmic axes spaces decades evenly") {
+  LineChart chart;
+  chart.is_logarithmic = true;
+  chart.id = "log";
+  chart.series.push_back({"1/x", {}, {0.1, 1.0, 10.0, 100.0}, {10.0, 1.0, 0.1, 0.01}});
+  const std::string svg = draw(chart).svg("a power law");
+  CHECK(is_well_formed(svg));
+  // A power law is a straight line: nothing is left of it but its ends.
+  const std::size_t points = svg.find("points=\"");
+  REQUIRE(points != std::string::npos);
+  const std::string line = svg.substr(points + 8, svg.find('"', points + 8) - points - 8);
+  CHECK(std::count(line.begin(), line.end(), ',') == 2);
 }

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `isobar altitude`: the height of one barometer from its log, after the fact, against a base if there is
+// one.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/altitude/height_difference.hpp"
+#include "core/altitude/hypsometry.hpp"
+#include "core/altitude/stamp.hpp"
+#include "core/altitude/weather_smoother.hpp"
+#include "core/errors.hpp"
+#include "core/evaluation/trajectory.hpp"
+#include "drivers/recording/csv_writer.hpp"
+#include "drivers/recording/sample_csv.hpp"
+#include "tools/commands.hpp"
+#include "tools/height_errors.hpp"
+#include "tools/inertial_heights.hpp"
+#include "tools/pressure_log.hpp"
+#include "tools/report/text_file.hpp"
+
+namespace isobar::tools {
+
+namespace {
+
+// A base whose rows are further apart is a weather station.
+constexpr double kSlowBaseS = 5.0;
+
+struct AltitudeArguments {
+  std::filesystem::path barometer;
+  std::filesystem::path base;
+  std::string columns;
+  std::string base_columns;
+  double lag_s = 1.0;
+  std::optional<double> air_c;
+  std::filesystem::path imu;
+  std::filesystem::path reference;
+  std::filesystem::path out;
+};
+
+PressureLog read_log(const std::filesystem::path& file, const std::string& columns) {
+  PressureLog log = read_pressure_log(file, columns.empty() ? PressureColumns{} : parse_columns(columns));
+  if (log.samples.size() < 2) throw DataError(file.string() + ": holds a single sample");
+  const std::string rest = left_out(log);
+  std::printf("%s: %zu samples%s%s\n", file.c_str(), log.samples.size(), rest.empty() ? "" : "; ",
+              rest.c_str());
+  return log;
+}
+
+/// With an IMU there is no low-pass.
+double lag_s(const AltitudeArguments& arguments) { return arguments.imu.empty() ? arguments.lag_s : 0.0; }
+
+/// The base's pressure as a function of time, and how it was made of its rows.
+FilteredPressure read_base(const AltitudeArguments& arguments, const PressureLog& moved,
+                           std::vector<PressureSample>& rows) {
+  PressureLog base = read_log(arguments.base, arguments.base_columns);
+  const double interval_s = seconds_between(base.samples.front().stamp_ns, base.samples.back().stamp_ns) /
+                            static_cast<double>(base.samples.size() - 1);
+  const bool slow = interval_s > kSlowBaseS;
+  // A station's few rows do not cover the run as a base's log does: its clock is what it says.
+  std::printf(
+      "base: one row in %.2f s, %s\n", interval_s,
+      slow ? "smoothed as weather (level and rate); its clock is trusted" : tie_clocks(moved, base).c_str());
+  rows = std::move(base.samples);
+  return slow ? smooth_weather(rows) : filter_log(rows, lag_s(arguments));
+}
+
+std::vector<ImuSample> read_imu(const std::filesystem::path& file) {
+  recording::CsvReader csv = recording::open_imu_csv(file);
+  recording::Tally malformed;
+  recording::Tally implausible;
+  std::vector<ImuSample> samples;
+  for (ImuSample sample; recording::next_sample(csv, sample, malformed, implausible);)
+    samples.push_back(sample);
+  std::printf("%s: %zu samples, %llu bad rows %s\n", file.c_str(), samples.size(),
+              static_cast<unsigned long long>(malformed.count + implausible.count),
+              (malformed.count > 0 ? malformed : implausible).first_message.c_str());
+  return samples;
+}
+
+HeightSeries carried_by_imu(const AltitudeArguments& arguments, const HeightSeries& raw, double sigma_m) {
+  const HeightSource source =
+      arguments.base.empty() ? HeightSource::kSingleBarometer : HeightSource::kDifferential;
+  HeightSeries series = inertial_heights(read_imu(arguments.imu), raw, sigma_m, source);
+  if (series.heights_m.empty()) {
+    throw DataError(arguments.imu.string() + ": no height: gravity was not found, or the times are others");
+  }
+  std::printf("no low-pass: vertical acceleration carries the height, %.3f m of white noise a sample\n",
+              sigma_m);
+  return series;
+}
+
+HeightSeries heights(const AltitudeArguments& arguments) {
+  const PressureLog moved = read_log(arguments.barometer, arguments.columns);
+  const FilteredPressure filtered = filter_log(moved.samples, lag_s(arguments));
+  std::vector<PressureSample> rows;
+  FilteredPressure base;
+  if (arguments.base.empty()) {
+    base.stamps_ns = {filtered.stamps_ns.front()};
+    base.pressures_pa = {filtered.pressures_pa.front()};
+    std::printf("no base: weather is in the height\n");
+  } else {
+    base = read_base(arguments, moved, rows);
+  }
+  const double air_c = arguments.air_c.value_or(coldest_c({&moved.samples, &rows}).value_or(20.0));
+  HeightSeries series = height_difference(filtered, base, air_c + kZeroCelsiusK);
+  if (arguments.imu.empty()) {
+    std::printf("low-pass: lag %.2f s, taken off the stamps; white noise %.3f Pa a sample, %.3f Pa left\n",
+                filtered.design.delay_s, filtered.sigma_pa, filtered.design.output_sigma_pa);
+  } else {
+    const double m_per_pa = hypsometric_scale_m(air_c + kZeroCelsiusK) / filtered.pressures_pa.front();
+    series = carried_by_imu(arguments, series, m_per_pa * std::hypot(filtered.sigma_pa, base.sigma_pa));
+  }
+  std::printf("air %.1f degC\n", air_c);
+  const double start_m = series.heights_m.front();
+  for (double& height_m : series.heights_m) height_m -= start_m;
+  return series;
+}
+
+void write_heights(const std::filesystem::path& file, const HeightSeries& series) {
+  recording::TextFile out(file);
+  out.write("t_ns,height_m\n");
+  for (std::size_t i = 0; i < series.stamps_ns.size(); ++i) {
+    out.write(recording::CsvRow().add(series.stamps_ns[i]).add(series.heights_m[i]).finish());
+  }
+  out.close();
+  std::printf("written: %s\n", file.c_str());
+}
+
+void compare(const std::filesystem::path& file, const HeightSeries& series) {
+  const auto reference = evaluation::parse_tum(report::read_text_file(file), file.string());
+  const HeightErrors errors = height_errors(series, reference);
+  if (errors.count == 0) throw DataError(file.string() + ": no stamp of it is within the barometer's");
+  std::printf(
+      "against %s, %zu heights, one constant offset (the mean, %+.3f m) taken off:\n"
+      "  rms %.4f m, largest %.4f m; reference moves by %.2f m\n",
+      file.c_str(), errors.count, errors.offset_m, errors.rms_m, errors.largest_m, errors.range_m);
+}
+
+void run(const AltitudeArguments& arguments) {
+  const HeightSeries series = heights(arguments);
+  std::printf("%zu heights over %.1f s, the last one %+.2f m above the first\n", series.heights_m.size(),
+              seconds_between(series.stamps_ns.front(), series.stamps_ns.back()), series.heights_m.back());
+  if (!arguments.reference.empty()) compare(arguments.reference, series);
+  if (!arguments.out.empty()) write_heights(arguments.out, series);
+}
+
+}  // namespace
+
+void add_altitude_command(CLI::App& app) {
+  auto arguments = std::make_shared<AltitudeArguments>();
+  CLI::App* command = app.add_subcommand(
+      "altitude", "Heights from a barometer's log, against a base station or a weather station");
+  command->add_option("BAROMETER", arguments->barometer, "CSV of the moved barometer")->required();
+  command->add_option("--base", arguments->base,
+                      "CSV of the standing one; with less than a row in 5 s it is smoothed as weather");
+  command->add_option("--columns", arguments->columns, kColumnsHelp);
+  command->add_option("--base-columns", arguments->base_columns, "the same of the base");
+  command->add_option("--lag", arguments->lag_s, "lag of the low-pass [s]; 0: none")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 600.0));
+  command
+      ->add_option("--air", arguments->air_c, "air temperature [degC] (default: the coldest thermometer's)")
+      ->check(CLI::Range(-60.0, 60.0));
+  command->add_option("--imu", arguments->imu,
+                      "imu.csv of the moved one: its acceleration instead of a low-pass");
+  command->add_option("--reference", arguments->reference, "trajectory (TUM) to compare the height with");
+  command->add_option("--out", arguments->out, "CSV of the heights: t_ns,height_m");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace isobar::tools

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page of the sensitivity experiment: heights against time, and how far they are off.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/evaluation/staircase.hpp"
+
+namespace isobar::report {
+
+/// One series of errors over all runs, and each run's own figures.
+struct ErrorRow {
+  std::string sensor;
+  bool filtered = false;
+  bool plateau_means = false;  ///< else every settled sample
+  std::vector<double> errors_m;
+  std::vector<evaluation::ErrorFigures> runs;
+};
+
+/// Height against time of one sensor pair in one run.
+struct HeightPicture {
+  std::string sensor;
+  evaluation::HeightTrack raw;
+  evaluation::HeightTrack filtered;
+  std::vector<evaluation::Plateau> plateaus;
+  double lag_s = 0.0;
+};
+
+struct SensitivityExperiment {
+  std::string title;    ///< "Ten steps of 3 cm"
+  std::string caption;  ///< what was run, and what counts
+  std::vector<HeightPicture> pictures;
+  std::vector<ErrorRow> rows;
+};
+
+struct SensitivityReport {
+  std::string title;
+  std::string description;
+  std::string command;
+  std::vector<SensitivityExperiment> experiments;
+};
+
+/// Median over the runs of a figure, and the worst run's; NaN without runs.
+struct OverRuns {
+  double median_m = 0.0;
+  double worst_m = 0.0;
+};
+OverRuns over_runs(const ErrorRow& row, double evaluation::ErrorFigures::*figure);
+
+/// "filtered, every sample" and the like.
+std::string row_name(const ErrorRow& row);
+
+std::string render_sensitivity_report(const SensitivityReport& report);
+
+}  // namespace isobar::report

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/sensitivity_recording.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/altitude/hypsometry.hpp"
+#include "core/altitude/stamp.hpp"
+#include "core/errors.hpp"
+#include "core/evaluation/segments.hpp"
+#include "core/evaluation/text_table.hpp"
+#include "drivers/recording/manifest.hpp"
+#include "tools/pressure_log.hpp"
+#include "tools/report/svg.hpp"
+#include "tools/report/text_file.hpp"
+
+namespace isobar::tools {
+
+namespace {
+
+using evaluation::Plateau;
+
+/// Where a recording's two logs are.
+struct Files {
+  std::filesystem::path moved;
+  std::filesystem::path standing;
+  std::filesystem::path segments;  ///< may be empty
+};
+
+Files files_of(const RecordedRigRequest& request) {
+  namespace fs = std::filesystem;
+  Files files{request.recording, request.base, request.segments};
+  if (!fs::exists(files.moved)) throw DataError(files.moved.string() + ": no such file or folder");
+  if (fs::is_directory(request.recording)) {
+    files.moved = request.recording / "barometer.csv";
+    if (files.standing.empty()) files.standing = request.recording / "base_barometer.csv";
+    const fs::path segments = request.recording / recording::kSegmentsFile;
+    if (files.segments.empty() && fs::exists(segments)) files.segments = segments;
+  }
+  if (files.standing.empty()) {
+    throw UsageError("--base: the standing barometer's file is missing; the experiment compares two");
+  }
+  return files;
+}
+
+BarometerPair read_pair(const RecordedRigRequest& request, const Files& files,
+                        std::vector<std::string>& notes) {
+  const PressureColumns columns =
+      request.columns.empty() ? PressureColumns{} : parse_columns(request.columns);
+  PressureLog moved = read_pressure_log(files.moved, columns);
+  PressureLog standing = read_pressure_log(files.standing, columns);
+  for (const auto& [file, log] : {std::pair{&files.moved, &moved}, std::pair{&files.standing, &standing}}) {
+    if (log->samples.size() < 100)
+      throw DataError(file->string() + ": fewer than 100 samples are no experiment");
+    const std::string rest = left_out(*log);
+    if (!rest.empty()) notes.push_back(file->string() + ": " + rest);
+  }
+  notes.push_back("clocks: " + tie_clocks(moved, standing));
+  return {request.sensor, std::move(moved.samples), std::move(standing.samples)};
+}
+
+/// Levels that segments.csv names; a label that is a number is the level's true height in metres.
+std::vector<Plateau> named_plateaus(const std::filesystem::path& file, const BarometerPair& pair,
+                                    const StudyOptions& options) {
+  auto segments = evaluation::parse_segments_csv(report::read_text_file(file), file.string());
+  std::sort(segments.begin(), segments.end(),
+            [](const auto& a, const auto& b) { return a.start_ns < b.start_ns; });
+  if (segments.size() < 2) throw DataError(file.string() + ": names fewer than two levels");
+  std::vector<Plateau> plateaus;
+  std::vector<double> middles_s;
+  bool heights_known = true;
+  for (const evaluation::Segment& segment : segments) {
+    const auto seconds = [&](std::int64_t stamp_ns) {
+      return seconds_between(pair.moved.front().stamp_ns, stamp_ns);
+    };
+    const std::optional<double> height_m = evaluation::parse_double(segment.label);
+    heights_known = heights_known && height_m && std::isfinite(*height_m);
+    if (!plateaus.empty()) middles_s.push_back(0.5 * (plateaus.back().end_s + seconds(segment.start_ns)));
+    plateaus.push_back({seconds(segment.start_ns), seconds(segment.end_ns), height_m.value_or(0.0)});
+  }
+  if (heights_known) return plateaus;
+  const auto between =
+      plateaus_between(raw_track(pair, options.air_temperature_k), middles_s, options.step_m, 0.0, 0.0);
+  for (std::size_t i = 0; i < plateaus.size(); ++i) plateaus[i].true_height_m = between[i].true_height_m;
+  return plateaus;
+}
+
+/// What does not count on both sides of a step that was found, to some tenths of a second: a share of the
+/// time on a level, so that enough is left of short ones.
+double found_settle_s(const std::vector<double>& step_times_s) {
+  if (step_times_s.size() < 2) return 1.5;
+  const double dwell_s =
+      (step_times_s.back() - step_times_s.front()) / static_cast<double>(step_times_s.size() - 1);
+  return std::clamp(0.15 * dwell_s, 0.5, 1.5);
+}
+
+/// Levels that the heights themselves show.
+std::vector<Plateau> found_plateaus(const RecordedRigRequest& request, const BarometerPair& pair,
+                                    const StudyOptions& options, std::vector<std::string>& notes) {
+  const evaluation::HeightTrack track = raw_track(pair, options.air_temperature_k);
+  evaluation::StepSearch search;
+  search.step_m = options.step_m;
+  search.steps = request.steps;
+  const evaluation::FoundSteps found = find_steps(track, search);
+  constexpr double kTooUncertainS = 2.0;
+  const std::string advice = "; name the levels with --segments (t_start_ns,t_end_ns,label)";
+  if (found.uncertainty_s > kTooUncertainS) {
+    throw DataError(request.recording.string() + ": steps of " + report::fixed(100.0 * options.step_m, 1) +
+                    " cm cannot be found in this noise (to " + report::fixed(found.uncertainty_s, 1) + " s)" +
+                    advice);
+  }
+  if (found.times_s.empty() || (request.steps > 0 && found.times_s.size() != request.steps)) {
+    throw DataError(request.recording.string() + ": " + std::to_string(found.times_s.size()) +
+                    " steps of this height were found" + advice);
+  }
+  std::string note = std::to_string(found.times_s.size()) + " steps found, each to " +
+                     report::fixed(found.uncertainty_s, 2) + " s:";
+  for (const double time_s : found.times_s) note += " " + report::fixed(time_s, 1);
+  notes.push_back(note + " s");
+  const double settle_s = request.settle_s.value_or(found_settle_s(found.times_s));
+  return plateaus_between(track, found.times_s, options.step_m, settle_s, settle_s);
+}
+
+}  // namespace
+
+RecordedRig read_recorded_rig(const RecordedRigRequest& request) {
+  RecordedRig rig;
+  const Files files = files_of(request);
+  rig.pair = read_pair(request, files, rig.notes);
+  rig.moved_file = files.moved;
+  rig.standing_file = files.standing;
+  StudyOptions& options = rig.options;
+  options.step_m = request.step_m.value_or(options.step_m);
+  options.lag_s = request.lag_s;
+  options.settle_s = request.settle_s.value_or(0.0);
+  options.air_temperature_k =
+      request.air_c.value_or(coldest_c({&rig.pair.moved, &rig.pair.standing}).value_or(20.0)) + kZeroCelsiusK;
+  rig.plateaus = files.segments.empty() ? found_plateaus(request, rig.pair, options, rig.notes)
+                                        : shortened(named_plateaus(files.segments, rig.pair, options),
+                                                    options.settle_s, options.settle_s);
+  return rig;
+}
+
+}  // namespace isobar::tools
