@@ -36,6 +36,13 @@ struct ImuSettings {
 /// [barometer]
 struct BarometerSettings {
   Mount mount;  ///< position of the pressure port in base_link; its rotation means nothing
+  /// A file of `isobar calibrate` to be loaded into PriorConfig::compensation; empty once it has been.
+  std::string compensation_file;
+};
+
+/// [base_barometer]
+struct BaseBarometerSettings {
+  std::string compensation_file;  ///< the same for PriorConfig::base_compensation
 };
 
 /// [input]: sample datagrams of IMU, barometers and wheels (drivers/datagram/datagram.hpp)
@@ -66,6 +73,7 @@ struct Config {
   LidarSettings lidar;
   ImuSettings imu;
   BarometerSettings barometer;
+  BaseBarometerSettings base_barometer;
   InputSettings input;
   OutputSettings output;
   dds::DdsConfig dds;  ///< [dds]

@@ -45,6 +45,17 @@ void add_sensor_settings(Config& config, std::vector<Setting>& settings) {
   add_rotation("imu", config.imu.mount, settings);
   add_position("barometer", config.barometer.mount,
                "The pressure port in base_link: what a pitching robot lifts is taken out.", settings);
+  const auto add_file = [&settings](const char* key, std::string& file) {
+    settings.push_back({.key = key,
+                        .target = &file,
+                        .doc =
+                            "File that `isobar calibrate` wrote for this sensor, beside this one or with its "
+                            "whole path; empty: none."});
+  };
+  add_file("barometer.compensation_file", config.barometer.compensation_file);
+  add_compensation_settings("barometer.compensation", config.prior.compensation, settings);
+  add_file("base_barometer.compensation_file", config.base_barometer.compensation_file);
+  add_compensation_settings("base_barometer.compensation", config.prior.base_compensation, settings);
 }
 
 }  // namespace isobar
