@@ -197,9 +197,11 @@ std::string reason_for(const std::vector<ModelResult>& models, std::size_t chose
             ", which is within one standard error or " + number(100.0 * least_gain, 0) +
             " % and has more coefficients";
   }
-  for (std::size_t m = chosen; m-- > 0;) {
-    if (!models[m].left_out.empty()) continue;
-    return text + "; the next simpler, " + model_name(models[m].model) + ", errs by " + error(models[m]);
+  const auto simpler_end = models.begin() + static_cast<std::ptrdiff_t>(chosen);
+  const auto simpler = std::min_element(models.begin(), simpler_end, better);
+  if (simpler != simpler_end && simpler->left_out.empty()) {
+    text += "; of the simpler ones " + std::string(model_name(simpler->model)) + " errs least, by " +
+            error(*simpler);
   }
   return text;
 }
@@ -210,30 +212,28 @@ std::size_t simplest_within_one_error(std::span<const ModelResult> models, std::
                                       double least_gain) {
   const std::size_t folds = weights.size();
   const auto mean = [&](const ModelResult& model) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < folds; ++k) sum += weights[k] * model.fold_mean_squares_pa2[k];
-    return sum;
+    return std::inner_product(weights.begin(), weights.end(), model.fold_mean_squares_pa2.begin(), 0.0);
+  };
+  const auto is_judged = [folds](const ModelResult& model) {
+    return folds > 0 && model.fold_mean_squares_pa2.size() == folds;
   };
   const ModelResult* best = nullptr;
   for (const ModelResult& model : models) {
-    if (model.fold_mean_squares_pa2.size() != folds) continue;
-    if (best == nullptr || mean(model) < mean(*best)) best = &model;
+    if (is_judged(model) && (best == nullptr || mean(model) < mean(*best))) best = &model;
   }
   if (best == nullptr) return 0;
-  for (std::size_t m = 0; m < models.size(); ++m) {
-    const ModelResult& model = models[m];
-    if (model.fold_mean_squares_pa2.size() != folds) continue;
-    const double difference = mean(model) - mean(*best);
-    double variance = 0.0;
-    for (std::size_t k = 0; k < folds; ++k) {
-      const double deviation = model.fold_mean_squares_pa2[k] - best->fold_mean_squares_pa2[k] - difference;
-      variance += weights[k] * weights[k] * deviation * deviation;
-    }
-    if (folds > 1) variance *= static_cast<double>(folds) / static_cast<double>(folds - 1);
-    const double not_worth = ((1.0 + least_gain) * (1.0 + least_gain) - 1.0) * mean(*best);
-    if (difference <= std::max(std::sqrt(variance), not_worth)) return m;
+  double variance = 0.0;
+  for (std::size_t k = 0; k < folds; ++k) {
+    const double deviation = weights[k] * (best->fold_mean_squares_pa2[k] - mean(*best));
+    variance += deviation * deviation;
   }
-  return 0;
+  if (folds > 1) variance *= static_cast<double>(folds) / static_cast<double>(folds - 1);
+  const double not_worth = ((1.0 + least_gain) * (1.0 + least_gain) - 1.0) * mean(*best);
+  const double limit = mean(*best) + std::max(std::sqrt(variance), not_worth);
+  const auto found = std::find_if(models.begin(), models.end(), [&](const ModelResult& model) {
+    return is_judged(model) && mean(model) <= limit;
+  });
+  return static_cast<std::size_t>(found - models.begin());
 }
 
 const ModelResult& Calibration::model(CompensationModel which) const {

@@ -71,10 +71,9 @@ struct Calibration {
 Calibration calibrate(std::span<const CalibrationRecording> recordings, const CalibrationLimits& limits = {});
 
 /// Of models with these folds' mean squares (weights: share of the samples), the one to use: the first in
-/// order (simplest first) that is not worse than the best by more than one standard error of the difference
-/// between the two over the folds, or by more than `least_gain` of the best's rms. The one-standard-error
-/// rule of Breiman et al. (1984) on paired differences: what makes a fold hard makes it hard for both. Models
-/// without folds are passed over.
+/// order (simplest first) that is not worse than the best by more than one standard error of the best's mean
+/// over the folds (Breiman et al. 1984), or by more than `least_gain` of its rms. Models without folds are
+/// passed over.
 std::size_t simplest_within_one_error(std::span<const ModelResult> models, std::span<const double> weights,
                                       double least_gain);
 

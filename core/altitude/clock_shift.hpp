@@ -17,8 +17,9 @@ struct ShiftSearch {
 };
 
 struct ClockShift {
-  double shift_s = 0.0;      ///< reference's time = sensor's time + shift
-  double sigma_s = 0.0;      ///< 1 sigma of it, as the correlation's curvature and the noise say
+  double shift_s = 0.0;  ///< reference's time = sensor's time + shift
+  double sigma_s =
+      0.0;  ///< 1 sigma of it for white noise; slow errors of sensors make it two to three times that
   double correlation = 0.0;  ///< of the changes of pressure at that shift
   /// The best shift that is no part of the same peak: apart from it by a place with half its correlation.
   double next_best_shift_s = std::numeric_limits<double>::quiet_NaN();
@@ -29,9 +30,9 @@ struct ClockShift {
 };
 
 /// The shift at which changes of the sensor's pressure are most like changes of the reference's. Changes,
-/// because a sensor's slow errors (temperature) must not count; over several lengths of time, of which the
-/// one with the clearest peak is taken, because weather is slow where sensors are noisy. All sensor series
-/// belong to the same clock.
+/// because a sensor's slow errors (temperature) must not count; over several lengths of time, because weather
+/// is slow where sensors are noisy: of those whose peak is clear, the one with the sharpest is taken. All
+/// sensor series belong to the same clock.
 ClockShift find_clock_shift(std::span<const PressureSeries> sensor, const PressureSeries& reference,
                             const ShiftSearch& search = {});
 

@@ -60,11 +60,11 @@ TEST_CASE("terms that the sensor has are found, each kind by the model that has 
     double pa;
   };
   for (const Kind& kind : {Kind{CompensationModel::kInd, 0, 2, 15.0}, Kind{CompensationModel::kM, 1, 1, 12.0},
-                           Kind{CompensationModel::kFull, 2, 2, 30.0}}) {
+                           Kind{CompensationModel::kFull, 2, 2, 60.0}}) {
     CAPTURE(model_name(kind.expected));
     Eigen::Matrix4d truth = simple_truth();
     truth(kind.i, kind.j) += kind.pa;
-    if (kind.expected == CompensationModel::kFull) truth(1, 2) -= 25.0;
+    if (kind.expected == CompensationModel::kFull) truth(1, 2) -= 50.0;
     const Chamber simulated = chamber(truth, 11);
     const Calibration calibration = calibrate(simulated.record());
     CHECK(recommended(calibration).model == kind.expected);
@@ -174,17 +174,25 @@ TEST_CASE(
     return result;
   };
   const std::vector<double> weights(4, 0.25);
-  // Folds differ much more than models do: only the paired difference sees that the second is always better.
-  const std::vector<ModelResult> always_better{model(CompensationModel::kP, {20, 50, 90, 30}),
-                                               model(CompensationModel::kSimple, {16, 45, 86, 25}),
-                                               model(CompensationModel::kFull, {15.9, 44.9, 86.1, 25})};
-  CHECK(simplest_within_one_error(always_better, weights, 0.01) == 1);
-  const std::vector<ModelResult> by_chance{model(CompensationModel::kP, {20, 50, 90, 30}),
-                                           model(CompensationModel::kSimple, {16, 55, 80, 29})};
-  CHECK(simplest_within_one_error(by_chance, weights, 0.01) == 0);
+  // Means 22, 17 and 16.5; the standard error of the last is 0.65.
+  const std::vector<ModelResult> one_is_enough{model(CompensationModel::kP, {20, 22, 23, 23}),
+                                               model(CompensationModel::kSimple, {16, 17, 17, 18}),
+                                               model(CompensationModel::kFull, {15, 16.5, 16.5, 18})};
+  CHECK(simplest_within_one_error(one_is_enough, weights, 0.01) == 1);
+  // The same means, but recordings differ too much to tell.
+  const std::vector<ModelResult> unsure{model(CompensationModel::kP, {10, 12, 33, 33}),
+                                        model(CompensationModel::kSimple, {7, 8, 26, 27}),
+                                        model(CompensationModel::kFull, {6, 7, 26, 27})};
+  CHECK(simplest_within_one_error(unsure, weights, 0.01) == 0);
+  // Surely better, but by less than it is worth.
+  const std::vector<ModelResult> not_worth_it{model(CompensationModel::kP, {10.1, 10.1, 10.1, 10.1}),
+                                              model(CompensationModel::kSimple, {10, 10, 10, 10})};
+  CHECK(simplest_within_one_error(not_worth_it, weights, 0.01) == 0);
+  CHECK(simplest_within_one_error(not_worth_it, weights, 0.001) == 1);
   const std::vector<ModelResult> left_out{model(CompensationModel::kP, {}),
                                           model(CompensationModel::kSimple, {1, 1, 1, 1})};
   CHECK(simplest_within_one_error(left_out, weights, 0.01) == 1);
+  CHECK(simplest_within_one_error(left_out, {}, 0.01) == 0);
 }
 
 TEST_CASE("residual figures are those of the definition") {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
 
-#include <CLI/CLI.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "core/errors.hpp"
+#include "tests/tools/commands/exit_code.hpp"
 #include "tests/tools/report/temporary_folder.hpp"
 #include "tools/commands.hpp"
 #include "tools/report/text_file.hpp"
@@ -15,20 +15,8 @@ using isobar::report::test::TemporaryFolder;
 
 namespace {
 
-/// The exit code that `isobar` gives: 0, the error's, or 64 for what the parser refuses.
 int exit_code(std::vector<std::string> words) {
-  CLI::App app;
-  app.require_subcommand(1);
-  tools::add_evaluate_command(app);
-  std::vector<std::string> reversed(words.rbegin(), words.rend());
-  try {
-    app.parse(reversed);
-  } catch (const CLI::ParseError&) {
-    return 64;
-  } catch (const Error& error) {
-    return error.exit_code();
-  }
-  return 0;
+  return tools::test::exit_code(tools::add_evaluate_command, std::move(words));
 }
 
 }  // namespace
