@@ -180,6 +180,10 @@ void warn_of_narrow_spans(Calibration& calibration, const CalibrationLimits& lim
   }
 }
 
+std::string spoken_name(CompensationModel model) {
+  return model == CompensationModel::kNone ? "the sensor as it is" : model_name(model);
+}
+
 std::string reason_for(const std::vector<ModelResult>& models, std::size_t chosen, double least_gain) {
   const auto better = [](const ModelResult& a, const ModelResult& b) {
     // NaN, a model that was left out, is never better.
@@ -188,20 +192,18 @@ std::string reason_for(const std::vector<ModelResult>& models, std::size_t chose
   const ModelResult& pick = models[chosen];
   const ModelResult& best = *std::min_element(models.begin(), models.end(), better);
   const auto error = [](const ModelResult& model) { return number(model.cross_validated_rms_pa, 2) + " Pa"; };
-  std::string text =
-      std::string(model_name(pick.model)) + ": on data it was not fitted to it errs by " + error(pick);
+  std::string text = spoken_name(pick.model) + ": on data it was not fitted to it errs by " + error(pick);
   if (&pick == &best) {
     text += " rms, the least of all";
   } else {
-    text += " rms; the least is " + error(best) + " of " + model_name(best.model) +
+    text += " rms; the least is " + error(best) + " of " + spoken_name(best.model) +
             ", which is within one standard error or " + number(100.0 * least_gain, 0) +
             " % and has more coefficients";
   }
   const auto simpler_end = models.begin() + static_cast<std::ptrdiff_t>(chosen);
   const auto simpler = std::min_element(models.begin(), simpler_end, better);
   if (simpler != simpler_end && simpler->left_out.empty()) {
-    text += "; of the simpler ones " + std::string(model_name(simpler->model)) + " errs least, by " +
-            error(*simpler);
+    text += "; of the simpler ones " + spoken_name(simpler->model) + " errs least, by " + error(*simpler);
   }
   return text;
 }
