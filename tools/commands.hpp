@@ -13,8 +13,10 @@ void add_simulate_command(CLI::App& app);    ///< simulate.cpp: scenario -> reco
 void add_replay_command(CLI::App& app);      ///< replay.cpp: recording -> trajectory, map, status
 void add_evaluate_command(CLI::App& app);    ///< evaluate.cpp: reference and estimates -> figures, report
 void add_experiment_command(CLI::App& app);  ///< experiment.cpp: simulate, run all methods, table, report
-void add_config_command(CLI::App& app);      ///< config.cpp: check, show
-void add_play_command(CLI::App& app);        ///< play.cpp: recording -> UDP in real time
-void add_echo_command(CLI::App& app);        ///< echo.cpp: what a DDS subscriber receives
+void add_calibrate_command(
+    CLI::App& app);                      ///< calibrate.cpp: sensor beside reference -> compensation, report
+void add_config_command(CLI::App& app);  ///< config.cpp: check, show
+void add_play_command(CLI::App& app);    ///< play.cpp: recording -> UDP in real time
+void add_echo_command(CLI::App& app);    ///< echo.cpp: what a DDS subscriber receives
 
 }  // namespace isobar::tools
