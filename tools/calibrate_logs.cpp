@@ -86,14 +86,15 @@ void require_one_place(std::span<const PressureLog> sensor, std::span<const Pres
 }
 
 std::string shift_sentence(const ClockShift& shift) {
+  const int decimals = shift.scale_s < 20.0 ? 3 : 1;
   std::string text = "the reference's time is the sensor's " +
-                     std::string(shift.shift_s < 0.0 ? "- " : "+ ") + fixed(std::abs(shift.shift_s), 1) +
-                     " s +- " + fixed(shift.sigma_s, 1) + " s: there " + std::to_string(shift.changes) +
-                     " changes of pressure over " + fixed(shift.scale_s, 0) + " s correlate by " +
-                     fixed(shift.correlation, 2);
+                     std::string(shift.shift_s < 0.0 ? "- " : "+ ") +
+                     fixed(std::abs(shift.shift_s), decimals) + " s +- " + fixed(shift.sigma_s, decimals) +
+                     " s: there " + std::to_string(shift.changes) + " changes of pressure over " +
+                     fixed(shift.scale_s, decimals) + " s correlate by " + fixed(shift.correlation, 2);
   if (std::isfinite(shift.next_best_shift_s)) {
     text += "; next best " + fixed(shift.next_best_correlation, 2) + " at " +
-            fixed(shift.next_best_shift_s, 0) + " s";
+            fixed(shift.next_best_shift_s, decimals) + " s";
   }
   return text;
 }

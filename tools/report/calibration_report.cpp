@@ -109,9 +109,9 @@ std::string calibration_table(const Calibration& calibration,
 std::string render_calibration_report(const CalibrationReport& report) {
   const Calibration& calibration = report.calibration;
   std::string html = "<h1>" + escaped(report.title) + "</h1>\n<p class=\"lead\">" +
-                     escaped(spans_text(calibration, report.recordings)) + ".</p>\n<div class=\"command\">" +
+                     escaped(spans_text(calibration, report.recordings)) + ".</p>\n<p>Recommended is " +
+                     escaped(calibration.reason) + ".</p>\n<div class=\"command\">" +
                      escaped(report.command) + "</div>\n" + tiles(report);
-  html += "<p>Recommended is " + escaped(calibration.reason) + ".</p>\n";
   html +=
       heading("Residual by model") +
       figure(
@@ -122,8 +122,7 @@ std::string render_calibration_report(const CalibrationReport& report) {
   html += heading("Residual against temperature") +
           figure(residual_against_temperature(calibration, report.chosen, report.recordings),
                  "Residual against temperature, after an offset alone and after the model",
-                 "Points: samples, evenly taken. Lines: median of each tenth of a temperature's share of the "
-                 "samples.");
+                 "Points: samples, evenly taken. Lines: medians of groups of equally many samples.");
   std::vector<std::string> warnings = calibration.warnings;
   warnings.insert(warnings.end(), report.warnings.begin(), report.warnings.end());
   if (!warnings.empty()) html += heading("To look at") + html_list(warnings);
