@@ -52,7 +52,7 @@ PressureSeries series_of(std::span<const PressureLog> logs) {
       pressures_pa.push_back(sample.pressure_pa);
     }
   }
-  return {std::move(stamps_ns), std::move(pressures_pa)};
+  return {stamps_ns, std::move(pressures_pa)};
 }
 
 void put_in_order(std::vector<PressureLog>& logs) {

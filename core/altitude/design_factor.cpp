@@ -36,7 +36,7 @@ void DesignFactor::add(std::span<const CalibrationPair> pairs) {
       const double v =
           (block[k].temperature_c - variables_.temperature_centre_c) / variables_.temperature_scale_c;
       double power_of_u = 1.0;
-      for (int i = 0; i < 4; ++i, power_of_u *= u) {
+      for (Eigen::Index i = 0; i < 4; ++i, power_of_u *= u) {
         rows.row(row).segment<4>(4 * i) = power_of_u * Eigen::RowVector4d(1.0, v, v * v, v * v * v);
       }
       rows(row, kColumns - 1) = block[k].reference_pa - block[k].pressure_pa;

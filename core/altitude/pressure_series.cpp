@@ -15,7 +15,7 @@ constexpr double kGapIntervals = 5.0;
 
 }  // namespace
 
-PressureSeries::PressureSeries(std::vector<std::int64_t> stamps_ns, std::vector<double> pressures_pa,
+PressureSeries::PressureSeries(const std::vector<std::int64_t>& stamps_ns, std::vector<double> pressures_pa,
                                double max_gap_s)
     : pressures_pa_(std::move(pressures_pa)) {
   std::vector<double> intervals;

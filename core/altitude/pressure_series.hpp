@@ -13,7 +13,7 @@ class PressureSeries {
  public:
   /// Stamps must ascend. Samples further apart than `max_gap_s`, or if that is 0 than five times the median
   /// interval, have a gap between them.
-  PressureSeries(std::vector<std::int64_t> stamps_ns, std::vector<double> pressures_pa,
+  PressureSeries(const std::vector<std::int64_t>& stamps_ns, std::vector<double> pressures_pa,
                  double max_gap_s = 0.0);
 
   /// Mean over `width_s` about a moment, in a closed form; width 0 is the value there. NaN where the span

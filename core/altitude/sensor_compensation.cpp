@@ -20,8 +20,8 @@ Compensation::Variables variables_of(const CompensationConfig& config) {
 Compensation compensation_of(const CompensationConfig& config) {
   if (config.coefficients.size() != kCoefficients) return {};
   Eigen::Matrix4d centred;
-  for (int i = 0; i < 4; ++i) {
-    for (int j = 0; j < 4; ++j) centred(i, j) = config.coefficients[static_cast<std::size_t>(4 * i + j)];
+  for (std::size_t k = 0; k < kCoefficients; ++k) {
+    centred(static_cast<Eigen::Index>(k / 4), static_cast<Eigen::Index>(k % 4)) = config.coefficients[k];
   }
   return {centred, variables_of(config)};
 }

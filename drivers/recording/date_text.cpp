@@ -81,7 +81,8 @@ bool take_zone(std::string_view& text, std::int64_t& minutes) {
   if (!text.empty() && !take_digits(text, 2, minute)) {
     return false;
   }
-  minutes = (east ? 1 : -1) * (60 * hour + minute);
+  minutes = 60 * std::int64_t{hour} + minute;
+  minutes = east ? minutes : -minutes;
   return hour < 24 && minute < 60;
 }
 

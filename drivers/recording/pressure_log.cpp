@@ -35,7 +35,7 @@ constexpr std::array<TimeUnit, 4> kTimeUnits = {{{"ns", 1.0}, {"us", 1e3}, {"ms"
 /// century.
 class TimeColumn {
  public:
-  TimeColumn(const PressureHeader& header, std::string wanted) : name_(header.time) {
+  TimeColumn(const PressureHeader& header, const std::string& wanted) : name_(header.time) {
     for (const TimeUnit& unit : kTimeUnits) {
       if (wanted == unit.name) {
         use(unit, "as the command line says");

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The calibration of a barometer on its way from file to settings.
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -9,6 +8,7 @@
 
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
+#include "tests/tools/report/temporary_folder.hpp"
 
 namespace isobar {
 namespace {
@@ -30,20 +30,13 @@ CompensationConfig calibrated() {
 /// A folder with a calibration and a configuration that names it.
 class Folder {
  public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "isobar-test-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
   [[nodiscard]] std::filesystem::path write(const std::string& file, const std::string& text) const {
-    std::ofstream(path_ / file, std::ios::binary) << text;
-    return path_ / file;
+    std::ofstream(folder_.path() / file, std::ios::binary) << text;
+    return folder_.path() / file;
   }
 
  private:
-  std::filesystem::path path_;
+  report::test::TemporaryFolder folder_;
 };
 
 std::string text_of(const CompensationConfig& config) { return show_compensation(config, ""); }

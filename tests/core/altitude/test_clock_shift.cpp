@@ -41,7 +41,7 @@ PressureSeries sampled(const std::function<double(double)>& pressure_pa, double 
     stamps.push_back(stamp(t + clock_s));
     values.push_back(pressure_pa(t) + normal(random));
   }
-  return {std::move(stamps), std::move(values)};
+  return {stamps, std::move(values)};
 }
 
 }  // namespace
@@ -118,7 +118,7 @@ TEST_CASE("samples meet the reference at the shifted time, and those that cannot
     stamps.push_back(stamp(k));
     values.push_back(1'000.0 + 2.0 * k);
   }
-  const PressureSeries reference(std::move(stamps), std::move(values));
+  const PressureSeries reference(stamps, std::move(values));
   std::vector<PressureSample> sensor;
   for (int k = 0; k < 10; ++k) sensor.push_back({stamp(500.0 + 10.0 * k), 900.0, k == 3 ? NAN : 20.0});
   PairingCounts counts;
