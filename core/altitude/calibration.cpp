@@ -167,7 +167,10 @@ void warn_of_narrow_spans(Calibration& calibration, const CalibrationLimits& lim
   const CalibratedRange& range = calibration.range;
   const double span_k = range.highest_c - range.lowest_c;
   const double span_pa = range.highest_pa - range.lowest_pa;
-  if (span_k < limits.narrow_temperature_span_k) {
+  if (span_k == 0.0) {
+    calibration.warnings.emplace_back(
+        "the sensor has no temperature, or only one: what another does is not known");
+  } else if (span_k < limits.narrow_temperature_span_k) {
     calibration.warnings.push_back("the temperature spans " + number(span_k, 1) + " K only (" +
                                    number(range.lowest_c, 1) + " … " + number(range.highest_c, 1) +
                                    " degC): outside of it the correction of its end is used");
