@@ -160,6 +160,7 @@ void read_rows(CsvReader& csv, TimeColumn& time, RawLog& log) {
 
 double median_pressure(const std::vector<PressureSample>& rows) {
   std::vector<double> values;
+  values.reserve(rows.size());
   for (const PressureSample& row : rows) {
     values.push_back(row.pressure_pa);
   }

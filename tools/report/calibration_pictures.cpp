@@ -96,6 +96,7 @@ Picture residual_against_temperature(const Calibration& calibration, Compensatio
   if (chosen > CompensationModel::kOffset) clouds.push_back(cloud_of(calibration.model(chosen), recordings));
   Picture picture(kWidth, 420.0);
   std::vector<LegendEntry> legend;
+  legend.reserve(clouds.size());
   for (const Cloud& cloud : clouds) legend.push_back({cloud.name, {cloud.colour, 2.6}});
   const double top = draw_legend(picture, {68.0, 0.0}, kWidth - 82.0, legend) + 8.0;
   const Box frame{68.0, top, kWidth - 82.0, 420.0 - top - 50.0};
