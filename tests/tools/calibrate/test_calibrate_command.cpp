@@ -215,8 +215,8 @@ TEST_CASE(
     const Calibration calibration = calibrate(aligned.recordings);
     const ResidualFigures& simple = calibration.model(CompensationModel::kSimple).residual;
     const ResidualFigures& offset = calibration.model(CompensationModel::kOffset).residual;
-    MESSAGE(std::string(sensor), ": rms ", simple.rms_pa, " of ", offset.rms_pa, " Pa, median |r| ", simple.median_abs_pa,
-            " of ", offset.median_abs_pa, " Pa");
+    MESSAGE(std::string(sensor), ": rms ", simple.rms_pa, " of ", offset.rms_pa, " Pa, median |r| ",
+            simple.median_abs_pa, " of ", offset.median_abs_pa, " Pa");
     CHECK(simple.rms_pa <= 0.6 * offset.rms_pa);
     CHECK(simple.median_abs_pa <= 0.6 * offset.median_abs_pa);
     // Two hours, less up to two minutes: averages of a minute, stamped at its end, and two loggers set by
