@@ -12,6 +12,8 @@
 #include "core/map/map_config.hpp"
 #include "core/prior/prior_config.hpp"
 #include "core/registration/registration_config.hpp"
+#include "drivers/dps310/settings.hpp"
+#include "drivers/iio/settings.hpp"
 #include "ipc/dds/dds_config.hpp"
 
 namespace isobar {
@@ -35,9 +37,17 @@ struct ImuSettings {
 
 /// [barometer]
 struct BarometerSettings {
+  /// Where its samples come from: "input", as datagrams; "dps310", "setra278", "iio": a sensor of this
+  /// machine, which isobard reads itself and then takes no datagrams of.
+  std::string source = "input";
   Mount mount;  ///< position of the pressure port in base_link; its rotation means nothing
   /// A file of `isobar calibrate` to be loaded into PriorConfig::compensation; empty once it has been.
   std::string compensation_file;
+  /// Without a change of one bit for longer a sensor of this machine is stuck [s]; 0: never.
+  double stuck_time_s = 1.5;
+  dps310::Settings dps310;
+  iio::SetraSettings setra278;
+  iio::Settings iio;
 };
 
 /// [base_barometer]

@@ -15,6 +15,91 @@ void add_rotation(const std::string& section, Mount& mount, std::vector<Setting>
                       "Roll, pitch and yaw of the sensor in base_link, about its fixed axes x, y, z."});
 }
 
+std::vector<std::string> powers_of_two() { return {"1", "2", "4", "8", "16", "32", "64", "128"}; }
+
+void add_dps310(dps310::Settings& dps310, std::vector<Setting>& settings) {
+  const auto add_power = [&settings](const char* name, int& value, const char* unit, const char* doc) {
+    settings.push_back({.key = std::string("barometer.dps310.") + name,
+                        .target = &value,
+                        .unit = unit,
+                        .doc = doc,
+                        .choices = powers_of_two()});
+  };
+  settings.push_back({.key = "barometer.dps310.bus",
+                      .target = &dps310.bus,
+                      .doc = "The kernel's I2C device. isobard needs the right to open it."});
+  settings.push_back({.key = "barometer.dps310.address",
+                      .target = &dps310.address,
+                      .doc = "0x76 where SDO is tied to ground.",
+                      .choices = {"0x77", "0x76"}});
+  add_power(
+      "pressure_rate_hz", dps310.pressure_rate_hz, "Hz",
+      "Pressures a second. Rate times measurement time, of pressure and temperature together, must be below "
+      "1 s; a measurement takes 3.6, 5.2, 8.4, 14.8, 27.6, 53.2, 104.4, 206.8 ms by oversampling.");
+  add_power(
+      "pressure_oversampling", dps310.pressure_oversampling, "",
+      "Averages a pressure; noise 2.5, 1, 0.5, 0.4, 0.35, 0.3, 0.2, 0.2 Pa. 16 times is the most that 32 Hz "
+      "allow.");
+  add_power("temperature_rate_hz", dps310.temperature_rate_hz, "Hz",
+            "Temperatures a second; the chip's own changes slowly.");
+  add_power("temperature_oversampling", dps310.temperature_oversampling, "", "Averages a temperature.");
+}
+
+void add_iio_device(const std::string& section, iio::Settings& device, std::vector<Setting>& settings) {
+  settings.push_back(
+      {.key = section + ".folder",
+       .target = &device.folder,
+       .doc =
+           "The device's folder. Numbers follow the order of discovery; the file name in each folder tells "
+           "which is which."});
+  settings.push_back({section + ".rate_hz", &device.rate_hz, "Hz", 1, 100,
+                      "How often it is read. No faster than it converts: repeated values count as stuck."});
+}
+
+void add_setra278(iio::SetraSettings& setra, std::vector<Setting>& settings) {
+  add_iio_device("barometer.setra278", setra.device, settings);
+  settings.push_back({.key = "barometer.setra278.channel",
+                      .target = &setra.channel,
+                      .doc = "The converter's channel, as its files begin."});
+  const auto add = [&settings](const char* name, double& value, const char* unit, double lowest,
+                               double highest, const char* doc) {
+    settings.push_back({std::string("barometer.setra278.") + name, &value, unit, lowest, highest, doc});
+  };
+  setra278::Span& span = setra.span;
+  add("low_v", span.low_v, "V", -10.0, 10.0,
+      "Lower end of the output; behind a divider, what the converter sees.");
+  add("high_v", span.high_v, "V", -10.0, 10.0, "Upper end: 2.5 or 5 by order code.");
+  add("low_pa", span.low_pa, "Pa", 10e3, 120e3, "Pressure at low_v: 60000, 50000 or 80000 by order code.");
+  add("high_pa", span.high_pa, "Pa", 10e3, 120e3, "Pressure at high_v.");
+}
+
+void add_compensation_file(const std::string& section, std::string& file, std::vector<Setting>& settings) {
+  settings.push_back({.key = section + ".compensation_file",
+                      .target = &file,
+                      .doc =
+                          "File that `isobar calibrate` wrote for this sensor, beside this one or with its "
+                          "whole path; empty: none."});
+}
+
+void add_barometer(BarometerSettings& barometer, std::vector<Setting>& settings) {
+  settings.push_back({.key = "barometer.source",
+                      .target = &barometer.source,
+                      .doc =
+                          "Where its samples come from. input: datagrams. dps310, setra278, iio: a sensor of "
+                          "this machine, which isobard reads itself; datagrams of it are then refused.",
+                      .choices = {"input", "dps310", "setra278", "iio"}});
+  add_position("barometer", barometer.mount,
+               "The pressure port in base_link: what a pitching robot lifts is taken out.", settings);
+  settings.push_back(
+      {"barometer.stuck_time_s", &barometer.stuck_time_s, "s", 0.0, 600.0,
+       "A sensor of this machine whose value does not change by one bit for longer, and for 16 "
+       "readings, is stuck. 0: never; for converters too coarse to see the air move."});
+  add_compensation_file("barometer", barometer.compensation_file, settings);
+  add_dps310(barometer.dps310, settings);
+  add_setra278(barometer.setra278, settings);
+  add_iio_device("barometer.iio", barometer.iio, settings);
+}
+
 }  // namespace
 
 void add_sensor_settings(Config& config, std::vector<Setting>& settings) {
@@ -43,18 +128,9 @@ void add_sensor_settings(Config& config, std::vector<Setting>& settings) {
 
   add_position("imu", config.imu.mount, "Origin of the IMU in base_link.", settings);
   add_rotation("imu", config.imu.mount, settings);
-  add_position("barometer", config.barometer.mount,
-               "The pressure port in base_link: what a pitching robot lifts is taken out.", settings);
-  const auto add_file = [&settings](const char* key, std::string& file) {
-    settings.push_back({.key = key,
-                        .target = &file,
-                        .doc =
-                            "File that `isobar calibrate` wrote for this sensor, beside this one or with its "
-                            "whole path; empty: none."});
-  };
-  add_file("barometer.compensation_file", config.barometer.compensation_file);
+  add_barometer(config.barometer, settings);
   add_compensation_settings("barometer.compensation", config.prior.compensation, settings);
-  add_file("base_barometer.compensation_file", config.base_barometer.compensation_file);
+  add_compensation_file("base_barometer", config.base_barometer.compensation_file, settings);
   add_compensation_settings("base_barometer.compensation", config.prior.base_compensation, settings);
 }
 

@@ -60,7 +60,14 @@ std::string_view section_doc(std::string_view section) {
   static constexpr auto kDocs = std::to_array<Doc>({
       {"lidar", "The lidar, as a live run reads it from the network. A replay takes it from the recording."},
       {"imu", "Where the IMU sits on the robot. A replay takes it from the recording."},
-      {"barometer", "Where the barometer sits on the robot. A replay takes it from the recording."},
+      {"barometer", "The robot's barometer. A replay takes samples and mount from the recording."},
+      {"barometer.dps310", "A DPS310 on an I2C bus of this machine; used where barometer.source is dps310."},
+      {"barometer.setra278",
+       "A Setra 278 behind a converter that the kernel reads (industrial I/O); used where "
+       "barometer.source is setra278."},
+      {"barometer.iio",
+       "Any other barometer with a driver of the kernel; used where barometer.source is iio. Drivers that "
+       "round, as the kernel's for the DPS310 does to 1 Pa, need a longer barometer.stuck_time_s."},
       {"barometer.compensation",
        "What `isobar calibrate` found about the robot's barometer: p_cal = sum of c_ij u^i v^j, "
        "u = (p - centre) / scale, v = (t - centre) / scale."},

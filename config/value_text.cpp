@@ -69,6 +69,18 @@ bool consists_of(const std::string& text, const char* also) {
   });
 }
 
+/// Why a DPS310 cannot do what is asked.
+std::string busy_text(const dps310::Settings& settings) {
+  const auto product = [](int rate_hz, int oversampling) {
+    return shortest(rate_hz) + " x " +
+           shortest(std::round(dps310::measurement_time_s(oversampling) * 1e4) / 10.0) + " ms";
+  };
+  return "pressure " + product(settings.pressure_rate_hz, settings.pressure_oversampling) +
+         " and temperature " + product(settings.temperature_rate_hz, settings.temperature_oversampling) +
+         " are " + shortest(std::round(dps310::busy_time_s(settings) * 1e3) / 1e3) +
+         " s of measuring in a second, must be below 1; lower a rate or an oversampling";
+}
+
 }  // namespace
 
 std::string range_text(const Setting& setting) {
@@ -141,6 +153,11 @@ void check_together(const Config& config, const std::string& file) {
   require(config.lidar.port != config.input.port, "input.port", "must differ from lidar.port");
   check_compensation(config.prior.compensation, file + ": barometer.compensation.");
   check_compensation(config.prior.base_compensation, file + ": base_barometer.compensation.");
+  const BarometerSettings& barometer = config.barometer;
+  require(barometer.source != "dps310" || dps310::busy_time_s(barometer.dps310) < 1.0,
+          "barometer.dps310.pressure_rate_hz", busy_text(barometer.dps310).c_str());
+  const char* span_rule = setra278::broken_rule(barometer.setra278.span);
+  require(barometer.source != "setra278" || span_rule == nullptr, "barometer.setra278", span_rule);
 }
 
 }  // namespace isobar

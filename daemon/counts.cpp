@@ -77,6 +77,19 @@ std::vector<RunCount> counts_of(const datagram::Counters& counters) {
   return counts;
 }
 
+std::vector<RunCount> counts_of(const BarometerCounters& counters) {
+  return {
+      {"barometer readings", counters.samples, ""},
+      {"barometer accesses failed", counters.io_errors, ""},
+      {"barometer starts", counters.starts, ""},
+      {"barometer resets of its own", counters.resets, ""},
+      {"barometer silences", counters.silent, ""},
+      {"barometer stuck", counters.stuck, ""},
+      {"barometer readings implausible", counters.implausible, ""},
+      {"barometer reads repeated", counters.torn, ""},
+  };
+}
+
 void append(std::vector<RunCount>& counts, std::vector<RunCount> more) {
   counts.insert(counts.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }

@@ -7,6 +7,7 @@
 
 #include "core/prior/prior_estimator.hpp"
 #include "daemon/run_output.hpp"
+#include "drivers/barometer/barometer_device.hpp"
 #include "drivers/datagram/datagram.hpp"
 #include "drivers/velodyne/velodyne_decoder.hpp"
 
@@ -16,6 +17,7 @@ std::vector<RunCount> counts_of(const velodyne::VelodyneCounters& counters,
                                 const std::string& wrong_model_message);
 std::vector<RunCount> counts_of(const PriorCounters& counters);
 std::vector<RunCount> counts_of(const datagram::Counters& counters);
+std::vector<RunCount> counts_of(const BarometerCounters& counters);
 
 /// Appends `more` to `counts`.
 void append(std::vector<RunCount>& counts, std::vector<RunCount> more);

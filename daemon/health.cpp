@@ -16,6 +16,15 @@ using ipc::HealthLevel;
 using ipc::HealthReport;
 
 constexpr std::int64_t kSilenceNs = 1'000'000'000;
+constexpr std::int64_t kReportEveryNs = 1'000'000'000;
+
+/// Time between two samples of a barometer of this machine.
+std::int64_t period_ns(const BarometerSettings& barometer) {
+  const int rate_hz = barometer.source == "dps310"     ? barometer.dps310.pressure_rate_hz
+                      : barometer.source == "setra278" ? barometer.setra278.device.rate_hz
+                                                       : barometer.iio.rate_hz;
+  return 1'000'000'000 / rate_hz;
+}
 
 double per_second(std::uint64_t now, std::uint64_t before, double elapsed_s) {
   return elapsed_s > 0.0 ? static_cast<double>(now - before) / elapsed_s : 0.0;
@@ -54,6 +63,13 @@ void add_stream(HealthReport& report, const std::string& name, std::int64_t last
 
 HealthMonitor::HealthMonitor(const Config& config, std::vector<std::string> realtime_refusals)
     : config_(config), refusals_(std::move(realtime_refusals)) {}
+
+bool HealthMonitor::due(const StatusSnapshot& now) {
+  if (first_look_ns_ == 0) first_look_ns_ = now.now_ns;
+  if (last_.now_ns == 0) return now.now_ns - first_look_ns_ >= kReportEveryNs;
+  return now.now_ns - last_.now_ns >= kReportEveryNs ||
+         now.barometer.device.state != last_.barometer.device.state;
+}
 
 void HealthMonitor::fill(const StatusSnapshot& now, HealthReport& report) {
   const double elapsed_s = last_.now_ns == 0 ? 1.0 : static_cast<double>(now.now_ns - last_.now_ns) * 1e-9;
@@ -97,9 +113,14 @@ void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, He
   const auto& counters = now.inertial.counters;
   const auto& before = last_.inertial.counters;
   for (std::size_t kind = 0; kind < datagram::kKinds; ++kind) {
-    add_stream(report, kNames[kind], now.prior.last_sample_ns[kind], now.now_ns,
-               per_second(now.prior.samples[kind], last_.prior.samples[kind], elapsed_s),
-               input_of(config_, static_cast<datagram::Kind>(kind)));
+    const double rate_hz = per_second(now.prior.samples[kind], last_.prior.samples[kind], elapsed_s);
+    const auto which = static_cast<datagram::Kind>(kind);
+    if (which == datagram::Kind::kPressure && now.barometer.present) {
+      fill_barometer(now, rate_hz, report);
+    } else {
+      add_stream(report, kNames[kind], now.prior.last_sample_ns[kind], now.now_ns, rate_hz,
+                 input_of(config_, which));
+    }
     add_count(report, (std::string(kNames[kind]) + "/lost").c_str(), counters.lost[kind], before.lost[kind],
               "samples missing, by their numbers");
   }
@@ -114,6 +135,35 @@ void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, He
             last_.inertial.samples_without_memory, "samples dropped: no free chunk of shared memory");
   add_count(report, "input/dropped", now.prior.dropped_samples, last_.prior.dropped_samples,
             "samples that came faster than they could be used");
+}
+
+void HealthMonitor::fill_barometer(const StatusSnapshot& now, double rate_hz, HealthReport& report) const {
+  const BarometerStatus& device = now.barometer.device;
+  const std::string place = now.barometer.place.data();
+  const std::int64_t age_ns = now.now_ns - device.last_sample_ns;
+  if (device.state == BarometerState::kStarting) {
+    report.add("barometer", HealthLevel::kStale, place + ": starting", 0.0);
+  } else if (device.state != BarometerState::kMeasuring) {
+    report.add("barometer", HealthLevel::kError, place + ": " + device.fault.data(), 0.0);
+  } else if (age_ns > kSilenceNs + period_ns(config_.barometer)) {
+    // The thread itself hangs in the kernel, or gets no processor.
+    report.add("barometer", HealthLevel::kError,
+               fmt::format("{}: silent for {:.0f} s", place, static_cast<double>(age_ns) * 1e-9), 0.0);
+  } else {
+    report.add("barometer", HealthLevel::kOk, fmt::format("{:.1f} per second from {}", rate_hz, place),
+               rate_hz);
+  }
+  const BarometerCounters& before = last_.barometer.device.counters;
+  add_count(report, "barometer/io_errors", device.counters.io_errors, before.io_errors,
+            "accesses that failed");
+  add_count(report, "barometer/resets", device.counters.resets, before.resets,
+            "times that the sensor lost its settings: is its power sound?");
+  add_count(report, "barometer/implausible", device.counters.implausible, before.implausible,
+            "readings that cannot be air pressure, refused");
+  add_count(report, "barometer/refused", now.inertial.refused_pressure, last_.inertial.refused_pressure,
+            ("baro lines refused: barometer.source is " + config_.barometer.source).c_str());
+  add_count(report, "barometer/no_memory", now.barometer.samples_without_memory,
+            last_.barometer.samples_without_memory, "samples dropped: no free chunk of shared memory");
 }
 
 void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& report) const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "config/config.hpp"
+#include "daemon/barometer_thread.hpp"
 #include "daemon/inertial_thread.hpp"
 #include "daemon/lidar_thread.hpp"
 #include "daemon/map_thread.hpp"
@@ -21,17 +22,21 @@ struct StatusSnapshot {
   std::int64_t now_ns = 0;  ///< robot clock
   LidarStatus lidar;
   InertialStatus inertial;
+  BarometerThreadStatus barometer;
   PriorStatus prior;
   RegistrationStatus registration;
   MapStatus map;
 };
 
-/// Turns what the threads say into a report, once a second. Rates are against the call before.
+/// Turns what the threads say into a report, about once a second. Rates are against the call before.
 class HealthMonitor {
  public:
   HealthMonitor(const Config& config, std::vector<std::string> realtime_refusals);
 
   void fill(const StatusSnapshot& now, ipc::HealthReport& report);
+  /// True once a second, the first time a second after the first call; later also at once when the barometer
+  /// of this machine fails or comes back.
+  [[nodiscard]] bool due(const StatusSnapshot& now);
 
   /// Entries whose level changed since the last call, for the log: "imu: ok: 200.0 per second". At the first
   /// call sensors that are well are news, too.
@@ -40,11 +45,13 @@ class HealthMonitor {
  private:
   void fill_lidar(const StatusSnapshot& now, double elapsed_s, ipc::HealthReport& report) const;
   void fill_samples(const StatusSnapshot& now, double elapsed_s, ipc::HealthReport& report) const;
+  void fill_barometer(const StatusSnapshot& now, double rate_hz, ipc::HealthReport& report) const;
   void fill_estimate(const StatusSnapshot& now, ipc::HealthReport& report) const;
 
   Config config_;
   std::vector<std::string> refusals_;
   StatusSnapshot last_;
+  std::int64_t first_look_ns_ = 0;
   std::vector<std::pair<std::string, ipc::HealthLevel>> levels_;
 };
 

@@ -5,8 +5,10 @@
 
 namespace isobar {
 
-InertialThread::InertialThread(const std::string& address, std::uint16_t port, ThreadSettings settings)
+InertialThread::InertialThread(const std::string& address, std::uint16_t port, bool takes_pressure,
+                               ThreadSettings settings)
     : settings_(std::move(settings)),
+      takes_pressure_(takes_pressure),
       receiver_(address, port),
       imu_(ipc::topics::kImu),
       barometer_(ipc::topics::kBarometer),
@@ -54,6 +56,10 @@ bool InertialThread::publish(const datagram::Sample& sample) noexcept {
     case datagram::Kind::kImu:
       return imu_.send(sample.imu);
     case datagram::Kind::kPressure:
+      if (!takes_pressure_) {
+        ++own_.refused_pressure;
+        return true;
+      }
       return barometer_.send(sample.pressure);
     case datagram::Kind::kBasePressure:
       return base_barometer_.send(sample.pressure);

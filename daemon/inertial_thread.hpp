@@ -20,13 +20,16 @@ struct InertialStatus {
   std::uint64_t clock_steps = 0;  ///< senders' clocks that were set
   std::uint64_t dropped_by_kernel = 0;
   std::uint64_t samples_without_memory = 0;
+  std::uint64_t refused_pressure = 0;  ///< of a barometer that this machine reads itself
 };
 
 /// Sample datagrams of IMU, barometers and wheels in, samples on the robot's clock out.
 class InertialThread {
  public:
-  /// Throws ServiceError when the port cannot be bound.
-  InertialThread(const std::string& address, std::uint16_t port, ThreadSettings settings);
+  /// takes_pressure: false where another thread writes the barometer's topic; datagrams of it are then
+  /// refused and counted. Throws ServiceError when the port cannot be bound.
+  InertialThread(const std::string& address, std::uint16_t port, bool takes_pressure,
+                 ThreadSettings settings);
   ~InertialThread();
   InertialThread(const InertialThread&) = delete;
   InertialThread& operator=(const InertialThread&) = delete;
@@ -45,6 +48,7 @@ class InertialThread {
   void report() noexcept;
 
   ThreadSettings settings_;
+  bool takes_pressure_;
   UdpReceiver receiver_;
   datagram::DatagramParser parser_;
   std::array<ClockAnchor, datagram::kKinds> anchors_;  ///< every sender may have a clock of its own

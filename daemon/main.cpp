@@ -18,6 +18,8 @@
 
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
+#include "daemon/barometer_source.hpp"
+#include "daemon/barometer_thread.hpp"
 #include "daemon/counts.hpp"
 #include "daemon/health.hpp"
 #include "daemon/inertial_thread.hpp"
@@ -35,7 +37,7 @@ namespace {
 
 /// How each thread is scheduled; the table of priorities is in the configuration, [realtime].
 struct Scheduling {
-  ThreadSettings lidar, inertial, prior, registration, map, output;
+  ThreadSettings lidar, inertial, barometer, prior, registration, map, output;
 };
 
 Scheduling scheduling_of(const RealtimeSettings& realtime) {
@@ -43,6 +45,7 @@ Scheduling scheduling_of(const RealtimeSettings& realtime) {
   return {
       {"lidar", fifo(realtime.lidar_priority), realtime.estimator_cpus},
       {"inertial", fifo(realtime.inertial_priority), realtime.estimator_cpus},
+      {"barometer", fifo(realtime.inertial_priority), realtime.estimator_cpus},
       {"prior", fifo(realtime.prior_priority), realtime.estimator_cpus},
       {"registration", fifo(realtime.registration_priority), realtime.estimator_cpus},
       {"map", 0, realtime.map_cpus},
@@ -54,8 +57,8 @@ Scheduling scheduling_of(const RealtimeSettings& realtime) {
 /// evenly.
 std::vector<std::string> refusals_of(const Scheduling& scheduling, bool realtime) {
   std::vector<std::string> refusals =
-      try_settings({scheduling.lidar, scheduling.inertial, scheduling.prior, scheduling.registration,
-                    scheduling.map, scheduling.output});
+      try_settings({scheduling.lidar, scheduling.inertial, scheduling.barometer, scheduling.prior,
+                    scheduling.registration, scheduling.map, scheduling.output});
   if (realtime) {
     if (std::string refusal = lock_memory(); !refusal.empty()) refusals.push_back(std::move(refusal));
   }
@@ -79,7 +82,10 @@ void run(const Config& config, Service& service) {
   RegistrationThread registration(stages.registration, stages.method, stages.T_base_lidar, map.snapshots(),
                                   scheduling.registration);
   PriorThread prior(stages.prior, scheduling.prior);
-  InertialThread inertial(config.input.address, config.input.port, scheduling.inertial);
+  std::unique_ptr<BarometerDevice> device = make_barometer(config.barometer);
+  InertialThread inertial(config.input.address, config.input.port, device == nullptr, scheduling.inertial);
+  std::optional<BarometerThread> barometer;
+  if (device) barometer.emplace(std::move(device), scheduling.barometer);
   LidarThread lidar(stages.lidar, config.lidar.address, config.lidar.port, scheduling.lidar);
   std::optional<OutputThread> writer;
   if (output) writer.emplace(*output, scheduling.output);
@@ -90,20 +96,25 @@ void run(const Config& config, Service& service) {
   registration.start();
   prior.start();
   inertial.start();
+  if (barometer) barometer->start();
   lidar.start();
   spdlog::info("ready: lidar {} on UDP port {}, samples on UDP port {}", config.lidar.model, lidar.port(),
                inertial.port());
 
   const auto look = [&] {
-    return StatusSnapshot{RobotClock::now_ns(), lidar.status(),        inertial.status(),
-                          prior.status(),       registration.status(), map.status()};
+    return StatusSnapshot{RobotClock::now_ns(), lidar.status(),
+                          inertial.status(),    barometer ? barometer->status() : BarometerThreadStatus{},
+                          prior.status(),       registration.status(),
+                          map.status()};
   };
   HealthMonitor monitor(config, refusals);
   ipc::Publisher<ipc::HealthReport> health(ipc::topics::kHealth);
   service.ready();
-  while (service.wait_for(std::chrono::seconds(1))) {
+  while (service.wait_for(std::chrono::milliseconds(100))) {
+    const StatusSnapshot now = look();
+    if (!monitor.due(now)) continue;
     ipc::HealthReport report;
-    monitor.fill(look(), report);
+    monitor.fill(now, report);
     health.send(report);
     for (const std::string& line : monitor.news(report)) spdlog::info("{}", line);
     service.alive();
@@ -114,6 +125,7 @@ void run(const Config& config, Service& service) {
   // Producers first: what is on its way still reaches the map and the files.
   lidar.stop();
   inertial.stop();
+  if (barometer) barometer->stop();
   prior.stop();
   registration.stop();
   map.stop();
@@ -122,6 +134,8 @@ void run(const Config& config, Service& service) {
     const StatusSnapshot last = look();
     std::vector<RunCount> counts = counts_of(last.lidar.counters, last.lidar.wrong_model_message.data());
     append(counts, counts_of(last.inertial.counters));
+    if (last.barometer.present) append(counts, counts_of(last.barometer.device.counters));
+    append(counts, {{"baro lines refused", last.inertial.refused_pressure, ""}});
     append(counts, counts_of(last.prior.counters));
     output->close(counts);
     spdlog::info("{} poses and {} map points in {}", output->poses(), output->map_points(),

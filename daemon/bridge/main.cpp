@@ -31,6 +31,10 @@ using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
 /// isobard sends hundreds of priors a second and its health every second. After this long without anything
 /// the way through shared memory is broken (this process was stopped for so long that it was given up, say).
 constexpr auto kMaxSilence = 5s;
+/// Joining takes milliseconds. An isobard that ends in the middle of it leaves the library waiting.
+constexpr auto kJoiningLimit = 10s;
+/// Leaving takes less than a second, but for the same fault.
+constexpr auto kLeavingLimit = 4s;
 
 /// Everything on the DDS side.
 struct Network {
@@ -63,6 +67,7 @@ std::unique_ptr<ipc::Attachment> wait_for_isobard(Network& network, StopSignals&
   dds::DiagnosticsBuilder builder;
   for (bool told = false; !signals.wait_for(0ms);) {
     manager.alive();
+    limit_time(kJoiningLimit, &replace_process);
     try {
       return std::make_unique<ipc::Attachment>("isobar-dds", manager.interval());
     } catch (const ServiceError& error) {
@@ -74,6 +79,7 @@ std::unique_ptr<ipc::Attachment> wait_for_isobard(Network& network, StopSignals&
       report_absence(network.poses, builder);
     }
   }
+  lift_time_limit();
   return nullptr;
 }
 
@@ -95,8 +101,10 @@ std::optional<std::string> reason_to_restart(const ipc::Attachment& attachment, 
 /// Returns when told to end; starts over when it must.
 void forward(Network& network, const Settings& settings, const ipc::Attachment& attachment,
              StopSignals& signals, const ServiceManager& manager) {
+  limit_time(kJoiningLimit, &replace_process);
   Forwarding forwarding(network.poses, network.clouds, settings.dds.publish_clouds);
   const Receiving receiving(network.participant.get(), settings.dds, forwarding.clock());
+  lift_time_limit();
   network.announce(settings, receiving.readers());
   manager.status("forwarding");
   spdlog::info("attached to isobard");
@@ -117,6 +125,7 @@ void forward(Network& network, const Settings& settings, const ipc::Attachment& 
       replace_process();
     }
   }
+  limit_time(kLeavingLimit, &end_process);  // never lifted: the library takes its leave after main()
 }
 
 int run(const Settings& settings) {

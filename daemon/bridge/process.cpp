@@ -8,15 +8,18 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <climits>
 #include <cstdlib>
 #include <ctime>
+#include <string_view>
 
 namespace isobar::bridge {
 namespace {
 
 std::array<char, PATH_MAX> g_program{};
 char** g_arguments = nullptr;
+std::atomic<void (*)() noexcept> g_time_is_up{nullptr};
 
 sigset_t stop_signals() {
   sigset_t set;
@@ -50,6 +53,12 @@ void remember_arguments(char** argv) {
 }
 
 void replace_process() noexcept {
+  ::alarm(0);  // it would outlive the exec, and end the new program
+  // Called by a time limit, this runs in the handler of a signal that the new program would never get again.
+  sigset_t alarm;
+  sigemptyset(&alarm);
+  sigaddset(&alarm, SIGALRM);
+  pthread_sigmask(SIG_UNBLOCK, &alarm, nullptr);
   ::close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);
   if (g_arguments != nullptr) {
     ::execv(g_program.data(), g_arguments);
@@ -62,6 +71,22 @@ void replace_process_later() noexcept {
   const timespec second{1, 0};
   ::nanosleep(&second, nullptr);
   replace_process();
+}
+
+void limit_time(std::chrono::seconds limit, void (*action)() noexcept) {
+  g_time_is_up.store(action);
+  struct sigaction on_alarm {};
+  on_alarm.sa_handler = [](int) { g_time_is_up.load()(); };
+  ::sigaction(SIGALRM, &on_alarm, nullptr);
+  ::alarm(static_cast<unsigned>(limit.count()));
+}
+
+void lift_time_limit() noexcept { ::alarm(0); }
+
+void end_process() noexcept {
+  constexpr std::string_view kWhy = "isobar-dds: isobard does not answer; ended without its farewell\n";
+  static_cast<void>(::write(STDERR_FILENO, kWhy.data(), kWhy.size()) > 0);
+  std::_Exit(0);
 }
 
 ServiceManager::ServiceManager() {

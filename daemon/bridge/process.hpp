@@ -29,6 +29,17 @@ void remember_arguments(char** argv);
 /// The same after a second, for faults that may come back at once.
 [[noreturn]] void replace_process_later() noexcept;
 
+/// Limits what may otherwise wait for ever: iceoryx sends isobard a request and waits for the answer, so an
+/// isobard that dies or hangs in between would hang this process too, even at its end. When the time is up,
+/// `action` is called in a signal handler: it must be safe there and must not return. One limit at a time;
+/// main thread.
+/// @param limit whole seconds, > 0
+void limit_time(std::chrono::seconds limit, void (*action)() noexcept);
+void lift_time_limit() noexcept;
+
+/// Ends the process with code 0 and says why: for an end that was asked for and takes too long.
+[[noreturn]] void end_process() noexcept;
+
 /// Talks to systemd where it is there, and does nothing elsewhere.
 class ServiceManager {
  public:

@@ -45,7 +45,7 @@ struct Change {
   void operator()(std::vector<double>* v) const { *v = {1.5, -1.0 / 3.0}; }
   template <typename Integer>
   void operator()(Integer* v) const {
-    *v = !setting.choices.empty() ? static_cast<Integer>(24)
+    *v = !setting.choices.empty() ? static_cast<Integer>(std::stoi(setting.choices.back()))
                                   : static_cast<Integer>(*v > setting.lowest ? *v - 1 : *v + 1);
   }
 };
@@ -155,6 +155,21 @@ TEST_CASE("Values outside their rules are refused with file, line, column, key, 
   fails("lidar = 3\n", "must be a section");
   fails("[method]\n", "must be one of");
   fails("[altimeter]\nmin_pressure_pa = 150000.0\n", "must be below altimeter.max_pressure_pa");
+}
+
+TEST_CASE("A barometer that cannot measure as it is told is refused, where it is the one in use") {
+  const std::string greedy = "[barometer.dps310]\npressure_rate_hz = 32\npressure_oversampling = 64\n";
+  fails("[barometer]\nsource = \"dps310\"\n" + greedy,
+        "c.toml: barometer.dps310.pressure_rate_hz: pressure 32 x 104.4 ms and temperature 4 x 14.8 ms are "
+        "3.4 s of "
+        "measuring in a second, must be below 1");
+  CHECK(parse_config(greedy, "c.toml").barometer.dps310.pressure_oversampling == 64);
+  CHECK(parse_config("[barometer]\nsource = \"dps310\"\n", "c.toml").barometer.source == "dps310");
+  fails("[barometer.dps310]\npressure_rate_hz = 30\n", "must be one of 1, 2, 4, 8, 16, 32, 64, 128");
+  fails("[barometer.dps310]\naddress = \"0x78\"\n", "must be one of 0x77, 0x76");
+  fails("[barometer]\nsource = \"setra278\"\n[barometer.setra278]\nlow_v = 3.0\n",
+        "barometer.setra278: high_v must be above low_v");
+  fails("[barometer]\nsource = \"bmp280\"\n", "must be one of input, dps310, setra278, iio");
 }
 
 TEST_CASE("An unknown key is an error that names the nearest one") {

@@ -98,6 +98,8 @@ int main(int count, char** arguments) {
   save("fuzz_pressure_log", "logger",
        "\"TOA5\",\"X\"\r\n\"TIMESTAMP\",\"P_Avg\",\"Ta\"\r\n\"TS\",\"hPa\",\"degC\"\r\n"
        "\"2020-04-04 00:00:00\",986.5,20\r\n\"2020-04-04T00:01:00+02:00\",nan,20\r\n");
+  save("fuzz_dps310", "sound", std::string(600, '\0'));
+  save("fuzz_dps310", "free", std::string(40, '\0') + std::string(400, '\x21'));
   save(
       "fuzz_datagram", "all",
       "imu,1,1700000000000000000,0.1,0.2,-0.3,0,0,9.81,1,0,0,0\nbaro,1,1700000000000000000,100000.5,20.25\r\n"

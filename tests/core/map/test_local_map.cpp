@@ -134,7 +134,8 @@ TEST_CASE("tiles out of reach are handed out once, and memory stays bounded on a
   auto scan = std::make_unique<RegisteredScan>();
   std::vector<MapPoint> evicted;
   std::size_t most_tiles = 0;
-  for (int i = 0; i <= 200; ++i) {
+  constexpr int kWayM = 100;  // five times the radius
+  for (int i = 0; i <= kWayM; ++i) {
     fill_scan(*scan, i * 1.0, i * 1'000'000'000LL, range_to_walls);
     map.update(*scan, evicted);
     most_tiles = std::max(most_tiles, map.tile_count());
@@ -143,7 +144,7 @@ TEST_CASE("tiles out of reach are handed out once, and memory stays bounded on a
   CHECK(most_tiles < 128);
   double nearest = 1e9;
   for (const MapPoint& point : evicted) {
-    nearest = std::min(nearest, 200.0 - point.p_map.x());
+    nearest = std::min(nearest, kWayM - point.p_map.x());
   }
   CHECK(nearest > config.radius_m - isobar::kTileSizeM);
   const std::size_t out = evicted.size();

@@ -142,7 +142,17 @@ TEST_CASE("while the bridge forwards, the end of isobard can be followed at once
   CHECK(listener.receive(20));
   stand_in.signal(SIGKILL);
   bridge.signal(SIGTERM);
-  CHECK(bridge.wait(10s) == 0);
+  CHECK(bridge.wait(20s) == 0);
+}
+
+TEST_CASE("a bridge that is told to end does, though isobard hangs and never answers its farewell") {
+  Listener<dds::OdometryMessage> listener(dds::topics::kOdom);
+  ChildProcess stand_in({ISOBAR_STAND_IN});
+  ChildProcess bridge({ISOBAR_DDS_PROGRAM});
+  CHECK(listener.receive(20));
+  stand_in.signal(SIGSTOP);
+  bridge.signal(SIGTERM);
+  CHECK(bridge.wait(20s) == 0);
 }
 
 TEST_CASE("a base station's pressure reaches isobard on isobard's clock, and nonsense does not") {

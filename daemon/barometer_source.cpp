@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/barometer_source.hpp"
+
+#include "core/errors.hpp"
+#include "drivers/dps310/sensor.hpp"
+#include "drivers/dps310/smbus.hpp"
+#include "drivers/iio/barometer.hpp"
+
+namespace isobar {
+
+std::unique_ptr<BarometerDevice> make_barometer(const BarometerSettings& settings) {
+  const auto stuck_time_ns = static_cast<std::int64_t>(settings.stuck_time_s * 1e9);
+  if (settings.source == "input") return nullptr;
+  if (settings.source == "dps310") {
+    const std::uint8_t address = settings.dps310.address == "0x76" ? 0x76 : 0x77;
+    return std::make_unique<dps310::Sensor>(
+        settings.dps310, std::make_unique<dps310::SmbusDevice>(settings.dps310.bus, address), stuck_time_ns);
+  }
+  if (settings.source == "setra278") {
+    return std::make_unique<iio::Barometer>(settings.setra278, stuck_time_ns);
+  }
+  if (settings.source == "iio") return std::make_unique<iio::Barometer>(settings.iio, stuck_time_ns);
+  throw ConfigError("barometer.source: \"" + settings.source + "\" has no driver");
+}
+
+}  // namespace isobar

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Register map of the DPS310 (Infineon data sheet, "Register Map" and the pages behind it).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace isobar::dps310 {
+
+inline constexpr std::uint8_t kPressureResult = 0x00;  ///< 3 bytes, most significant first, …
+inline constexpr std::size_t kResultBytes = 6;         ///< … then 3 of the temperature
+inline constexpr std::uint8_t kTemperatureResult = 0x03;
+inline constexpr std::uint8_t kPressureConfig = 0x06;     ///< PRS_CFG: rate << 4 | oversampling
+inline constexpr std::uint8_t kTemperatureConfig = 0x07;  ///< TMP_CFG: the same, and the thermometer's choice
+inline constexpr std::uint8_t kMeasurementConfig = 0x08;  ///< MEAS_CFG: ready bits and what is measured
+inline constexpr std::uint8_t kConfig = 0x09;             ///< CFG_REG: result shifts, FIFO, interrupts
+inline constexpr std::uint8_t kReset = 0x0C;
+inline constexpr std::uint8_t kProductId = 0x0D;
+inline constexpr std::uint8_t kCoefficients = 0x10;
+inline constexpr std::size_t kCoefficientBytes = 18;
+inline constexpr std::uint8_t kCoefficientSource = 0x28;  ///< COEF_SRCE
+
+/// TMP_CFG and COEF_SRCE: the thermometer in the pressure element, not the one in the chip.
+inline constexpr std::uint8_t kExternalThermometer = 0x80;
+
+// Bits of MEAS_CFG.
+inline constexpr std::uint8_t kCoefficientsReady = 0x80;
+inline constexpr std::uint8_t kSensorReady = 0x40;
+inline constexpr std::uint8_t kTemperatureReady = 0x20;  ///< cleared when the result is read
+inline constexpr std::uint8_t kPressureReady = 0x10;     ///< cleared when the result is read
+inline constexpr std::uint8_t kModeMask = 0x0F;          ///< MEAS_CTRL, with the bit above it that reads 0
+inline constexpr std::uint8_t kModeIdle = 0x00;
+inline constexpr std::uint8_t kModeOneTemperature = 0x02;
+inline constexpr std::uint8_t kModeBackground = 0x07;  ///< pressure and temperature, again and again
+
+// Bits of CFG_REG.
+inline constexpr std::uint8_t kShiftTemperature = 0x08;  ///< must be set above 8 times oversampling
+inline constexpr std::uint8_t kShiftPressure = 0x04;
+
+inline constexpr std::uint8_t kSoftReset = 0x89;  ///< RESET: soft reset and empty FIFO
+inline constexpr std::uint8_t kDps310Id = 0x10;   ///< revision 1, product 0
+
+/// What a result register holds before the first measurement: no result.
+inline constexpr std::int32_t kNoResult = -0x800000;
+
+}  // namespace isobar::dps310

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "drivers/dps310/compensation.hpp"
+
+namespace isobar::dps310 {
+
+/// Where a DPS310 is and how it measures. Rates and oversamplings are powers of two, 1 … 128.
+struct Settings {
+  std::string bus = "/dev/i2c-1";  ///< the kernel's I2C device
+  std::string address = "0x77";    ///< "0x77", or "0x76" with SDO to ground
+  int pressure_rate_hz = 32;
+  int pressure_oversampling = 16;
+  int temperature_rate_hz = 4;
+  int temperature_oversampling = 8;
+};
+
+/// Time that the sensor measures in a second [s]. One converter does both in turn: from 1 s on, the rates
+/// cannot be met (data sheet, "Pressure Configuration": rate times measurement time of both, below 1 s).
+[[nodiscard]] constexpr double busy_time_s(const Settings& settings) noexcept {
+  return settings.pressure_rate_hz * measurement_time_s(settings.pressure_oversampling) +
+         settings.temperature_rate_hz * measurement_time_s(settings.temperature_oversampling);
+}
+
+}  // namespace isobar::dps310

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "drivers/dps310/register_bus.hpp"
+
+namespace isobar::dps310 {
+
+/// A device on a bus of the kernel, /dev/i2c-N, by SMBus calls only: byte reads and writes, and block reads
+/// where the adapter has them. That is all that i2c-stub and the poorest adapters can do.
+class SmbusDevice final : public RegisterBus {
+ public:
+  /// Opens nothing yet. address: 7 bit.
+  SmbusDevice(std::string bus, std::uint8_t address);
+  ~SmbusDevice() override;
+
+  /// ENOTSUP: the adapter has no byte reads and writes. EBUSY: a driver of the kernel holds the device.
+  int open() noexcept override;
+  int read(std::uint8_t first, std::span<std::uint8_t> bytes) noexcept override;
+  int write(std::uint8_t address, std::uint8_t value) noexcept override;
+
+ private:
+  void close() noexcept;
+  int read_byte(std::uint8_t address, std::uint8_t& value) noexcept;
+  int read_block(std::uint8_t first, std::span<std::uint8_t> bytes) noexcept;
+
+  std::string bus_;
+  std::uint8_t address_;
+  int file_ = -1;
+  bool has_block_reads_ = false;
+};
+
+}  // namespace isobar::dps310

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/iio/barometer.hpp"
+
+#include <cerrno>
+#include <limits>
+
+#include "core/plausibility.hpp"
+
+namespace isobar::iio {
+
+namespace {
+
+constexpr double kVoltsPerUnit = 1e-3;    // a voltage channel counts millivolts
+constexpr double kPascalsPerUnit = 1e3;   // a pressure channel counts kilopascals
+constexpr double kDegreesPerUnit = 1e-3;  // a temperature channel counts thousandths of a degree Celsius
+
+}  // namespace
+
+Barometer::Barometer(const Settings& settings, std::int64_t stuck_time_ns)
+    : Barometer("barometer " + settings.folder, settings, "in_pressure", std::nullopt, stuck_time_ns) {}
+
+Barometer::Barometer(const SetraSettings& settings, std::int64_t stuck_time_ns)
+    : Barometer("Setra 278 on " + settings.device.folder + " " + settings.channel, settings.device,
+                settings.channel, settings.span, stuck_time_ns) {}
+
+Barometer::Barometer(std::string place, const Settings& settings, const std::string& channel,
+                     std::optional<setra278::Span> span, std::int64_t stuck_time_ns)
+    : place_(std::move(place)),
+      period_ns_(1'000'000'000 / settings.rate_hz),
+      channel_(settings.folder, channel),
+      thermometer_(settings.folder, "in_temp"),
+      span_(span),
+      faults_(barometer_silence_ns(settings.rate_hz)),
+      stuck_(stuck_time_ns) {}
+
+BarometerDevice::Step Barometer::step(std::int64_t now_ns) noexcept {
+  Step step;
+  if (open_) {
+    measure(now_ns, step);
+  } else {
+    step.next_ns = begin(now_ns);
+  }
+  return step;
+}
+
+std::int64_t Barometer::begin(std::int64_t now_ns) noexcept {
+  faults_.starts(now_ns);
+  if (const int error = channel_.open(); error != 0) {
+    ++faults_.counters().io_errors;
+    const char* what = error == ENOENT ? "no such device or channel" : "no answer";
+    return faults_.fail(BarometerState::kNoAnswer, what, now_ns, error);
+  }
+  // A converter's in_temp is the converter's, not the transducer's.
+  has_thermometer_ = !span_ && thermometer_.open() == 0;
+  open_ = true;
+  return now_ns + period_ns_;
+}
+
+void Barometer::measure(std::int64_t now_ns, Step& step) noexcept {
+  step.next_ns = now_ns + period_ns_;
+  const Channel::Value reading = channel_.read();
+  double pressure_pa = 0.0;
+  if (reading.error != 0) {
+    ++faults_.counters().io_errors;
+    const char* what = reading.error == EBADMSG ? "the file holds no number" : "no answer";
+    faults_.problem(BarometerState::kNoAnswer, what, reading.error);
+  } else if (const char* fault = convert(reading.value, pressure_pa); fault != nullptr) {
+    ++faults_.counters().implausible;
+    faults_.problem(BarometerState::kImplausible, fault);
+  } else if (stuck_.add(reading.bits, now_ns)) {
+    if (status().state != BarometerState::kStuck) ++faults_.counters().stuck;
+    open_ = false;
+    step.next_ns = faults_.fail(BarometerState::kStuck, "the same value again and again", now_ns);
+    return;
+  } else {
+    faults_.good(now_ns);
+    step.has_sample = true;
+    step.sample.stamp_ns = now_ns;
+    step.sample.pressure_pa = pressure_pa;
+    step.sample.temperature_c = read_temperature();
+  }
+  if (faults_.overdue(now_ns)) {
+    open_ = false;
+    step.next_ns = faults_.give_up(now_ns);
+  }
+}
+
+const char* Barometer::convert(double value, double& pressure_pa) const noexcept {
+  if (span_) {
+    const setra278::Reading reading = setra278::pressure_of(*span_, value * kVoltsPerUnit);
+    pressure_pa = reading.pressure_pa;
+    return reading.fault;
+  }
+  pressure_pa = value * kPascalsPerUnit;
+  PressureSample sample;
+  sample.pressure_pa = pressure_pa;
+  return implausibility(sample);
+}
+
+/// A thermometer that fails costs the temperature, not the pressure.
+double Barometer::read_temperature() noexcept {
+  if (has_thermometer_) {
+    const Channel::Value reading = thermometer_.read();
+    const double temperature_c = reading.value * kDegreesPerUnit;
+    if (reading.error == 0 && kPlausibleTemperatureC.holds(temperature_c)) return temperature_c;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace isobar::iio

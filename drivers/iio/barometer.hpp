@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "drivers/barometer/fault_watch.hpp"
+#include "drivers/iio/channel.hpp"
+#include "drivers/iio/settings.hpp"
+
+namespace isobar::iio {
+
+/// A barometer that the kernel reads: one with a driver of its own (in_pressure, and in_temp where it has
+/// one), or a Setra 278 behind a converter. Its noise is not known here: variance_pa2 stays NaN.
+class Barometer final : public BarometerDevice {
+ public:
+  /// Any driver with a pressure channel. stuck_time_ns: see StuckWatch.
+  Barometer(const Settings& settings, std::int64_t stuck_time_ns);
+  /// A Setra 278. settings.span: checked already (setra278::broken_rule).
+  Barometer(const SetraSettings& settings, std::int64_t stuck_time_ns);
+
+  Step step(std::int64_t now_ns) noexcept override;
+  [[nodiscard]] const BarometerStatus& status() const noexcept override { return faults_.status(); }
+  [[nodiscard]] const std::string& place() const noexcept override { return place_; }
+
+ private:
+  Barometer(std::string place, const Settings& settings, const std::string& channel,
+            std::optional<setra278::Span> span, std::int64_t stuck_time_ns);
+
+  std::int64_t begin(std::int64_t now_ns) noexcept;
+  void measure(std::int64_t now_ns, Step& step) noexcept;
+  /// Judges one reading; nullptr when pressure_pa is good, or the fault.
+  const char* convert(double value, double& pressure_pa) const noexcept;
+  [[nodiscard]] double read_temperature() noexcept;
+
+  std::string place_;
+  std::int64_t period_ns_;
+  Channel channel_;
+  Channel thermometer_;
+  std::optional<setra278::Span> span_;  ///< volts to pressure; without: the channel is pressure
+  FaultWatch faults_;
+  StuckWatch stuck_;
+  bool open_ = false;
+  bool has_thermometer_ = false;
+};
+
+}  // namespace isobar::iio

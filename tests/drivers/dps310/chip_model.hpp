@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A DPS310 as its data sheet describes it, register by register, on a simulated clock.
+#pragma once
+
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <functional>
+#include <random>
+#include <set>
+#include <span>
+#include <vector>
+
+#include "drivers/dps310/register_bus.hpp"
+#include "tests/drivers/dps310/known_sensor.hpp"
+
+namespace isobar::dps310::test {
+
+/// The chip and the air around it.
+class ChipModel {
+ public:
+  /// Powered for a second already.
+  ChipModel() {
+    power_up();
+    run_until(now_ns_ + 1'000'000'000);
+  }
+
+  // What the test sets.
+  std::function<double(double)> pressure_pa = [](double) { return 96'000.0; };  ///< by time [s]
+  double temperature_c = 21.0;
+  double noise_pa = 0.0;                            ///< rms of each conversion
+  std::int64_t byte_time_ns = 25'000;               ///< on the bus, 400 kHz; a transaction adds three of them
+  std::int64_t coefficients_ready_ns = 38'000'000;  ///< after a reset; data sheet: 40 ms at most
+  std::int64_t sensor_ready_ns = 11'000'000;        ///< 12 ms at most
+  std::uint8_t id = kDps310Id;
+  bool external_thermometer = true;  ///< that the coefficients are made for
+  bool hot_until_corrected =
+      false;          ///< one of the chips that read 40 K too much without the erratum sequence
+  double slow = 1.0;  ///< factor on every time: the chip's own oscillator
+
+  // Faults.
+  bool unplugged = false;  ///< nothing acknowledges
+  double nak_share = 0.0;  ///< of all transactions
+  bool stops = false;      ///< no conversion ends any more
+  bool frozen = false;     ///< conversions end with the bits of the last one
+  bool thermometer_stops = false;
+  void power_up();  ///< also a brown-out while it measures
+
+  /// Runs the chip up to this time.
+  void run_until(std::int64_t now_ns);
+  [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
+
+  // What the test looks at.
+  std::uint64_t transactions = 0;
+  std::uint64_t soft_resets = 0;
+  std::set<std::int32_t> pressures;  ///< every raw pressure that was ever measured
+  [[nodiscard]] std::uint8_t held(std::uint8_t address) const { return registers_[address]; }
+
+  // The bus.
+  int read(std::uint8_t first, std::span<std::uint8_t> bytes);
+  int write(std::uint8_t address, std::uint8_t value);
+
+ private:
+  struct Conversion {
+    std::int64_t due_ns = 0;
+    std::int64_t end_ns = 0;  ///< 0: not running
+  };
+
+  bool acknowledges(std::int64_t byte_count);
+  std::uint8_t value_of(std::uint8_t address);
+  void set_mode(std::uint8_t mode);
+  void start_due();
+  void finish(bool pressure);
+  void store(std::uint8_t address, std::int32_t raw);
+  [[nodiscard]] int oversampling(std::uint8_t config) const { return 1 << (registers_[config] & 7); }
+  [[nodiscard]] std::int64_t period_ns(std::uint8_t config) const {
+    return static_cast<std::int64_t>(slow * 1e9) >> (registers_[config] >> 4 & 7);
+  }
+  [[nodiscard]] std::int32_t raw_temperature();
+  [[nodiscard]] std::int32_t raw_pressure(std::int64_t middle_ns);
+
+  std::array<std::uint8_t, 256> registers_{};
+  std::int64_t now_ns_ = 1'000'000'000'000;
+  std::int64_t start_ns_ = 0;
+  std::uint8_t mode_ = kModeIdle;
+  Conversion pressure_;
+  Conversion temperature_;
+  double ts_ = 0.0;  ///< scaled temperature of the last conversion: the air's truth for the pressure
+  std::int32_t newest_pressure_ = 0;
+  int erratum_step_ = 0;
+  bool corrected_ = false;
+  std::mt19937 random_{3};
+};
+
+/// The driver's way to the model.
+class ModelBus final : public RegisterBus {
+ public:
+  explicit ModelBus(ChipModel& chip) : chip_(&chip) {}
+  int open() noexcept override { return open_error; }
+  int read(std::uint8_t first, std::span<std::uint8_t> bytes) noexcept override {
+    return chip_->read(first, bytes);
+  }
+  int write(std::uint8_t address, std::uint8_t value) noexcept override {
+    return chip_->write(address, value);
+  }
+  int open_error = 0;
+
+ private:
+  ChipModel* chip_;
+};
+
+}  // namespace isobar::dps310::test
