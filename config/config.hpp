@@ -41,11 +41,18 @@ struct BarometerSettings {
   /// machine, which isobard reads itself and then takes no datagrams of.
   std::string source = "input";
   Mount mount;  ///< position of the pressure port in base_link; its rotation means nothing
+  /// A file of `isobar calibrate` to be loaded into PriorConfig::compensation; empty once it has been.
+  std::string compensation_file;
   /// Without a change of one bit for longer a sensor of this machine is stuck [s]; 0: never.
   double stuck_time_s = 1.5;
   dps310::Settings dps310;
   iio::SetraSettings setra278;
   iio::Settings iio;
+};
+
+/// [base_barometer]
+struct BaseBarometerSettings {
+  std::string compensation_file;  ///< the same for PriorConfig::base_compensation
 };
 
 /// [input]: sample datagrams of IMU, barometers and wheels (drivers/datagram/datagram.hpp)
@@ -76,6 +83,7 @@ struct Config {
   LidarSettings lidar;
   ImuSettings imu;
   BarometerSettings barometer;
+  BaseBarometerSettings base_barometer;
   InputSettings input;
   OutputSettings output;
   dds::DdsConfig dds;  ///< [dds]

@@ -20,4 +20,11 @@ Config parse_config(std::string_view text, const std::string& file);
 /// Every setting as TOML, with unit, range and reason as comments; loading it gives the same Config.
 std::string show_config(const Config& config);
 
+/// Reads what show_compensation() gave, as `isobar calibrate` writes it. Throws ConfigError like
+/// load_config().
+CompensationConfig load_compensation(const std::filesystem::path& file);
+
+/// A calibration as TOML, a section [compensation] with a comment for each key, below `comment`.
+std::string show_compensation(const CompensationConfig& compensation, const std::string& comment);
+
 }  // namespace isobar

@@ -83,23 +83,32 @@ class Assign {
     }
   }
   void operator()(std::vector<int>* target) const {
-    const std::string rule = "must be a list of whole numbers, each" + range_text(setting_);
+    list(*target, "must be a list of whole numbers, each" + range_text(setting_),
+         [](const toml::node& element) { return element.is_integer(); });
+  }
+  void operator()(std::vector<double>* target) const {
+    list(*target, "must be a list of numbers, each" + range_text(setting_),
+         [](const toml::node& element) { return element.is_number(); });
+  }
+  void operator()(Method* target) const { *target = static_cast<Method>(choice()); }
+  void operator()(AirTemperatureMode* target) const { *target = static_cast<AirTemperatureMode>(choice()); }
+  void operator()(CompensationModel* target) const { *target = static_cast<CompensationModel>(choice()); }
+
+ private:
+  template <typename Number, typename Fits>
+  void list(std::vector<Number>& target, const std::string& rule, const Fits& fits) const {
     const toml::array* array = node_.as_array();
     if (array == nullptr) {
       place_.fail_with_value(rule);
     }
-    target->clear();
+    target.clear();
     for (const toml::node& element : *array) {
-      if (!element.is_integer()) {
+      if (!fits(element)) {
         place_.fail_with_value(rule);
       }
-      target->push_back(static_cast<int>(number(element, rule)));
+      target.push_back(static_cast<Number>(number(element, rule)));
     }
   }
-  void operator()(Method* target) const { *target = static_cast<Method>(choice()); }
-  void operator()(AirTemperatureMode* target) const { *target = static_cast<AirTemperatureMode>(choice()); }
-
- private:
   double number(const toml::node& node, const std::string& rule) const {
     const auto value = node.is_number() ? node.value<double>() : std::nullopt;
     if (!value || !std::isfinite(*value) || !(*value >= setting_.lowest && *value <= setting_.highest)) {
@@ -236,24 +245,64 @@ std::string read_file(const std::filesystem::path& file) {
   return text.str();
 }
 
-}  // namespace
-
-Config load_config(const std::filesystem::path& file) { return parse_config(read_file(file), file.string()); }
-
-Config parse_config(std::string_view text, const std::string& file) {
-  toml::table root;
+toml::table parse_toml(std::string_view text, const std::string& file) {
   try {
-    root = toml::parse(text, file);
+    return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
     const auto& at = error.source().begin;
     throw ConfigError(file + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) +
                       ": is no TOML: " + std::string(error.description()));
   }
+}
+
+/// Puts the calibration that `named` names, if any, into `target`. What is shown later is what was used, so
+/// the name goes.
+void take_compensation(const std::string& config_file, const char* key, std::string& named,
+                       CompensationConfig& target) {
+  if (named.empty()) {
+    return;
+  }
+  const std::string place = config_file + ": " + key + ": ";
+  if (target.model != CompensationModel::kNone) {
+    throw ConfigError(place + "must be empty where the section [compensation] of this sensor names a model");
+  }
+  const std::filesystem::path path = std::filesystem::path(config_file).parent_path() / named;
+  if (!std::filesystem::is_regular_file(path)) {
+    throw ConfigError(place + "must name a file (" + path.string() + " is none)");
+  }
+  target = load_compensation(path);
+  named.clear();
+}
+
+}  // namespace
+
+Config load_config(const std::filesystem::path& file) { return parse_config(read_file(file), file.string()); }
+
+Config parse_config(std::string_view text, const std::string& file) {
+  const toml::table root = parse_toml(text, file);
   Config config;
   std::vector<Setting> settings = settings_of(config);
   Loader(file, settings).load(root, "");
+  take_compensation(file, "barometer.compensation_file", config.barometer.compensation_file,
+                    config.prior.compensation);
+  take_compensation(file, "base_barometer.compensation_file", config.base_barometer.compensation_file,
+                    config.prior.base_compensation);
   check_together(config, file);
   return config;
+}
+
+CompensationConfig load_compensation(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  const toml::table root = parse_toml(read_file(file), name);
+  CompensationConfig compensation;
+  std::vector<Setting> settings;
+  add_compensation_settings("compensation", compensation, settings);
+  Loader(name, settings).load(root, "");
+  if (!root.contains("compensation")) {
+    throw ConfigError(name + ": has no section [compensation]");
+  }
+  check_compensation(compensation, name + ": compensation.");
+  return compensation;
 }
 
 }  // namespace isobar

@@ -73,6 +73,14 @@ void add_setra278(iio::SetraSettings& setra, std::vector<Setting>& settings) {
   add("high_pa", span.high_pa, "Pa", 10e3, 120e3, "Pressure at high_v.");
 }
 
+void add_compensation_file(const std::string& section, std::string& file, std::vector<Setting>& settings) {
+  settings.push_back({.key = section + ".compensation_file",
+                      .target = &file,
+                      .doc =
+                          "File that `isobar calibrate` wrote for this sensor, beside this one or with its "
+                          "whole path; empty: none."});
+}
+
 void add_barometer(BarometerSettings& barometer, std::vector<Setting>& settings) {
   settings.push_back({.key = "barometer.source",
                       .target = &barometer.source,
@@ -86,6 +94,7 @@ void add_barometer(BarometerSettings& barometer, std::vector<Setting>& settings)
       {"barometer.stuck_time_s", &barometer.stuck_time_s, "s", 0.0, 600.0,
        "A sensor of this machine whose value does not change by one bit for longer, and for 16 "
        "readings, is stuck. 0: never; for converters too coarse to see the air move."});
+  add_compensation_file("barometer", barometer.compensation_file, settings);
   add_dps310(barometer.dps310, settings);
   add_setra278(barometer.setra278, settings);
   add_iio_device("barometer.iio", barometer.iio, settings);
@@ -120,6 +129,9 @@ void add_sensor_settings(Config& config, std::vector<Setting>& settings) {
   add_position("imu", config.imu.mount, "Origin of the IMU in base_link.", settings);
   add_rotation("imu", config.imu.mount, settings);
   add_barometer(config.barometer, settings);
+  add_compensation_settings("barometer.compensation", config.prior.compensation, settings);
+  add_compensation_file("base_barometer", config.base_barometer.compensation_file, settings);
+  add_compensation_settings("base_barometer.compensation", config.prior.base_compensation, settings);
 }
 
 }  // namespace isobar

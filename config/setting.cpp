@@ -26,6 +26,15 @@ const std::vector<std::string>& air_temperature_choices() {
   return names;
 }
 
+const std::vector<std::string>& compensation_choices() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const CompensationModel model : kCompensationModels) list.emplace_back(model_name(model));
+    return list;
+  }();
+  return names;
+}
+
 std::vector<Setting> settings_of(Config& config) {
   std::vector<Setting> settings;
   settings.push_back(
@@ -48,7 +57,7 @@ std::string_view section_doc(std::string_view section) {
     std::string_view section;
     std::string_view doc;
   };
-  static constexpr std::array<Doc, 20> kDocs{{
+  static constexpr auto kDocs = std::to_array<Doc>({
       {"lidar", "The lidar, as a live run reads it from the network. A replay takes it from the recording."},
       {"imu", "Where the IMU sits on the robot. A replay takes it from the recording."},
       {"barometer", "The robot's barometer. A replay takes samples and mount from the recording."},
@@ -59,6 +68,14 @@ std::string_view section_doc(std::string_view section) {
       {"barometer.iio",
        "Any other barometer with a driver of the kernel; used where barometer.source is iio. Drivers that "
        "round, as the kernel's for the DPS310 does to 1 Pa, need a longer barometer.stuck_time_s."},
+      {"barometer.compensation",
+       "What `isobar calibrate` found about the robot's barometer: p_cal = sum of c_ij u^i v^j, "
+       "u = (p - centre) / scale, v = (t - centre) / scale."},
+      {"compensation",
+       "What `isobar calibrate` found: p_cal = sum of c_ij u^i v^j, u = (p - centre) / scale, "
+       "v = (t - centre) / scale."},
+      {"base_barometer", "The base station's barometer, where it does not compensate its samples itself."},
+      {"base_barometer.compensation", "The same for the first base station's barometer."},
       {"input", "UDP port on which a live run takes samples of IMU, barometers and wheels."},
       {"output", "What a live run writes and shows."},
       {"realtime", "Scheduling of the threads of a live run."},
@@ -74,7 +91,7 @@ std::string_view section_doc(std::string_view section) {
       {"limits", "What arrives from the sensors is believed within these limits only."},
       {"registration", "How a scan is prepared, matched to the map and solved."},
       {"map", "Size and density of the local map, and when it changes."},
-  }};
+  });
   for (const Doc& entry : kDocs) {
     if (entry.section == section) {
       return entry.doc;

@@ -27,9 +27,9 @@ enum class TextRule : std::uint8_t {
 
 /// One key of the configuration, bound to its place in a Config.
 struct Setting {
-  using Target =
-      std::variant<double*, int*, std::uint16_t*, std::uint32_t*, std::size_t*, bool*, std::string*,
-                   Eigen::Vector3d*, std::vector<int>*, Method*, AirTemperatureMode*>;
+  using Target = std::variant<double*, int*, std::uint16_t*, std::uint32_t*, std::size_t*, bool*,
+                              std::string*, Eigen::Vector3d*, std::vector<int>*, std::vector<double>*,
+                              Method*, AirTemperatureMode*, CompensationModel*>;
 
   std::string key;  ///< with its section, "registration.max_range_m"
   Target target;
@@ -47,6 +47,7 @@ struct Setting {
 /// The names of an enumeration's values, in their order.
 const std::vector<std::string>& method_choices();
 const std::vector<std::string>& air_temperature_choices();
+const std::vector<std::string>& compensation_choices();
 
 /// All settings of `config`, in the order in which they are shown.
 std::vector<Setting> settings_of(Config& config);
@@ -56,6 +57,8 @@ std::string_view section_doc(std::string_view section);
 
 // The parts of the table, by the code that the settings belong to.
 void add_sensor_settings(Config& config, std::vector<Setting>& settings);
+void add_compensation_settings(const std::string& section, CompensationConfig& compensation,
+                               std::vector<Setting>& settings);
 void add_service_settings(Config& config, std::vector<Setting>& settings);
 void add_prior_settings(PriorConfig& prior, std::vector<Setting>& settings);
 void add_registration_settings(RegistrationConfig& registration, std::vector<Setting>& settings);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <string_view>
 
 #include "config/config_io.hpp"
@@ -36,19 +37,9 @@ std::string rule_of(const Setting& setting) {
   return range.empty() ? "" : range.substr(std::string_view(" within ").size()) + ". ";
 }
 
-}  // namespace
-
-std::string show_config(const Config& config) {
-  Config copy = config;
-  std::string out;
-  append_comment(
-      "Settings of isobard, isobar-dds and isobar. Every key may be left out: what stands here is its "
-      "default or "
-      "the value in use. `isobar config check FILE` checks a file; `isobar config show [FILE]` prints this "
-      "one.",
-      out);
+void append_settings(const std::vector<Setting>& settings, std::string& out) {
   std::string section;
-  for (const Setting& setting : settings_of(copy)) {
+  for (const Setting& setting : settings) {
     if (setting.section() != section) {
       section = setting.section();
       out += "\n";
@@ -60,6 +51,34 @@ std::string show_config(const Config& config) {
     append_comment(rule_of(setting) + setting.doc, out);
     out += setting.name() + " = " + value_text(setting) + "\n";
   }
+}
+
+}  // namespace
+
+std::string show_config(const Config& config) {
+  Config copy = config;
+  std::string out;
+  append_comment(
+      "Settings of isobard, isobar-dds and isobar. Every key may be left out: what stands here is its "
+      "default or "
+      "the value in use. `isobar config check FILE` checks a file; `isobar config show [FILE]` prints this "
+      "one.",
+      out);
+  append_settings(settings_of(copy), out);
+  return out;
+}
+
+std::string show_compensation(const CompensationConfig& compensation, const std::string& comment) {
+  CompensationConfig copy = compensation;
+  std::vector<Setting> settings;
+  add_compensation_settings("compensation", copy, settings);
+  std::string out;
+  for (std::size_t begin = 0; begin < comment.size();) {
+    const std::size_t end = std::min(comment.find('\n', begin), comment.size());
+    append_comment(std::string_view(comment).substr(begin, end - begin), out);
+    begin = end + 1;
+  }
+  append_settings(settings, out);
   return out;
 }
 

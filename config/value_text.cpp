@@ -27,6 +27,15 @@ std::string float_text(double value) {
   return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
 }
 
+template <typename Number>
+std::string list_text(const std::vector<Number>& values, std::string (*text_of)(Number)) {
+  std::string text;
+  for (const Number value : values) {
+    text += (text.empty() ? "" : ", ") + text_of(value);
+  }
+  return "[" + text + "]";
+}
+
 struct ValueText {
   const Setting& setting;
 
@@ -36,17 +45,15 @@ struct ValueText {
   std::string operator()(const Eigen::Vector3d* v) const {
     return "[" + float_text(v->x()) + ", " + float_text(v->y()) + ", " + float_text(v->z()) + "]";
   }
-  std::string operator()(const std::vector<int>* values) const {
-    std::string text;
-    for (const int value : *values) {
-      text += (text.empty() ? "" : ", ") + shortest(value);
-    }
-    return "[" + text + "]";
-  }
+  std::string operator()(const std::vector<int>* values) const { return list_text(*values, shortest<int>); }
+  std::string operator()(const std::vector<double>* values) const { return list_text(*values, float_text); }
   std::string operator()(const Method* value) const {
     return quoted_toml(setting.choices.at(static_cast<std::size_t>(*value)));
   }
   std::string operator()(const AirTemperatureMode* value) const {
+    return quoted_toml(setting.choices.at(static_cast<std::size_t>(*value)));
+  }
+  std::string operator()(const CompensationModel* value) const {
     return quoted_toml(setting.choices.at(static_cast<std::size_t>(*value)));
   }
   template <typename Integer>
@@ -117,6 +124,13 @@ const char* broken_text_rule(TextRule rule, const std::string& text) {
   return nullptr;
 }
 
+void check_compensation(const CompensationConfig& compensation, const std::string& place) {
+  const char* key = nullptr;
+  if (const char* rule = broken_compensation_rule(compensation, &key); rule != nullptr) {
+    throw ConfigError(place + key + ": " + rule);
+  }
+}
+
 void check_together(const Config& config, const std::string& file) {
   const auto require = [&file](bool holds, const char* key, const char* rule) {
     if (!holds) {
@@ -137,6 +151,8 @@ void check_together(const Config& config, const std::string& file) {
   require(config.registration.last_distance_m <= config.registration.first_distance_m,
           "registration.last_distance_m", "must not be above registration.first_distance_m");
   require(config.lidar.port != config.input.port, "input.port", "must differ from lidar.port");
+  check_compensation(config.prior.compensation, file + ": barometer.compensation.");
+  check_compensation(config.prior.base_compensation, file + ": base_barometer.compensation.");
   const BarometerSettings& barometer = config.barometer;
   require(barometer.source != "dps310" || dps310::busy_time_s(barometer.dps310) < 1.0,
           "barometer.dps310.pressure_rate_hz", busy_text(barometer.dps310).c_str());

@@ -16,6 +16,9 @@ std::string value_text(const Setting& setting);
 /// Which rule a text breaks; nullptr when none.
 const char* broken_text_rule(TextRule rule, const std::string& text);
 
+/// Rules of a calibration as a whole. Throws ConfigError "PLACEkey: rule".
+void check_compensation(const CompensationConfig& compensation, const std::string& place);
+
 /// Rules that tie several settings together. Throws ConfigError "file: key: rule".
 void check_together(const Config& config, const std::string& file);
 

@@ -168,6 +168,19 @@ void HealthMonitor::fill_barometer(const StatusSnapshot& now, double rate_hz, He
 
 void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& report) const {
   const PriorStatus& prior = now.prior;
+  const PriorCounters& used = prior.counters;
+  const PriorCounters& before = last_.prior.counters;
+  constexpr const char* kOutside = "samples outside of the calibrated range: the nearest correction was used";
+  constexpr const char* kNoTemperature =
+      "samples without the temperature that the calibration needs: the last known was used";
+  add_count(report, "barometer/outside_calibration", used.pressure_outside_calibration,
+            before.pressure_outside_calibration, kOutside);
+  add_count(report, "barometer/no_temperature", used.pressure_without_temperature,
+            before.pressure_without_temperature, kNoTemperature);
+  add_count(report, "base_station/outside_calibration", used.base_outside_calibration,
+            before.base_outside_calibration, kOutside);
+  add_count(report, "base_station/no_temperature", used.base_without_temperature,
+            before.base_without_temperature, kNoTemperature);
   report.add("attitude", prior.attitude_valid ? HealthLevel::kOk : HealthLevel::kStale,
              prior.attitude_valid ? "gravity found" : "gravity not found yet, it needs the IMU", 0.0);
   const bool height_good = prior.height_source == HeightSource::kDifferential;

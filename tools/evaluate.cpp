@@ -14,6 +14,7 @@
 #include "tools/commands.hpp"
 #include "tools/report/report.hpp"
 #include "tools/report/text_file.hpp"
+#include "tools/typed_command.hpp"
 
 namespace isobar::tools {
 
@@ -53,20 +54,14 @@ std::vector<report::EstimateSource> sources_of(const EvaluateArguments& argument
 
 /// The command line again, for the report: what a person would type.
 std::string typed_command(const EvaluateArguments& arguments) {
-  const auto quoted = [](const std::string& word) {
-    if (!word.empty() && word.find_first_of(" \t'\"\\$&;|<>()*?") == std::string::npos) return word;
-    std::string text = "'";
-    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return text + "'";
-  };
-  std::string command = "isobar evaluate " + quoted(arguments.reference);
-  for (const std::string& estimate : arguments.estimates) command += " " + quoted(estimate);
-  if (!arguments.segments.empty()) command += " --segments " + quoted(arguments.segments);
-  if (!arguments.names.empty()) command += " --names " + quoted(arguments.names);
+  std::string command = "isobar evaluate " + shell_quoted(arguments.reference);
+  for (const std::string& estimate : arguments.estimates) command += " " + shell_quoted(estimate);
+  if (!arguments.segments.empty()) command += " --segments " + shell_quoted(arguments.segments);
+  if (!arguments.names.empty()) command += " --names " + shell_quoted(arguments.names);
   if (arguments.alignment == evaluation::Alignment::kYawTranslation) command += " --align yaw";
   if (arguments.alignment == evaluation::Alignment::kRigid) command += " --align rigid";
-  if (!arguments.title.empty()) command += " --title " + quoted(arguments.title);
-  return command + " --report " + quoted(arguments.report.empty() ? "report.html" : arguments.report);
+  if (!arguments.title.empty()) command += " --title " + shell_quoted(arguments.title);
+  return command + " --report " + shell_quoted(arguments.report.empty() ? "report.html" : arguments.report);
 }
 
 void run_evaluate(const EvaluateArguments& arguments) {

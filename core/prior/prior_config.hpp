@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "core/altitude/altitude_config.hpp"
+#include "core/altitude/sensor_compensation.hpp"
 
 namespace isobar {
 
@@ -162,6 +163,11 @@ struct PriorConfig {
   Eigen::Isometry3d T_base_imu = Eigen::Isometry3d::Identity();
   /// Position of the barometer's pressure port in base_link [m].
   Eigen::Vector3d p_base_port = Eigen::Vector3d::Zero();
+
+  /// Calibrations of the robot's barometer and of the first base station's, where that does not compensate
+  /// its samples itself.
+  CompensationConfig compensation;
+  CompensationConfig base_compensation;
 
   AltimeterConfig altimeter;
   AttitudeConfig attitude;

@@ -41,6 +41,22 @@ constexpr double kQuaternionTolerance = 0.05;
 
 double squared(double x) { return x * x; }
 
+/// The sample as the calibrated sensor would have measured it; what is not as it was calibrated is counted.
+PressureSample compensated(PressureSample sample, SensorCompensation& compensation, std::uint64_t& outside,
+                           std::uint64_t& without_temperature) {
+  switch (compensation.apply(sample)) {
+    case SensorCompensation::Result::kInside:
+      break;
+    case SensorCompensation::Result::kOutside:
+      ++outside;
+      break;
+    case SensorCompensation::Result::kNoTemperature:
+      ++without_temperature;
+      break;
+  }
+  return sample;
+}
+
 }  // namespace
 
 struct PriorEstimator::State {
@@ -53,6 +69,8 @@ struct PriorEstimator::State {
         attitude(c.attitude, p_base_imu),
         standstill(c.standstill),
         wheels(c.dead_reckoning),
+        compensation(c.compensation),
+        base_compensation(c.base_compensation),
         altimeter(c.altimeter),
         height(c.height) {}
 
@@ -67,6 +85,8 @@ struct PriorEstimator::State {
   AttitudeFilter attitude;
   StandstillDetector standstill;
   WheelOdometer wheels;
+  SensorCompensation compensation;
+  SensorCompensation base_compensation;
   DifferentialAltimeter altimeter;
   HeightFilter height;
 
@@ -346,12 +366,14 @@ bool PriorEstimator::add_imu(const ImuSample& sample, Prior& out) {
   return true;
 }
 
-void PriorEstimator::add_pressure(const PressureSample& sample) {
+void PriorEstimator::add_pressure(const PressureSample& measured) {
   State& s = *state_;
-  if (s.bad_stamp(sample.stamp_ns)) {
+  if (s.bad_stamp(measured.stamp_ns)) {
     ++s.counters.pressure_bad_time;
     return;
   }
+  const PressureSample sample = compensated(measured, s.compensation, s.counters.pressure_outside_calibration,
+                                            s.counters.pressure_without_temperature);
   AltimeterReading reading;
   switch (s.altimeter.add_robot(sample, reading)) {
     case PressureStatus::kBadValue:
@@ -376,12 +398,16 @@ void PriorEstimator::add_pressure(const PressureSample& sample) {
   if (use == PressureUse::kStep) ++s.counters.pressure_steps;
 }
 
-void PriorEstimator::add_base_pressure(const PressureSample& sample) {
+void PriorEstimator::add_base_pressure(const PressureSample& measured) {
   State& s = *state_;
-  if (s.bad_stamp(sample.stamp_ns)) {
+  if (s.bad_stamp(measured.stamp_ns)) {
     ++s.counters.base_bad_time;
     return;
   }
+  const PressureSample sample =
+      measured.station == 0 ? compensated(measured, s.base_compensation, s.counters.base_outside_calibration,
+                                          s.counters.base_without_temperature)
+                            : measured;
   switch (s.altimeter.add_base(sample)) {
     case PressureStatus::kBadValue:
       ++s.counters.base_bad_value;

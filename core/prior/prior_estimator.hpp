@@ -22,12 +22,16 @@ struct PriorCounters {
   std::uint64_t imu_gaps = 0;       ///< steps of time longer than PriorLimits::imu_gap_s
   std::uint64_t imu_restarts = 0;   ///< clock jumps that were confirmed
   std::uint64_t pressure_accepted = 0;
-  std::uint64_t pressure_bad_value = 0;  ///< not finite, implausible, or a spike
+  std::uint64_t pressure_outside_calibration = 0;  ///< used with the correction of the range's nearest place
+  std::uint64_t pressure_without_temperature = 0;  ///< compensated with the last temperature that was known
+  std::uint64_t pressure_bad_value = 0;            ///< not finite, implausible, or a spike
   std::uint64_t pressure_bad_time = 0;
   std::uint64_t pressure_repeated = 0;  ///< polled faster than the sensor converts: the same value again
   std::uint64_t pressure_gated = 0;     ///< further from the prediction than the gate: a door
   std::uint64_t pressure_steps = 0;     ///< gated for so long that they were believed
   std::uint64_t base_accepted = 0;
+  std::uint64_t base_outside_calibration = 0;
+  std::uint64_t base_without_temperature = 0;
   std::uint64_t base_bad_value = 0;
   std::uint64_t base_bad_time = 0;
   std::uint64_t base_repeated = 0;
@@ -52,8 +56,9 @@ class PriorEstimator {
 
   /// True, and `out` filled, if the sample was accepted.
   bool add_imu(const ImuSample& sample, Prior& out);
-  void add_pressure(const PressureSample& sample);
-  void add_base_pressure(const PressureSample& sample);
+  /// Samples as the sensors gave them: PriorConfig's calibrations are applied here, and nowhere else.
+  void add_pressure(const PressureSample& measured);
+  void add_base_pressure(const PressureSample& measured);
   void add_wheel(const WheelSample& sample);
 
   [[nodiscard]] const PriorCounters& counters() const;

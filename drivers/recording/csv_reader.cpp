@@ -8,31 +8,33 @@
 
 namespace isobar::recording {
 
-CsvReader::CsvReader(const std::filesystem::path& file, const std::vector<std::string_view>& required,
-                     const std::vector<std::string_view>& optional)
-    : lines_(file) {
-  find_columns(required, optional);
-}
-
-void CsvReader::split(std::string_view line, std::vector<std::string_view>& fields) {
+void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields) {
   fields.clear();
   for (;;) {
-    const auto comma = line.find(',');
-    fields.push_back(trimmed(line.substr(0, comma)));
-    if (comma == std::string_view::npos) {
+    const auto end = line.find(separator);
+    fields.push_back(trimmed(line.substr(0, end)));
+    if (end == std::string_view::npos) {
       return;
     }
-    line.remove_prefix(comma + 1);
+    line.remove_prefix(end + 1);
   }
+}
+
+CsvReader::CsvReader(const std::filesystem::path& file, const std::vector<std::string_view>& required,
+                     const std::vector<std::string_view>& optional, const CsvFormat& format)
+    : lines_(file), format_(format) {
+  find_columns(required, optional);
 }
 
 void CsvReader::find_columns(const std::vector<std::string_view>& required,
                              const std::vector<std::string_view>& optional) {
   std::string_view header;
-  if (!lines_.next(header)) {
-    throw DataError(lines_.file_name() + ":1: is empty, must start with a line that names the columns");
+  while (lines_.line_number() < format_.header_line) {
+    if (!lines_.next(header)) {
+      throw DataError(lines_.file_name() + ":1: is empty, must start with a line that names the columns");
+    }
   }
-  split(header, fields_);
+  split_fields(header, format_.separator, fields_);
   columns_ = fields_.size();
   const auto locate = [this](std::string_view name) {
     if (std::count(fields_.begin(), fields_.end(), name) > 1) {
@@ -61,7 +63,7 @@ CsvReader::Row CsvReader::next() {
     if (trimmed(line).empty()) {
       continue;
     }
-    split(line, fields_);
+    split_fields(line, format_.separator, fields_);
     return fields_.size() == columns_ ? Row::kGood : Row::kBad;
   }
   return Row::kEnd;

@@ -11,13 +11,23 @@
 
 namespace isobar::recording {
 
-/// Reads a CSV file whose first line names the columns, in any order; unknown columns are ignored.
+/// How a CSV file differs from the project's own.
+struct CsvFormat {
+  char separator = ',';
+  std::size_t header_line = 1;  ///< the line that names the columns
+};
+
+/// Splits a line; fields come without blanks and quotation marks around them.
+void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields);
+
+/// Reads a CSV file whose first line (or another, see CsvFormat) names the columns, in any order; unknown
+/// columns are ignored.
 class CsvReader {
  public:
-  /// Finds the columns. Throws DataError "file:1: …" that names a required column which is missing or stands
-  /// twice.
+  /// Finds the columns. Throws DataError "file:line: …" that names a required column which is missing or
+  /// stands twice.
   CsvReader(const std::filesystem::path& file, const std::vector<std::string_view>& required,
-            const std::vector<std::string_view>& optional = {});
+            const std::vector<std::string_view>& optional = {}, const CsvFormat& format = {});
 
   enum class Row { kGood, kBad, kEnd };
   /// Goes to the next row that is not blank. kBad: another number of fields than the header, or far too long.
@@ -37,11 +47,11 @@ class CsvReader {
 
  private:
   static constexpr std::size_t kAbsent = static_cast<std::size_t>(-1);
-  static void split(std::string_view line, std::vector<std::string_view>& fields);
   void find_columns(const std::vector<std::string_view>& required,
                     const std::vector<std::string_view>& optional);
 
   TextLines lines_;
+  CsvFormat format_;
   std::vector<std::size_t> position_;  // of each known column in the file
   std::vector<std::string_view> fields_;
   std::size_t columns_ = 0;

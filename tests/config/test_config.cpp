@@ -41,6 +41,8 @@ struct Change {
   void operator()(std::vector<int>* v) const { *v = {1, 0}; }
   void operator()(Method* v) const { *v = Method::kOdometry; }
   void operator()(AirTemperatureMode* v) const { *v = AirTemperatureMode::kFixed; }
+  void operator()(CompensationModel* v) const { *v = CompensationModel::kSimple; }
+  void operator()(std::vector<double>* v) const { *v = {1.5, -1.0 / 3.0}; }
   template <typename Integer>
   void operator()(Integer* v) const {
     *v = !setting.choices.empty() ? static_cast<Integer>(std::stoi(setting.choices.back()))

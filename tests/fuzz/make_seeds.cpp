@@ -94,6 +94,10 @@ int main(int count, char** arguments) {
   save("fuzz_toml", "config", show_config(Config{}));
   save("fuzz_toml", "short",
        "method = \"4dof\"\n[lidar]\nmodel = \"HDL-32E\"\nxyz_m = [0.1, 0, 0.45]\n[map]\ncell_m = 0.3\n");
+  save("fuzz_pressure_log", "own", "t_ns,pressure_pa,temperature_c\n1586000000000000000,98712.5,21.5\n");
+  save("fuzz_pressure_log", "logger",
+       "\"TOA5\",\"X\"\r\n\"TIMESTAMP\",\"P_Avg\",\"Ta\"\r\n\"TS\",\"hPa\",\"degC\"\r\n"
+       "\"2020-04-04 00:00:00\",986.5,20\r\n\"2020-04-04T00:01:00+02:00\",nan,20\r\n");
   save("fuzz_dps310", "sound", std::string(600, '\0'));
   save("fuzz_dps310", "free", std::string(40, '\0') + std::string(400, '\x21'));
   save(

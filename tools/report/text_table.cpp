@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tools/report/aligned_rows.hpp"
 #include "tools/report/evaluated_run.hpp"
 #include "tools/report/figure_rows.hpp"
 #include "tools/report/svg.hpp"
@@ -18,14 +19,6 @@ namespace {
 
 constexpr double kNone = evaluation::MethodFigures::kNone;
 
-using Cells = std::vector<std::string>;
-
-/// Characters of a UTF-8 text.
-std::size_t length(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
 /// Minus sign and dash as plain hyphens: other programs read the terminal's table too.
 std::string plain(std::string text) {
   for (const std::string_view sign : {"\u2212", "\u2013"}) {
@@ -34,24 +27,6 @@ std::string plain(std::string text) {
     }
   }
   return text;
-}
-
-/// The first column stands left, the others right.
-void print_aligned(std::FILE* out, const std::vector<Cells>& rows) {
-  std::vector<std::size_t> widths;
-  for (const Cells& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()), 0);
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], length(row[i]));
-  }
-  for (const Cells& row : rows) {
-    std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string padding(widths[i] - length(row[i]), ' ');
-      line += i == 0 ? row[i] + padding : "  " + padding + row[i];
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    std::fprintf(out, "%s\n", line.c_str());
-  }
 }
 
 void print_figures(std::FILE* out, const EvaluatedRun& run) {
@@ -71,7 +46,7 @@ void print_figures(std::FILE* out, const EvaluatedRun& run) {
     cells.emplace_back(method.evaluation.figures.lost ? "LOST" : "ok");
     table.push_back(std::move(cells));
   }
-  print_aligned(out, table);
+  std::fputs(aligned_rows(table).c_str(), out);
 }
 
 /// One column a floor; nothing without flat segments.
@@ -89,7 +64,7 @@ void print_floors(std::FILE* out, const EvaluatedRun& run) {
     }
     table.push_back(std::move(cells));
   }
-  print_aligned(out, table);
+  std::fputs(aligned_rows(table).c_str(), out);
 }
 
 std::string json_text(const std::string& text) {

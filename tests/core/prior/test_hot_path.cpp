@@ -34,7 +34,13 @@ using namespace isobar;
 using namespace isobar::testing;
 
 TEST_CASE("nothing is allocated after construction") {
-  PriorEstimator estimator{PriorConfig{}};
+  PriorConfig config;
+  config.compensation.model = CompensationModel::kOffset;
+  config.compensation.coefficients.assign(16, 0.0);
+  config.compensation.coefficients[0] = config.compensation.pressure_centre_pa + 12.0;
+  config.compensation.coefficients[4] = config.compensation.pressure_scale_pa;
+  config.compensation.range = {90'000.0, 99'999.0, 0.0, 10.0};
+  PriorEstimator estimator{config};
   PriorHistory history(256);
   Prior prior;
   const long before = allocations;
@@ -53,6 +59,7 @@ TEST_CASE("nothing is allocated after construction") {
   }
   CHECK(allocations == before);
   CHECK(covered);
+  CHECK(estimator.counters().pressure_outside_calibration > 0);
   const long counted = allocations;
   ::operator delete(::operator new(16));  // the counter counts: not a new-expression, which may be left out
   CHECK(allocations == counted + 1);
