@@ -157,8 +157,10 @@ void add_height(HeightConfig& height, std::vector<Setting>& settings) {
   add("turbulence_time_s", height.turbulence_time_s, "s", 0.1, 600.0, "How long it lasts.");
   add("offset_learning_s", height.offset_learning_s, "s", 0.0, 1e6,
       "The offset between the barometers is learnt this long from the first pressure, then constant.");
+  add("weather_rate_m_s", height.weather_rate_m_s, "m/s", 0.0, 1.0,
+      "Rate of the weather where no base station takes it out, 1 sigma: 1 to 4 hPa in three hours.");
   add("weather_walk_m_sqrt_s", height.weather_walk_m_sqrt_s, "m/sqrt(s)", 0.0, 10.0,
-      "Random walk of the weather where no base station takes it out.");
+      "Random walk of that weather, wind on the building included: 0.2 Pa/sqrt(s).");
   add("warm_up_sigma_m", height.warm_up_sigma_m, "m", 0.0, 10.0,
       "Drift of two barometers that warm up, 1 sigma; only added to the reported variance.");
   add("warm_up_time_s", height.warm_up_time_s, "s", 1.0, 1e5, "Its time constant.");

@@ -71,7 +71,7 @@ struct AltimeterConfig {
   /// 200 Pa is 17 m in one sample. A new level is believed once `spike_confirmations` samples agree on it (1
   /// … 1000).
   double spike_pa = 200.0;
-  std::uint32_t spike_confirmations = 16;
+  std::uint32_t spike_confirmations = 5;
 
   /// A sensor whose value has not changed by one bit for longer is stuck, and counts as silent [s], 0.5 …
   /// 600. Noise alone changes a working sensor's last digit at every conversion.

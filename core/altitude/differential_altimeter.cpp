@@ -55,7 +55,7 @@ PressureStatus DifferentialAltimeter::add_base(const PressureSample& sample) {
   if (status == PressureStatus::kBadValue || status == PressureStatus::kBadTime) return status;
   air_.add(1, sample.stamp_ns, sample.temperature_c);
   if (status == PressureStatus::kRepeated) return status;
-  const double pressure_pa = sample.pressure_pa - base_gate_.jumped_pa();
+  const double pressure_pa = sample.pressure_pa;
   const double gap_s = first ? 0.0 : std::max(0.0, seconds_between(before_ns, sample.stamp_ns));
   base_since_ns_ = std::min(base_since_ns_, sample.stamp_ns);
   if (first || gap_s > config_.base_timeout_s) {
@@ -94,7 +94,8 @@ void DifferentialAltimeter::update_base_state(std::int64_t now_ns, AltimeterRead
 void DifferentialAltimeter::fill_height(const PressureSample& sample, AltimeterReading& out) const {
   const double metres_per_pa = scale_m() / sample.pressure_pa;
   out.stamp_ns = sample.stamp_ns;
-  out.height_m = scale_m() * (reference_log_pa_ - std::log(sample.pressure_pa));
+  out.scale_m = scale_m();
+  out.height_m = out.scale_m * (reference_log_pa_ - std::log(sample.pressure_pa));
   out.noise_variance_m2 = metres_per_pa * metres_per_pa * robot_noise_.variance();
   out.source = base_ == Base::kPresent ? HeightSource::kDifferential : HeightSource::kSingleBarometer;
   out.base_age_s = base_gate_.started()
@@ -113,12 +114,10 @@ void DifferentialAltimeter::fill_height(const PressureSample& sample, AltimeterR
                     metres_per_pa * metres_per_pa * reference_variance_pa2;
 }
 
-PressureStatus DifferentialAltimeter::add_robot(const PressureSample& measured, AltimeterReading& out) {
+PressureStatus DifferentialAltimeter::add_robot(const PressureSample& sample, AltimeterReading& out) {
   const std::int64_t before_ns = robot_gate_.fresh_stamp_ns();
-  const PressureStatus status = robot_gate_.check(measured);
+  const PressureStatus status = robot_gate_.check(sample);
   if (status == PressureStatus::kBadValue || status == PressureStatus::kBadTime) return status;
-  PressureSample sample = measured;
-  sample.pressure_pa -= robot_gate_.jumped_pa();
   air_.add(0, sample.stamp_ns, sample.temperature_c);
   if (status == PressureStatus::kRepeated) return status;
   if (started_ && seconds_between(before_ns, sample.stamp_ns) > 1.0) robot_noise_.restart();

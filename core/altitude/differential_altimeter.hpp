@@ -29,6 +29,7 @@ struct AltimeterReading {
   std::int64_t stamp_ns = 0;
   double height_m = 0.0;           ///< port above its place at the first reading
   double noise_variance_m2 = 0.0;  ///< white noise of this reading
+  double scale_m = 1.0;            ///< metres a unit of ln p: height_m is this times ln(reference / pressure)
   /// Everything: noise of this and of the first reading, base station's age, air temperature. Not warm-up,
   /// which shows nowhere.
   double variance_m2 = 0.0;
