@@ -40,6 +40,7 @@ class HealthMonitor {
  private:
   void fill_lidar(const StatusSnapshot& now, double elapsed_s, ipc::HealthReport& report) const;
   void fill_samples(const StatusSnapshot& now, double elapsed_s, ipc::HealthReport& report) const;
+  static void fill_barometers(const StatusSnapshot& now, ipc::HealthReport& report);
   void fill_estimate(const StatusSnapshot& now, ipc::HealthReport& report) const;
 
   Config config_;

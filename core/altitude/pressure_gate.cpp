@@ -52,10 +52,4 @@ PressureStatus PressureGate::check(const PressureSample& sample) {
   return PressureStatus::kAccepted;
 }
 
-bool PressureGate::lost(std::int64_t now_ns, double timeout_s) const {
-  if (!started_) return true;
-  return seconds_between(alive_stamp_ns_, now_ns) > timeout_s ||
-         seconds_between(fresh_stamp_ns_, now_ns) > std::max(config_.stuck_timeout_s, timeout_s);
-}
-
 }  // namespace isobar

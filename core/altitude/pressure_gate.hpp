@@ -13,6 +13,7 @@ enum class PressureStatus : std::uint8_t {
   kAccepted,
   kBadValue,  ///< not finite, outside the plausible range, or a spike
   kBadTime,   ///< not newer than the one before
+  kStale,     ///< of a base station, and too old for the robot's clock
   kRepeated,  ///< bit for bit the value before: polled faster than converted, or stuck
 };
 
@@ -30,8 +31,6 @@ class PressureGate {
   /// The clock jumped: the next sample follows at once, whatever its stamp.
   void restart_clock() { time_known_ = false; }
   [[nodiscard]] bool started() const { return started_; }
-  /// Silent for `timeout_s`, or unchanged for the stuck time-out.
-  [[nodiscard]] bool lost(std::int64_t now_ns, double timeout_s) const;
 
  private:
   [[nodiscard]] bool is_spike(const PressureSample& sample);

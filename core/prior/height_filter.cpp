@@ -29,6 +29,11 @@ constexpr double kRideSpeed = 0.7;
 // In a ride nothing but pressure holds the vertical speed: a door leaves it off by 0.3 m/s, so the gate opens
 // sooner.
 constexpr double kRideGateS = 1.0;
+// Wheels that have been heard within this hold the vertical speed.
+constexpr double kHeldS = 0.5;
+// Wheels tell weather from climb less well than the filter thinks, their errors last: this share of the
+// weather is doubted in what is reported.
+constexpr double kWeatherDoubt = 0.5;
 // Delay of a pressure sample that is still compensated for.
 constexpr double kMaxDelayS = 1.0;
 // A pressure that kept moving by more than this share of its offset is a ramp, not a step.
@@ -51,14 +56,17 @@ HeightFilter::HeightFilter(const HeightConfig& config)
     : config_(config),
       filter_(config),
       forks_{Fork{VerticalFilter(config), 0.0}, Fork{VerticalFilter(config), 0.0}},
-      judge_(config.gate_sigma) {}
+      judge_(config.gate_sigma),
+      slew_(config.slew_rate_m_s, config.slew_bound_m) {}
 
 void HeightFilter::start(double z_m, double vz_sigma_m_s) {
   filter_.start(z_m, vz_sigma_m_s);
   restart_forks();
   ground_moves_ = false;
   judge_.restart();
-  fault_share_ = 0.0;
+  slew_.restart();
+  fault_share_ = alone_s_ = 0.0;
+  faulty_ = false;
   started_ = true;
 }
 
@@ -68,6 +76,9 @@ void HeightFilter::restart_forks() {
 }
 
 void HeightFilter::predict(double up_accel_m_s2, double dt_s, double accel_density) {
+  slew_.advance(dt_s);
+  since_climb_s_ += dt_s;
+  alone_s_ += weather_moves_ ? dt_s : 0.0;
   const double density = std::max(accel_density, squared(config_.accel_noise_m_s_sqrt_s));
   filter_.predict(up_accel_m_s2, dt_s, density, weather_moves_);
   const double accel = up_accel_m_s2 - filter_.value(VerticalFilter::kAccelBias);
@@ -100,6 +111,7 @@ void HeightFilter::update_climb(double climb_m_s, double forward_m_s, double dt_
   const double density = 2.0 * config_.slope_error_correlation_s * slope_variance * squared(forward_m_s) +
                          2.0 * config_.slip_correlation_s * squared(config_.slip_share * climb_m_s) +
                          squared(config_.rest_speed_m_s_sqrt_s);
+  since_climb_s_ = 0.0;
   watch_ground(climb_m_s, forward_m_s, dt_s, speed_variance);
   if (!ground_moves_) filter_.update_climb(climb_m_s, forward_m_s, density / dt_s);
 }
@@ -135,15 +147,25 @@ void HeightFilter::update_bounded_speed(double dt_s) {
   filter_.update_climb(0.0, 0.0, squared(kBoundedSpeed) * std::max(1.0, 2.0 * kBoundedSpeedS / dt_s));
 }
 
+double HeightFilter::variance_m2() const {
+  const double weather_m2 =
+      squared(config_.weather_rate_m_s * alone_s_) + squared(config_.weather_walk_m_sqrt_s) * alone_s_;
+  return filter_.variance(VerticalFilter::kZ) + squared(slew_.rest_m()) + squared(kWeatherDoubt) * weather_m2;
+}
+
 void HeightFilter::handle_event(const AltimeterReading& reading) {
   weather_moves_ = reading.source != HeightSource::kDifferential;
+  if (!weather_moves_) alone_s_ = 0.0;
   const auto apply = [&](VerticalFilter& filter) {
+    if (reading.event == ReferenceEvent::kBaseLost) filter.release_weather();
     if (reading.event == ReferenceEvent::kBaseJoined) filter.fold_weather_into_offset();
     // The height reading moved by minus the weather that had crept into it.
     if (reading.event == ReferenceEvent::kBaseReturned) {
       filter.settle_weather(-reading.weather_shift_m, reading.noise_variance_m2);
     }
   };
+  if (reading.event == ReferenceEvent::kBaseReturned || reading.event == ReferenceEvent::kBaseSwitched)
+    slew_.begin();
   apply(filter_);
   for (Fork& fork : forks_) apply(fork.filter);
 }
@@ -151,11 +173,23 @@ void HeightFilter::handle_event(const AltimeterReading& reading) {
 PressureUse HeightFilter::update_pressure(const AltimeterReading& reading, double lever_m,
                                           std::int64_t now_ns) {
   if (!started_) return PressureUse::kGated;
+  const double before_m = filter_.value(VerticalFilter::kZ);
   handle_event(reading);
   const double delay_s = std::clamp(seconds_between(reading.stamp_ns, now_ns), 0.0, kMaxDelayS);
+  const PressureUse use = use_pressure(reading, lever_m, delay_s);
+  // Where only pressure holds the vertical speed nothing of it may wait, but for the event itself.
+  const bool event =
+      reading.event == ReferenceEvent::kBaseReturned || reading.event == ReferenceEvent::kBaseSwitched;
+  const bool held = !ground_moves_ && since_climb_s_ < kHeldS;
+  if (event || (slew_.open() && held)) slew_.hold_back(filter_.value(VerticalFilter::kZ) - before_m);
+  return use;
+}
+
+PressureUse HeightFilter::use_pressure(const AltimeterReading& reading, double lever_m, double delay_s) {
   const DisturbanceJudge::Evidence evidence = evidence_of(reading, lever_m, delay_s);
   const DisturbanceJudge::Verdict verdict = judge_.judge(evidence);
   rolled_back_ = rolled_back_ && judge_.gated();
+  faulty_ = std::abs(evidence.without_step.value) > kAbsurdM;
   using Verdict = DisturbanceJudge::Verdict;
   if (verdict == Verdict::kWait) {
     if (judge_.unfelt() && ground_moves_ && !rolled_back_) roll_back();

@@ -8,6 +8,7 @@
 #include "core/altitude/differential_altimeter.hpp"
 #include "core/prior/disturbance_judge.hpp"
 #include "core/prior/prior_config.hpp"
+#include "core/prior/slew.hpp"
 #include "core/prior/vertical_filter.hpp"
 
 namespace isobar {
@@ -58,12 +59,15 @@ class HeightFilter {
   /// `lever_m`: height of the pressure port above the IMU's place. `now_ns`: time of the last predict().
   PressureUse update_pressure(const AltimeterReading& reading, double lever_m, std::int64_t now_ns);
 
-  [[nodiscard]] double z_m() const { return filter_.value(VerticalFilter::kZ); }
+  /// As reported: corrections by a reference that came back are taken in slowly.
+  [[nodiscard]] double z_m() const { return filter_.value(VerticalFilter::kZ) + slew_.rest_m(); }
   [[nodiscard]] double vz_m_s() const { return filter_.value(VerticalFilter::kVz); }
-  [[nodiscard]] double variance_m2() const { return filter_.variance(VerticalFilter::kZ); }
+  [[nodiscard]] double variance_m2() const;
   [[nodiscard]] bool ground_moves() const { return ground_moves_; }
   /// What the pressure is disturbed by, if it is.
   [[nodiscard]] const DisturbanceJudge& disturbance() const { return judge_; }
+  /// The pressure is off by more than any air: a fault, and so far taken off.
+  [[nodiscard]] bool pressure_faulty() const { return faulty_; }
   [[nodiscard]] const VerticalFilter& filter() const { return filter_; }
 
  private:
@@ -73,6 +77,7 @@ class HeightFilter {
   };
 
   void handle_event(const AltimeterReading& reading);
+  PressureUse use_pressure(const AltimeterReading& reading, double lever_m, double delay_s);
   [[nodiscard]] DisturbanceJudge::Evidence evidence_of(const AltimeterReading& reading, double lever_m,
                                                        double delay_s) const;
   void roll_back();
@@ -97,6 +102,10 @@ class HeightFilter {
   double fork_misfit_m_ = 0.0;  // how much worse the older fork fitted the last pressure that was used
   DisturbanceJudge judge_;
   double fault_share_ = 0.0;  // pressure that an open step adds, as a share of the reference pressure
+  Slew slew_;
+  double since_climb_s_ = 1e9;  // since the wheels were heard
+  double alone_s_ = 0.0;        // how long there has been no base station
+  bool faulty_ = false;
   bool rolled_back_ = false;  // in this disturbance
   bool ground_moves_ = false;
   bool weather_moves_ = true;

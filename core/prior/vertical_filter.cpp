@@ -139,10 +139,18 @@ void VerticalFilter::release_weather() {
   P_(kWeatherRate, kWeatherRate) = squared(config_.weather_rate_m_s);
 }
 
+// The gain is that of a Kalman filter but for the motion, which the weather of minutes has nothing to say
+// about: what it was thought to be by is the walk's doing. Joseph's form holds for any gain.
 void VerticalFilter::settle_weather(double weather_m, double variance_m2) {
   Vector h = Vector::Zero();
   h[kWeather] = 1.0;
-  update(h, weather_m, variance_m2);
+  const double S = P_(kWeather, kWeather) + variance_m2;
+  Vector K = P_.col(kWeather) / S;
+  K[kVz] = K[kAccelBias] = K[kSlope] = 0.0;
+  x_ += K * (weather_m - x_[kWeather]);
+  const Matrix keep = Matrix::Identity() - K * h.transpose();
+  P_ = (keep * P_ * keep.transpose() + variance_m2 * K * K.transpose()).eval();
+  P_ = (0.5 * (P_ + P_.transpose())).eval();
   forget(kWeather);
 }
 
