@@ -24,6 +24,8 @@ constexpr double kNoiseSigmas = 6.0;
 constexpr double kWeatherSigmas = 4.0;
 // A new level is followed when it has been steady for this long; doors and gusts are over by then.
 constexpr double kNewLevelS = 5.0;
+// A level is the mean of so many samples.
+constexpr double kLevelSamples = 30.0;
 // Left out for longer: a fault rather than a gust.
 constexpr double kJumpFaultS = 1.0;
 
@@ -122,17 +124,22 @@ bool BaseStation::jumps(const PressureSample& sample, double gap_s, double noise
     jumping_ = true;
     jumping_ns_ = candidate_ns_ = sample.stamp_ns;
     candidate_pa_ = sample.pressure_pa;
+    candidate_count_ = 1.0;
     return true;
   }
   if (std::abs(sample.pressure_pa - candidate_pa_) > still_pa) {
     candidate_pa_ = sample.pressure_pa;
     candidate_ns_ = sample.stamp_ns;
+    candidate_count_ = 1.0;
     return true;
   }
+  candidate_count_ = std::min(candidate_count_ + 1.0, kLevelSamples);
+  candidate_pa_ += (sample.pressure_pa - candidate_pa_) / candidate_count_;
   if (seconds_between(candidate_ns_, sample.stamp_ns) < kNewLevelS) return true;
   settle(candidate_pa_);
   jumping_ = false;
   filter_.restart();
+  filter_.add(candidate_pa_, 0.0, noise_variance_pa2 / candidate_count_);
   noise_.restart();
   since_ns_ = sample.stamp_ns;
   return false;

@@ -55,7 +55,8 @@ class BaseStation {
   PressureFilter filter_;
   double jump_log_ = 0.0;      // taken off value()
   double level_pa_ = 0.0;      // filtered pressure before the first jump
-  double candidate_pa_ = 0.0;  // where it has jumped to
+  double candidate_pa_ = 0.0;  // where it has jumped to, a mean of …
+  double candidate_count_ = 0.0;
   std::int64_t used_ns_ = 0;   // stamp of the last sample that went into the filter
   std::int64_t since_ns_ = 0;  // there since
   std::int64_t level_ns_ = 0;
