@@ -63,6 +63,7 @@ double added_error_m(SimulatedRobot robot, const std::function<double(double)>& 
 
 SimulatedRobot flat_robot(double duration_s, double stop_s = 1e9) {
   SimulatedRobot robot;
+  robot.imu_hz = 100.0;  // half the work
   Drive drive;
   drive.radius_m = 40.0;
   drive.stop_s = stop_s;
@@ -73,6 +74,7 @@ SimulatedRobot flat_robot(double duration_s, double stop_s = 1e9) {
 
 SimulatedRobot stairs_robot() {
   SimulatedRobot robot;
+  robot.imu_hz = 100.0;  // half the work
   Drive drive;
   drive.speed = 0.5;
   drive.radius_m = 30.0;
@@ -84,6 +86,7 @@ SimulatedRobot stairs_robot() {
 
 SimulatedRobot lift_robot() {
   SimulatedRobot robot;
+  robot.imu_hz = 100.0;  // half the work
   Drive drive;
   drive.radius_m = 40.0;
   drive.stop_s = 12.0;
@@ -153,4 +156,42 @@ TEST_CASE("gusts of a wind that blows into the port do not move the height") {
     return t > 20.0 && phase < 1.5 ? 30.0 * std::pow(std::sin(M_PI * phase / 1.5), 2) : 0.0;
   };
   CHECK(added_error_m(flat_robot(75.0), gusts, 8) < 0.15);
+}
+
+TEST_CASE("a base station lost for 120 s: the variance covers the weather, and its return makes no step") {
+  int inside = 0;
+  int all = 0;
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    SimulatedRobot robot = flat_robot(210.0);
+    // 1 to 4 hPa in three hours, up and down.
+    robot.errors.weather_pa_s = (seed % 2 == 0 ? 1.0 : -1.0) * (100.0 + 300.0 * seed / 5.0) / 10'800.0;
+    const PriorConfig config = config_for(robot);
+    const auto clean = run(robot, config, seed, nullptr, 10);
+    robot.base_on = [](double t) { return t < 40.0 || t > 160.0; };
+    const auto lost = run(robot, config, seed, nullptr, 10);
+    REQUIRE(lost.size() == clean.size());
+    for (std::size_t i = 10; i < lost.size(); ++i) {  // ten apart: a second
+      const Prior& prior = lost[i].prior;
+      if (lost[i].t > 40.0 && lost[i].t < 160.0) {
+        ++all;
+        const double error_m = prior.height_m - lost[i].height_truth_m;
+        inside += error_m * error_m < 4.0 * prior.height_variance_m2 ? 1 : 0;
+      }
+      if (lost[i - 10].t < 160.0) continue;
+      const double change_m = (prior.height_m - clean[i].prior.height_m) -
+                              (lost[i - 10].prior.height_m - clean[i - 10].prior.height_m);
+      CHECK(std::abs(change_m) < 0.02);
+    }
+  }
+  CHECK(inside > 0.95 * all);
+}
+
+TEST_CASE("a fault of the barometer is said within two seconds, and the poses name the height's source") {
+  SimulatedRobot robot = flat_robot(26.0);
+  robot.extra_robot_pa = twice(shapes().back().pressure, 20.0, 1e9);
+  PriorCounters counters;
+  const auto comparisons = run(robot, config_for(robot), 6, &counters);
+  CHECK(counters.robot_faults >= 1);
+  CHECK(comparisons.back().t > 25.9);
+  CHECK(comparisons.back().prior.height_source == HeightSource::kHeld);
 }
