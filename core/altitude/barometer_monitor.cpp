@@ -33,6 +33,13 @@ void learn(double& interval_s, double measured_s) {
 
 }  // namespace
 
+double noise_variance_pa2(const PressureSample& sample, const NoiseEstimator& seen,
+                          const AltimeterConfig& config) {
+  if (!(sample.variance_pa2 > 0.0)) return seen.variance();
+  return std::clamp(sample.variance_pa2, config.noise_floor_pa * config.noise_floor_pa,
+                    config.noise_ceiling_pa * config.noise_ceiling_pa);
+}
+
 void BarometerMonitor::learn_interval(std::int64_t now_ns) {
   if (heard_ && now_ns > arrived_ns_) learn(interval_s_, seconds_between(arrived_ns_, now_ns));
   arrived_ns_ = std::max(now_ns, heard_ ? arrived_ns_ : now_ns);

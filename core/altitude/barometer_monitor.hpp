@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/altitude/altitude_config.hpp"
+#include "core/altitude/noise_estimator.hpp"
 #include "core/altitude/pressure_gate.hpp"
 #include "core/samples.hpp"
 
@@ -19,6 +20,10 @@ enum class BarometerFault : std::uint8_t {
   kDrifting,  ///< it moves as no weather and no height does
   kWrong,     ///< its values are impossible, or have jumped to where nothing can have brought them
 };
+
+/// White noise of a sample [Pa^2]: what its sender says, within the configured bounds, else what is seen.
+double noise_variance_pa2(const PressureSample& sample, const NoiseEstimator& seen,
+                          const AltimeterConfig& config);
 
 /// Checks one sensor's samples and remembers how they were. All times on the robot's clock; a sensor's own
 /// rate is learnt, so that a slow one is not silent between two samples.

@@ -79,11 +79,6 @@ void BaseStation::restart_clock() {
   filter_.restart();
 }
 
-double BaseStation::noise_variance_pa2(const PressureSample& sample) const {
-  if (!(sample.variance_pa2 > 0.0)) return noise_.variance();
-  return std::clamp(sample.variance_pa2, squared(config_.noise_floor_pa), squared(config_.noise_ceiling_pa));
-}
-
 PressureStatus BaseStation::add(const PressureSample& sample, std::int64_t now_ns) {
   if (plausible_stamp(sample.stamp_ns) && seconds_between(sample.stamp_ns, now_ns) > config_.base_timeout_s)
     return PressureStatus::kStale;
@@ -95,11 +90,11 @@ PressureStatus BaseStation::add(const PressureSample& sample, std::int64_t now_n
     noise_.restart();
   } else if (!jumping_ && gap_s > config_.base_timeout_s) {
     rejoin(sample, gap_s);
-  } else if (jumps(sample, gap_s, noise_variance_pa2(sample))) {
+  } else if (jumps(sample, gap_s, noise_variance_pa2(sample, noise_, config_))) {
     return status;
   }
   noise_.add(sample.pressure_pa);
-  filter_.add(sample.pressure_pa, gap_s, noise_variance_pa2(sample));
+  filter_.add(sample.pressure_pa, gap_s, noise_variance_pa2(sample, noise_, config_));
   used_ns_ = sample.stamp_ns;
   return status;
 }

@@ -44,7 +44,6 @@ class BaseStation {
   void restart_clock();
 
  private:
-  [[nodiscard]] double noise_variance_pa2(const PressureSample& sample) const;
   void rejoin(const PressureSample& sample, double gap_s);
   bool jumps(const PressureSample& sample, double gap_s, double noise_variance_pa2);
   void settle(double pressure_pa);

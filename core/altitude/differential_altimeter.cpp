@@ -56,17 +56,12 @@ void DifferentialAltimeter::learn_noise(const PressureSample& sample, double gap
   last_pa_ = sample.pressure_pa;
 }
 
-double DifferentialAltimeter::noise_variance_pa2(const PressureSample& sample) const {
-  if (!(sample.variance_pa2 > 0.0)) return robot_noise_.variance();
-  return std::clamp(sample.variance_pa2, squared(config_.noise_floor_pa), squared(config_.noise_ceiling_pa));
-}
-
 void DifferentialAltimeter::fill_height(const PressureSample& sample, AltimeterReading& out) const {
   const double metres_per_pa = scale_m() / sample.pressure_pa;
   out.stamp_ns = sample.stamp_ns;
   out.scale_m = scale_m();
   out.height_m = out.scale_m * (base_.log_pa() - std::log(sample.pressure_pa));
-  out.noise_variance_m2 = squared(metres_per_pa) * noise_variance_pa2(sample);
+  out.noise_variance_m2 = squared(metres_per_pa) * noise_variance_pa2(sample, robot_noise_, config_);
   out.source = base_.present() ? HeightSource::kDifferential : HeightSource::kSingleBarometer;
   out.base_age_s = base_.age_s(sample.stamp_ns);
   double reference_variance = 0.0;
@@ -92,7 +87,8 @@ PressureStatus DifferentialAltimeter::add_robot(const PressureSample& sample, Al
   const double log_pa = std::log(sample.pressure_pa);
   if (!started_) {
     base_.start(log_pa);
-    first_noise_variance_m2_ = squared(scale_m() / sample.pressure_pa) * noise_variance_pa2(sample);
+    first_noise_variance_m2_ =
+        squared(scale_m() / sample.pressure_pa) * noise_variance_pa2(sample, robot_noise_, config_);
     first_stamp_ns_ = sample.stamp_ns;
     started_ = true;
   }

@@ -69,7 +69,6 @@ class DifferentialAltimeter {
 
  private:
   void learn_noise(const PressureSample& sample, double gap_s);
-  [[nodiscard]] double noise_variance_pa2(const PressureSample& sample) const;
   void fill_height(const PressureSample& sample, AltimeterReading& out) const;
 
   AltimeterConfig config_;
