@@ -28,7 +28,10 @@ void add_altimeter(AltimeterConfig& altimeter, std::vector<Setting>& settings) {
   add("spike_confirmations", &altimeter.spike_confirmations, "", 1, 1'000,
       "So many samples must agree on a new level before it is believed.");
   add("stuck_timeout_s", &altimeter.stuck_timeout_s, "s", 0.5, 600.0,
-      "A sensor whose value does not change by one bit for longer counts as silent.");
+      "A sensor whose value does not change by one bit for longer, and for six of its own intervals, is "
+      "stuck.");
+  add("silent_timeout_s", &altimeter.silent_timeout_s, "s", 0.05, 60.0,
+      "A sensor that sends nothing for longer, and for three of its own intervals, is off.");
 }
 
 void add_air(AirTemperatureConfig& air, std::vector<Setting>& settings) {
@@ -157,17 +160,24 @@ void add_height(HeightConfig& height, std::vector<Setting>& settings) {
   add("turbulence_time_s", height.turbulence_time_s, "s", 0.1, 600.0, "How long it lasts.");
   add("offset_learning_s", height.offset_learning_s, "s", 0.0, 1e6,
       "The offset between the barometers is learnt this long from the first pressure, then constant.");
+  add("weather_rate_m_s", height.weather_rate_m_s, "m/s", 0.0, 1.0,
+      "Rate of the weather where no base station takes it out, 1 sigma: 1 to 4 hPa in three hours.");
   add("weather_walk_m_sqrt_s", height.weather_walk_m_sqrt_s, "m/sqrt(s)", 0.0, 10.0,
-      "Random walk of the weather where no base station takes it out.");
+      "Random walk of that weather, wind on the building included: 0.2 Pa/sqrt(s).");
   add("warm_up_sigma_m", height.warm_up_sigma_m, "m", 0.0, 10.0,
       "Drift of two barometers that warm up, 1 sigma; only added to the reported variance.");
   add("warm_up_time_s", height.warm_up_time_s, "s", 1.0, 1e5, "Its time constant.");
+  add("zone_sigma_m", height.zone_sigma_m, "m", 0.0, 10.0,
+      "Pressure between ventilated zones, 1 sigma; only added to the reported variance.");
+  add("slew_rate_m_s", height.slew_rate_m_s, "m/s", 1e-3, 10.0,
+      "A base station that returns tells the weather since: the height takes it in at this speed …");
+  add("slew_bound_m", height.slew_bound_m, "m", 0.01, 1e3, "… and of more than this the rest at once.");
   add("gate_sigma", height.gate_sigma, "", 2.0, 20.0,
       "A pressure farther off than this many sigmas is not used …");
   add("gate_time_s", height.gate_time_s, "s", 0.0, 60.0,
       "… for this long at most. Doors last 1 to 2 s; after that the pressure is right.");
   add("barometer_timeout_s", height.barometer_timeout_s, "s", 0.2, 60.0,
-      "A barometer silent for longer is lost.");
+      "A barometer without a usable sample for longer is lost: the height is held.");
   add("moving_ground_speed_m_s", height.moving_ground_speed_m_s, "m/s", 0.02, 5.0,
       "The ground moves (elevator) when acceleration and wheels differ by more than this …");
   add("moving_ground_sigma", height.moving_ground_sigma, "", 2.0, 20.0,

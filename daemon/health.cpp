@@ -59,6 +59,24 @@ void add_stream(HealthReport& report, const std::string& name, std::int64_t last
   }
 }
 
+const char* sentence_of(BarometerFault fault) {
+  switch (fault) {
+    case BarometerFault::kOk:
+      return "well";
+    case BarometerFault::kOff:
+      return "off: silent";
+    case BarometerFault::kStuck:
+      return "stuck: its value does not change by one bit";
+    case BarometerFault::kSpiking:
+      return "spiking: single values jump again and again";
+    case BarometerFault::kDrifting:
+      return "drifting: it moves as no weather and no height does";
+    case BarometerFault::kWrong:
+      return "wrong: its values are impossible, or have jumped to where nothing can have brought them";
+  }
+  return "unknown";
+}
+
 }  // namespace
 
 HealthMonitor::HealthMonitor(const Config& config, std::vector<std::string> realtime_refusals)
@@ -77,6 +95,7 @@ void HealthMonitor::fill(const StatusSnapshot& now, HealthReport& report) {
   report.entry_count = 0;
   fill_lidar(now, elapsed_s, report);
   fill_samples(now, elapsed_s, report);
+  fill_faults(now, report);
   fill_estimate(now, report);
   for (std::size_t i = 0; i < refusals_.size(); ++i) {  // numbered: news() knows an entry by its name
     report.add("realtime/" + std::to_string(i + 1), HealthLevel::kWarning, refusals_[i], 0.0);
@@ -164,6 +183,28 @@ void HealthMonitor::fill_barometer(const StatusSnapshot& now, double rate_hz, He
             ("baro lines refused: barometer.source is " + config_.barometer.source).c_str());
   add_count(report, "barometer/no_memory", now.barometer.samples_without_memory,
             last_.barometer.samples_without_memory, "samples dropped: no free chunk of shared memory");
+}
+
+// Silence of a stream is said by its own entry; here is what the values themselves say.
+void HealthMonitor::fill_faults(const StatusSnapshot& now, HealthReport& report) {
+  const BarometerHealth& health = now.prior.barometers;
+  const auto add = [&report](const char* name, BarometerFault fault) {
+    // Silence is an error already, of the stream.
+    const bool well = fault == BarometerFault::kOk || fault == BarometerFault::kOff;
+    report.add(name, well ? HealthLevel::kOk : HealthLevel::kWarning, sentence_of(fault),
+               static_cast<double>(fault));
+  };
+  if (now.prior.counters.pressure_accepted > 0) add("barometer/fault", health.robot);
+  if (health.base_heard[0]) add("base_station/fault", health.base[0]);
+  if (health.base_heard[1]) add("base_station_2/fault", health.base[1]);
+  if (!health.base_heard[0] || !health.base_heard[1]) return;
+  const char* sentence = health.base_undecided ? "both are there and disagree, nobody can tell which is wrong"
+                         : health.base_usable == 2  ? "both agree"
+                         : health.base_usable == 0  ? "none is left: the last pressure is held"
+                         : health.base_active == 0U ? "only the first is left"
+                                                    : "only the second is left";
+  const bool well = health.base_usable == 2 && !health.base_undecided;
+  report.add("base_stations", well ? HealthLevel::kOk : HealthLevel::kWarning, sentence, health.base_usable);
 }
 
 void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& report) const {

@@ -46,6 +46,7 @@ class HealthMonitor {
   void fill_lidar(const StatusSnapshot& now, double elapsed_s, ipc::HealthReport& report) const;
   void fill_samples(const StatusSnapshot& now, double elapsed_s, ipc::HealthReport& report) const;
   void fill_barometer(const StatusSnapshot& now, double rate_hz, ipc::HealthReport& report) const;
+  static void fill_faults(const StatusSnapshot& now, ipc::HealthReport& report);
   void fill_estimate(const StatusSnapshot& now, ipc::HealthReport& report) const;
 
   Config config_;

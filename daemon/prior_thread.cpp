@@ -56,6 +56,7 @@ void PriorThread::drain() noexcept {
     describe(prior);
   }
   own_.counters = estimator_.counters();
+  own_.barometers = estimator_.barometers();
   own_.dropped_samples = imu_.dropped() + barometer_.dropped() + base_barometer_.dropped() + wheel_.dropped();
   status_.put(own_);
 }

@@ -23,6 +23,7 @@ struct PriorStatus {
   double height_m = 0.0;
   double height_variance_m2 = 0.0;
   HeightSource height_source = HeightSource::kNone;
+  BarometerHealth barometers;
   bool attitude_valid = false;
 };
 

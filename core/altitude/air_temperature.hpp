@@ -24,11 +24,11 @@ namespace isobar {
 /// already warm.
 class AirTemperatureTracker {
  public:
-  static constexpr std::size_t kSensors = 2;
+  static constexpr std::size_t kSensors = 3;  ///< robot's, two base stations'
 
   explicit AirTemperatureTracker(const AirTemperatureConfig& config);
 
-  /// Takes a reading of sensor 0 or 1. Readings that are not finite, outside -60 … 100 degC or back in time
+  /// Takes a reading of one sensor. Readings that are not finite, outside -60 … 100 degC or back in time
   /// do nothing.
   void add(std::size_t sensor, std::int64_t stamp_ns, double temperature_c);
 

@@ -64,18 +64,23 @@ struct AltimeterConfig {
   double base_walk_pa_sqrt_s = 0.06;
 
   /// A base station silent for longer is lost [s], 0.5 … 600: its last pressure is held, the height
-  /// becomes a single barometer's. Weather moves 0.1 to 0.3 Pa meanwhile.
+  /// becomes a single barometer's. Weather moves 0.1 to 0.3 Pa meanwhile. Samples that are older than this
+  /// when they arrive are refused.
   double base_timeout_s = 10.0;
 
   /// Difference between successive samples of one sensor that no motion explains [Pa], 1 … 1e5: a spike.
   /// 200 Pa is 17 m in one sample. A new level is believed once `spike_confirmations` samples agree on it (1
   /// … 1000).
   double spike_pa = 200.0;
-  std::uint32_t spike_confirmations = 16;
+  std::uint32_t spike_confirmations = 5;
 
-  /// A sensor whose value has not changed by one bit for longer is stuck, and counts as silent [s], 0.5 …
-  /// 600. Noise alone changes a working sensor's last digit at every conversion.
-  double stuck_timeout_s = 3.0;
+  /// A sensor whose value has not changed by one bit for longer (or for six of its own intervals) is stuck,
+  /// and counts as silent [s], 0.5 … 600. Noise alone changes a working sensor's last digit at every
+  /// conversion.
+  double stuck_timeout_s = 1.5;
+
+  /// A sensor that has sent nothing for longer (or for three of its own intervals) is off [s], 0.05 … 60.
+  double silent_timeout_s = 0.4;
 };
 
 }  // namespace isobar

@@ -13,6 +13,7 @@ enum class PressureStatus : std::uint8_t {
   kAccepted,
   kBadValue,  ///< not finite, outside the plausible range, or a spike
   kBadTime,   ///< not newer than the one before
+  kStale,     ///< of a base station, and too old for the robot's clock
   kRepeated,  ///< bit for bit the value before: polled faster than converted, or stuck
 };
 
@@ -27,26 +28,16 @@ class PressureGate {
   [[nodiscard]] std::int64_t fresh_stamp_ns() const { return fresh_stamp_ns_; }
   /// Time of the last sample that was at least plausible, repeats included.
   [[nodiscard]] std::int64_t alive_stamp_ns() const { return alive_stamp_ns_; }
-  /// What this sensor's readings have jumped by since it started [Pa]; to be subtracted from them. A
-  /// sustained jump that no motion explains (a fault, a hatch, a compressor) is the sensor's or the room's,
-  /// not height.
-  [[nodiscard]] double jumped_pa() const { return jumped_pa_; }
   /// The clock jumped: the next sample follows at once, whatever its stamp.
   void restart_clock() { time_known_ = false; }
   [[nodiscard]] bool started() const { return started_; }
-  /// Silent for `timeout_s`, or unchanged for the stuck time-out.
-  [[nodiscard]] bool lost(std::int64_t now_ns, double timeout_s) const;
 
  private:
   [[nodiscard]] bool is_spike(const PressureSample& sample);
-  void settle_jump();
 
   AltimeterConfig config_;
-  double pressure_pa_ = 0.0;    // last one accepted
-  double level_pa_ = 0.0;       // low-passed
-  double candidate_pa_ = 0.0;   // last refused one
-  double candidate_sum_ = 0.0;  // of those that agree
-  double jumped_pa_ = 0.0;
+  double pressure_pa_ = 0.0;   // last one accepted
+  double candidate_pa_ = 0.0;  // last refused one
   std::uint32_t agreeing_ = 0;
   std::int64_t fresh_stamp_ns_ = 0;
   std::int64_t alive_stamp_ns_ = 0;

@@ -15,6 +15,9 @@ constexpr double kForkLifeS = 3.0;
 constexpr double kForkMinAgeS = 0.5;
 // The wheels must disagree for this long before the ground is said to move: longer than a bump.
 constexpr double kDisagreementS = 0.08;
+// In a ride the pressure goes with the fork, not with the wheels. A fork that fits it worse than the wheels
+// do by more than this was shaken away from them.
+constexpr double kForkMisfitM = 0.15;
 // Low-pass of the vertical acceleration that tells the end of a ride, and what counts as none.
 constexpr double kAccelSmoothingS = 0.3;
 constexpr double kQuietAccel = 0.12;
@@ -26,14 +29,24 @@ constexpr double kRideSpeed = 0.7;
 // In a ride nothing but pressure holds the vertical speed: a door leaves it off by 0.3 m/s, so the gate opens
 // sooner.
 constexpr double kRideGateS = 1.0;
+// Wheels that have been heard within this hold the vertical speed.
+constexpr double kHeldS = 0.5;
+// Wheels tell weather from climb less well than the filter thinks, their errors last: this share of the
+// weather is doubted in what is reported.
+constexpr double kWeatherDoubt = 0.5;
 // Delay of a pressure sample that is still compensated for.
 constexpr double kMaxDelayS = 1.0;
 // A pressure that kept moving by more than this share of its offset is a ramp, not a step.
 constexpr double kRampShare = 0.5;
 constexpr double kRampMinM = 0.3;
-// Faster than this no height leaves what acceleration and wheels predict: the pressure itself has stepped.
-constexpr double kStepMinM = 0.3;
-constexpr double kUnfeltSpeed = 2.0;
+// How much of a step is left after the prediction has been taken for it, 1 sigma: far more than the
+// prediction is ever wrong by.
+constexpr double kOpenStepSigmaM = 30.0;
+// A step of more than this is no door, which would come back in a second or two: the wait is shorter.
+constexpr double kAbsurdM = 20.0;
+constexpr double kAbsurdWaitS = 0.3;
+// Pressures after a fault of any size has been taken off stay positive.
+constexpr double kLeastRatio = 0.05;
 
 double squared(double x) { return x * x; }
 
@@ -42,22 +55,30 @@ double squared(double x) { return x * x; }
 HeightFilter::HeightFilter(const HeightConfig& config)
     : config_(config),
       filter_(config),
-      forks_{Fork{VerticalFilter(config), 0.0}, Fork{VerticalFilter(config), 0.0}} {}
+      forks_{Fork{VerticalFilter(config), 0.0}, Fork{VerticalFilter(config), 0.0}},
+      judge_(config.gate_sigma),
+      slew_(config.slew_rate_m_s, config.slew_bound_m) {}
 
 void HeightFilter::start(double z_m, double vz_sigma_m_s) {
   filter_.start(z_m, vz_sigma_m_s);
   restart_forks();
   ground_moves_ = false;
-  gated_ = false;
+  judge_.restart();
+  slew_.restart();
+  fault_share_ = alone_s_ = 0.0;
+  faulty_ = false;
   started_ = true;
 }
 
 void HeightFilter::restart_forks() {
   for (Fork& fork : forks_) fork = {filter_, 0.0};
-  disagreeing_s_ = 0.0;
+  disagreeing_s_ = fork_misfit_m_ = 0.0;
 }
 
 void HeightFilter::predict(double up_accel_m_s2, double dt_s, double accel_density) {
+  slew_.advance(dt_s);
+  since_climb_s_ += dt_s;
+  alone_s_ += weather_moves_ ? dt_s : 0.0;
   const double density = std::max(accel_density, squared(config_.accel_noise_m_s_sqrt_s));
   filter_.predict(up_accel_m_s2, dt_s, density, weather_moves_);
   const double accel = up_accel_m_s2 - filter_.value(VerticalFilter::kAccelBias);
@@ -78,8 +99,7 @@ void HeightFilter::bridge(double dt_s) {
   filter_.inflate(VerticalFilter::kZ, squared(kRideSpeed * dt_s));
   filter_.inflate(VerticalFilter::kVz, squared(std::min(kRideSpeed, kRideSpeed * dt_s)));
   restart_forks();
-  gated_ = false;
-  has_used_ = false;
+  judge_.restart();
 }
 
 void HeightFilter::update_climb(double climb_m_s, double forward_m_s, double dt_s, double attitude_variance) {
@@ -91,6 +111,7 @@ void HeightFilter::update_climb(double climb_m_s, double forward_m_s, double dt_
   const double density = 2.0 * config_.slope_error_correlation_s * slope_variance * squared(forward_m_s) +
                          2.0 * config_.slip_correlation_s * squared(config_.slip_share * climb_m_s) +
                          squared(config_.rest_speed_m_s_sqrt_s);
+  since_climb_s_ = 0.0;
   watch_ground(climb_m_s, forward_m_s, dt_s, speed_variance);
   if (!ground_moves_) filter_.update_climb(climb_m_s, forward_m_s, density / dt_s);
 }
@@ -104,6 +125,10 @@ void HeightFilter::watch_ground(double climb_m_s, double forward_m_s, double dt_
                                   config_.moving_ground_sigma * std::sqrt(innovation.variance));
     disagreeing_s_ = std::abs(innovation.value) > limit ? disagreeing_s_ + dt_s : 0.0;
     if (disagreeing_s_ < kDisagreementS) return;
+    if (fork_misfit_m_ > kForkMisfitM) {
+      restart_forks();
+      return;
+    }
     filter_ = fork.filter;
     ground_moves_ = true;
     agreeing_s_ = 0.0;
@@ -122,15 +147,25 @@ void HeightFilter::update_bounded_speed(double dt_s) {
   filter_.update_climb(0.0, 0.0, squared(kBoundedSpeed) * std::max(1.0, 2.0 * kBoundedSpeedS / dt_s));
 }
 
+double HeightFilter::variance_m2() const {
+  const double weather_m2 =
+      squared(config_.weather_rate_m_s * alone_s_) + squared(config_.weather_walk_m_sqrt_s) * alone_s_;
+  return filter_.variance(VerticalFilter::kZ) + squared(slew_.rest_m()) + squared(kWeatherDoubt) * weather_m2;
+}
+
 void HeightFilter::handle_event(const AltimeterReading& reading) {
   weather_moves_ = reading.source != HeightSource::kDifferential;
+  if (!weather_moves_) alone_s_ = 0.0;
   const auto apply = [&](VerticalFilter& filter) {
+    if (reading.event == ReferenceEvent::kBaseLost) filter.release_weather();
     if (reading.event == ReferenceEvent::kBaseJoined) filter.fold_weather_into_offset();
     // The height reading moved by minus the weather that had crept into it.
     if (reading.event == ReferenceEvent::kBaseReturned) {
       filter.settle_weather(-reading.weather_shift_m, reading.noise_variance_m2);
     }
   };
+  if (reading.event == ReferenceEvent::kBaseReturned || reading.event == ReferenceEvent::kBaseSwitched)
+    slew_.begin();
   apply(filter_);
   for (Fork& fork : forks_) apply(fork.filter);
 }
@@ -138,54 +173,96 @@ void HeightFilter::handle_event(const AltimeterReading& reading) {
 PressureUse HeightFilter::update_pressure(const AltimeterReading& reading, double lever_m,
                                           std::int64_t now_ns) {
   if (!started_) return PressureUse::kGated;
+  const double before_m = filter_.value(VerticalFilter::kZ);
   handle_event(reading);
-  const double height_m = reading.height_m - lever_m;
   const double delay_s = std::clamp(seconds_between(reading.stamp_ns, now_ns), 0.0, kMaxDelayS);
-  const auto innovation = filter_.pressure_innovation(height_m, delay_s, reading.noise_variance_m2);
-  const PressureUse use = gate(reading, innovation);
-  if (use == PressureUse::kGated) return use;
-  filter_.update_pressure(height_m, delay_s, reading.noise_variance_m2);
-  if (use == PressureUse::kStep) restart_forks();
+  const PressureUse use = use_pressure(reading, lever_m, delay_s);
+  // Where only pressure holds the vertical speed nothing of it may wait, but for the event itself.
+  const bool event =
+      reading.event == ReferenceEvent::kBaseReturned || reading.event == ReferenceEvent::kBaseSwitched;
+  const bool held = !ground_moves_ && since_climb_s_ < kHeldS;
+  if (event || (slew_.open() && held)) slew_.hold_back(filter_.value(VerticalFilter::kZ) - before_m);
   return use;
 }
 
-PressureUse HeightFilter::gate(const AltimeterReading& reading,
-                               const VerticalFilter::Innovation& innovation) {
-  if (squared(innovation.value) <= squared(config_.gate_sigma) * innovation.variance) {
-    gated_ = false;
-    has_used_ = true;
-    last_used_m_ = innovation.value;
-    last_height_m_ = reading.height_m;
-    last_used_ns_ = reading.stamp_ns;
+PressureUse HeightFilter::use_pressure(const AltimeterReading& reading, double lever_m, double delay_s) {
+  const DisturbanceJudge::Evidence evidence = evidence_of(reading, lever_m, delay_s);
+  const DisturbanceJudge::Verdict verdict = judge_.judge(evidence);
+  rolled_back_ = rolled_back_ && judge_.gated();
+  faulty_ = std::abs(evidence.without_step.value) > kAbsurdM;
+  using Verdict = DisturbanceJudge::Verdict;
+  if (verdict == Verdict::kWait) {
+    if (judge_.unfelt() && ground_moves_ && !rolled_back_) roll_back();
+    return PressureUse::kGated;
+  }
+  if (verdict == Verdict::kStep) open_step(reading, evidence);
+  if (verdict == Verdict::kReturned) close_step();
+  if (verdict == Verdict::kMotion) follow(evidence.innovation);
+  filter_.update_pressure(without_fault_m(reading) - lever_m, delay_s, reading.noise_variance_m2);
+  if (verdict == Verdict::kFits) {
+    compare_fork(reading, lever_m, delay_s, evidence.innovation.value);
     return PressureUse::kUsed;
   }
-  if (!gated_) {
-    gated_ = true;
-    gated_since_ns_ = reading.stamp_ns;
-    first_gated_m_ = innovation.value;
-    stepped_ = is_step(reading, innovation);
-  }
-  const double gated_s = seconds_between(gated_since_ns_, reading.stamp_ns);
-  const double limit_s = ground_moves_ ? std::min(kRideGateS, config_.gate_time_s) : config_.gate_time_s;
-  if (gated_s < limit_s) return PressureUse::kGated;
-  gated_ = false;
-  believe(innovation);
-  return PressureUse::kStep;
+  restart_forks();
+  return verdict == Verdict::kReturned ? PressureUse::kUsed : PressureUse::kStep;
 }
 
-bool HeightFilter::is_step(const AltimeterReading& reading,
-                           const VerticalFilter::Innovation& innovation) const {
-  const double since_s = std::max(0.0, seconds_between(last_used_ns_, reading.stamp_ns));
-  const double noise_m = config_.gate_sigma * std::sqrt(2.0 * reading.noise_variance_m2);
-  const double limit_m = std::max(kStepMinM, noise_m) + kUnfeltSpeed * since_s;
-  // Both: a shock to the accelerometer moves the prediction, a fast lift the pressure; neither is a step.
-  return has_used_ && std::abs(innovation.value - last_used_m_) > limit_m &&
-         std::abs(reading.height_m - last_height_m_) > limit_m;
+DisturbanceJudge::Evidence HeightFilter::evidence_of(const AltimeterReading& reading, double lever_m,
+                                                     double delay_s) const {
+  DisturbanceJudge::Evidence evidence;
+  evidence.stamp_ns = reading.stamp_ns;
+  evidence.height_m = without_fault_m(reading);
+  evidence.noise_variance_m2 = reading.noise_variance_m2;
+  evidence.innovation =
+      filter_.pressure_innovation(evidence.height_m - lever_m, delay_s, reading.noise_variance_m2);
+  evidence.step_open = filter_.step_open();
+  evidence.without_step =
+      filter_.innovation_without_step(reading.height_m - lever_m, delay_s, reading.noise_variance_m2);
+  // The fork's, too: the wheels may be what is wrong with the prediction.
+  evidence.climb_sigma_m_s = std::sqrt(
+      std::max(filter_.variance(VerticalFilter::kVz), older_fork().filter.variance(VerticalFilter::kVz)));
+  evidence.wait_s = ground_moves_ ? std::min(kRideGateS, config_.gate_time_s) : config_.gate_time_s;
+  if (std::abs(evidence.innovation.value) > kAbsurdM)
+    evidence.wait_s = std::min(kAbsurdWaitS, evidence.wait_s);
+  return evidence;
 }
 
-void HeightFilter::believe(const VerticalFilter::Innovation& innovation) {
-  const double moved_m = innovation.value - first_gated_m_;
-  filter_.inflate(stepped_ ? VerticalFilter::kOffset : VerticalFilter::kZ, squared(innovation.value));
+// A step adds pascals, not metres: thousands of metres off, the same climb is a different ratio of pressures.
+double HeightFilter::without_fault_m(const AltimeterReading& reading) const {
+  if (fault_share_ == 0.0) return reading.height_m;
+  const double ratio = std::exp(-reading.height_m / reading.scale_m) - fault_share_;
+  return -reading.scale_m * std::log(std::max(ratio, kLeastRatio));
+}
+
+void HeightFilter::open_step(const AltimeterReading& reading, const DisturbanceJudge::Evidence& evidence) {
+  const double expected_m = evidence.height_m - evidence.innovation.value;
+  fault_share_ = std::exp(-reading.height_m / reading.scale_m) - std::exp(-expected_m / reading.scale_m);
+  // What the pressure would say if the robot were where it is predicted is the beginning of a new offset.
+  filter_.open_step(kOpenStepSigmaM);
+}
+
+void HeightFilter::close_step() {
+  filter_.close_step();
+  fault_share_ = 0.0;
+}
+
+void HeightFilter::compare_fork(const AltimeterReading& reading, double lever_m, double delay_s,
+                                double innovation_m) {
+  const double height_m = without_fault_m(reading) - lever_m;
+  const auto of_fork = older_fork().filter.pressure_innovation(height_m, delay_s, reading.noise_variance_m2);
+  fork_misfit_m_ = std::abs(of_fork.value) - std::abs(innovation_m);
+}
+
+// In a ride nothing but pressure holds the vertical speed, so what a disturbance did to it before it was seen
+// would stay. A fork has taken no pressure since it was made, one to three seconds ago.
+void HeightFilter::roll_back() {
+  filter_ = older_fork().filter;
+  rolled_back_ = true;
+}
+
+void HeightFilter::follow(const VerticalFilter::Innovation& innovation) {
+  filter_.inflate(VerticalFilter::kZ, squared(innovation.value));
+  const double moved_m = judge_.moved_m();
   const bool ramp = std::abs(moved_m) > std::max(kRampMinM, kRampShare * std::abs(innovation.value)) &&
                     moved_m * innovation.value > 0.0;
   if (!ramp) return;

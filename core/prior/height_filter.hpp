@@ -6,7 +6,9 @@
 #include <cstdint>
 
 #include "core/altitude/differential_altimeter.hpp"
+#include "core/prior/disturbance_judge.hpp"
 #include "core/prior/prior_config.hpp"
+#include "core/prior/slew.hpp"
 #include "core/prior/vertical_filter.hpp"
 
 namespace isobar {
@@ -14,8 +16,8 @@ namespace isobar {
 /// What became of a pressure.
 enum class PressureUse : std::uint8_t {
   kUsed,
-  kGated,  ///< too far off, for not yet long enough
-  kStep,   ///< too far off for so long that the height was moved to it
+  kGated,  ///< too far off, and not yet understood
+  kStep,   ///< too far off for so long that the height was moved to it, or the pressure's own step
 };
 
 /// Height of the IMU's place from acceleration, wheels and pressure.
@@ -28,11 +30,12 @@ enum class PressureUse : std::uint8_t {
 ///   wheels, forked one to three seconds ago. Where such a fork's vertical speed leaves the wheels', the fork
 ///   becomes the filter (it has not been held down since before the ride began) and the wheels are left out
 ///   until both agree again.
-/// - *The pressure jumps* (door): it is left out for gate_time_s. If it then still stands elsewhere, the
-/// height follows: by a
-///   step where it drifted away, by a vertical speed where it ramps (a ride whose start was not felt). Where
-///   it went from one sample to the next, faster than anything rises, the height stays and the pressure's
-///   offset takes the step (another ventilation zone, a fault).
+/// - *The pressure jumps* (door, gust, ventilation zone, fault): DisturbanceJudge tells from acceleration and
+/// wheels what it is.
+///   A pulse is left out. A step becomes a state of its own: the height stays, the pressure goes on telling
+///   changes, and when the step is undone the height is as sure as before it. Only what crept away is
+///   followed: by a step of the height, or by a vertical speed where it ramps (a ride whose start was not
+///   felt).
 class HeightFilter {
  public:
   explicit HeightFilter(const HeightConfig& config);
@@ -56,10 +59,15 @@ class HeightFilter {
   /// `lever_m`: height of the pressure port above the IMU's place. `now_ns`: time of the last predict().
   PressureUse update_pressure(const AltimeterReading& reading, double lever_m, std::int64_t now_ns);
 
-  [[nodiscard]] double z_m() const { return filter_.value(VerticalFilter::kZ); }
+  /// As reported: corrections by a reference that came back are taken in slowly.
+  [[nodiscard]] double z_m() const { return filter_.value(VerticalFilter::kZ) + slew_.rest_m(); }
   [[nodiscard]] double vz_m_s() const { return filter_.value(VerticalFilter::kVz); }
-  [[nodiscard]] double variance_m2() const { return filter_.variance(VerticalFilter::kZ); }
+  [[nodiscard]] double variance_m2() const;
   [[nodiscard]] bool ground_moves() const { return ground_moves_; }
+  /// What the pressure is disturbed by, if it is.
+  [[nodiscard]] const DisturbanceJudge& disturbance() const { return judge_; }
+  /// The pressure is off by more than any air: a fault, and so far taken off.
+  [[nodiscard]] bool pressure_faulty() const { return faulty_; }
   [[nodiscard]] const VerticalFilter& filter() const { return filter_; }
 
  private:
@@ -69,12 +77,20 @@ class HeightFilter {
   };
 
   void handle_event(const AltimeterReading& reading);
-  PressureUse gate(const AltimeterReading& reading, const VerticalFilter::Innovation& innovation);
-  [[nodiscard]] bool is_step(const AltimeterReading& reading,
-                             const VerticalFilter::Innovation& innovation) const;
-  void believe(const VerticalFilter::Innovation& innovation);
+  PressureUse use_pressure(const AltimeterReading& reading, double lever_m, double delay_s);
+  [[nodiscard]] DisturbanceJudge::Evidence evidence_of(const AltimeterReading& reading, double lever_m,
+                                                       double delay_s) const;
+  void roll_back();
+  void compare_fork(const AltimeterReading& reading, double lever_m, double delay_s, double innovation_m);
+  void open_step(const AltimeterReading& reading, const DisturbanceJudge::Evidence& evidence);
+  void close_step();
+  [[nodiscard]] double without_fault_m(const AltimeterReading& reading) const;
+  void follow(const VerticalFilter::Innovation& innovation);
   void watch_ground(double climb_m_s, double forward_m_s, double dt_s, double speed_variance);
   void restart_forks();
+  [[nodiscard]] const Fork& older_fork() const {
+    return forks_[0].age_s >= forks_[1].age_s ? forks_[0] : forks_[1];
+  }
   [[nodiscard]] Fork& older_fork() { return forks_[0].age_s >= forks_[1].age_s ? forks_[0] : forks_[1]; }
 
   HeightConfig config_;
@@ -83,14 +99,14 @@ class HeightFilter {
   double accel_m_s2_ = 0.0;  // vertical, low-passed
   double agreeing_s_ = 0.0;  // how long wheels and filter have agreed again
   double disagreeing_s_ = 0.0;
-  double last_used_m_ = 0.0;  // innovation of the last pressure that was used, and its height
-  double last_height_m_ = 0.0;
-  double first_gated_m_ = 0.0;
-  std::int64_t last_used_ns_ = 0;
-  std::int64_t gated_since_ns_ = 0;
-  bool has_used_ = false;  // since the start or the last gap
-  bool gated_ = false;
-  bool stepped_ = false;  // the pressure left the gate from one sample to the next
+  double fork_misfit_m_ = 0.0;  // how much worse the older fork fitted the last pressure that was used
+  DisturbanceJudge judge_;
+  double fault_share_ = 0.0;  // pressure that an open step adds, as a share of the reference pressure
+  Slew slew_;
+  double since_climb_s_ = 1e9;  // since the wheels were heard
+  double alone_s_ = 0.0;        // how long there has been no base station
+  bool faulty_ = false;
+  bool rolled_back_ = false;  // in this disturbance
   bool ground_moves_ = false;
   bool weather_moves_ = true;
   bool started_ = false;

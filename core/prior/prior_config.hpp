@@ -116,23 +116,37 @@ struct HeightConfig {
   /// and constant from then on. Long enough to average turbulence; short enough that a ventilation zone
   /// entered later is not taken for an error of the beginning, which would shift all heights for good.
   double offset_learning_s = 15.0;
-  /// Random walk of the weather where no base station takes it out [m/sqrt(s)], 0 … 10. Fronts move 100 to
-  /// 130 Pa an hour, 2 to 3 mm/s, for hours: over ten minutes this walk grows as far, 1.2 m.
-  double weather_walk_m_sqrt_s = 0.05;
+  /// The weather where no base station takes it out: its rate, 1 sigma [m/s], 0 … 1, and a random walk
+  /// [m/sqrt(s)], 0 … 10. Fronts move 1 to 4 hPa in three hours, one way for hours: 0.025 Pa/s rms, 8.5 cm a
+  /// pascal. The walk is that of open air, 0.05 to 0.2 Pa/sqrt(s), and of a wind of 0.3 to 1 Pa that comes
+  /// and goes within a minute and that the base station no longer takes out: 0.2 Pa/sqrt(s) together. After
+  /// 120 s the standard deviation is 32 cm, after ten minutes 1.4 m.
+  double weather_rate_m_s = 0.0021;
+  double weather_walk_m_sqrt_s = 0.018;
 
   /// Drift of two barometers that warm up, which nothing shows: 1 sigma [m], 0 … 10, and time constant [s], 1
   /// … 1e5. Only added to the reported variance; a filter that believed it would leave errors of the wheels
   /// in the height.
   double warm_up_sigma_m = 0.05;
   double warm_up_time_s = 300.0;
+  /// Pressure between ventilated zones, which nothing shows either, 1 sigma [m], 0 … 10: 0.3 to 1 Pa. The
+  /// paper's runs show 2 to 35 cm. Only added to the reported variance, over the first minute.
+  double zone_sigma_m = 0.05;
+
+  /// A base station that returns has the weather since it was lost to tell: the reported height takes it in
+  /// at this speed [m/s], 1e-3 … 10, below the 2 cm/s that a map bears; of more than `slew_bound_m` [m], 0.01
+  /// … 1000, the rest at once, because minutes of a height known to be wrong are worse than a step.
+  double slew_rate_m_s = 0.012;
+  double slew_bound_m = 3.0;
 
   /// A pressure further off than this many sigmas is not used, 2 … 20 …
   double gate_sigma = 4.0;
   /// … for at most this long [s], 0 … 60: doors last 1 to 2 s. After that the pressure is right.
   double gate_time_s = 3.0;
 
-  /// A barometer silent for longer is lost [s], 0.2 … 60.
-  double barometer_timeout_s = 1.0;
+  /// A barometer without a usable sample for longer (or for three of its own intervals) is lost [s], 0.2 …
+  /// 60: the height is held. Soon enough to be said within half a second.
+  double barometer_timeout_s = 0.4;
 
   /// The ground moves (elevator) when acceleration says that the vertical speed differs from the wheels' by
   /// more than this [m/s], 0.02 … 5, and by `moving_ground_sigma` standard deviations, 2 … 20; …

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/altitude/stamp.hpp"
 #include "core/prior/attitude_filter.hpp"
@@ -34,6 +35,10 @@ constexpr double kMostGravity = 13.0;
 // Vertical speed at the start of a platform on wheels, and of one that hangs [m/s].
 constexpr double kStartClimbOnWheels = 0.05;
 constexpr double kStartClimbHanging = 0.3;
+// Within this a robot may have left the ventilated zone in which it started.
+constexpr double kZoneTimeS = 30.0;
+// A pressure that is no height for longer than a door is a fault.
+constexpr double kWrongS = 1.5;
 // The attitude of the IMU's own filter as a rate is believed within this of the gyro [rad/s].
 constexpr double kDeviceRateTolerance = 0.1;
 constexpr double kDeviceRateSigma = 0.01;
@@ -76,6 +81,7 @@ struct PriorEstimator::State {
 
   PriorConfig config;
   PriorCounters counters;
+  BarometerHealth barometers;
   Eigen::Matrix3d R_base_imu;
   Eigen::Quaterniond q_base_imu;
   Eigen::Vector3d p_base_imu;
@@ -122,10 +128,19 @@ struct PriorEstimator::State {
   void use_wheels(std::int64_t stamp_ns, double dt_s, bool on_wheels);
   void use_climb(double dt_s, bool on_wheels, bool pressure_lost);
   void fill(const ImuSample& sample, Prior& out) const;
+  void watch_barometers();
+  [[nodiscard]] BarometerFault robot_fault() const;
+  [[nodiscard]] bool disturbed_for(double seconds) const;
   [[nodiscard]] HeightSource source(std::int64_t stamp_ns) const;
   [[nodiscard]] bool bad_stamp(std::int64_t stamp_ns) const {
     if (!plausible_stamp(stamp_ns)) return true;
     return imu_gate.started() && seconds_between(imu_gate.stamp_ns(), stamp_ns) > config.limits.max_ahead_s;
+  }
+  /// Height of the pressure port as the wheels have it [m]; NaN where they cannot have it.
+  [[nodiscard]] double witness_m() const {
+    const bool known = attitude.started() && wheels.valid(imu_gate.stamp_ns()) && !height.ground_moves();
+    return known ? p_odom_base.z() + above_base(config.p_base_port)
+                 : std::numeric_limits<double>::quiet_NaN();
   }
   /// Height of a point of base_link above base_link's origin.
   [[nodiscard]] double above_base(const Eigen::Vector3d& p_base) const {
@@ -285,6 +300,7 @@ void PriorEstimator::State::move(const Eigen::Vector3d& gyro, const Eigen::Vecto
 HeightSource PriorEstimator::State::source(std::int64_t stamp_ns) const {
   if (reading_source == HeightSource::kNone) return HeightSource::kNone;
   if (altimeter.robot_lost(stamp_ns, config.height.barometer_timeout_s)) return HeightSource::kHeld;
+  if (disturbed_for(config.height.barometer_timeout_s)) return HeightSource::kHeld;
   return reading_source;
 }
 
@@ -310,8 +326,9 @@ void PriorEstimator::State::fill(const ImuSample& sample, Prior& out) const {
     const double on_for_s = std::max(0.0, seconds_between(height_start_ns, sample.stamp_ns));
     const double warm_up_m =
         config.height.warm_up_sigma_m * -std::expm1(-on_for_s / config.height.warm_up_time_s);
-    out.height_variance_m2 =
-        height.variance_m2() + squared(altimeter.scale_uncertainty() * out.height_m) + squared(warm_up_m);
+    const double zone_m = config.height.zone_sigma_m * -std::expm1(-on_for_s / kZoneTimeS);
+    out.height_variance_m2 = height.variance_m2() + squared(zone_m) +
+                             squared(altimeter.scale_uncertainty() * out.height_m) + squared(warm_up_m);
   }
   out.height_source = height.started() ? source(sample.stamp_ns) : HeightSource::kNone;
   out.velocity_valid = on_wheels && attitude.started();
@@ -324,12 +341,40 @@ void PriorEstimator::State::fill(const ImuSample& sample, Prior& out) const {
   out.standing_still = out.velocity_valid && standstill.standing() && !height.ground_moves();
 }
 
+bool PriorEstimator::State::disturbed_for(double seconds) const {
+  const DisturbanceJudge& judge = height.disturbance();
+  return judge.unfelt() && seconds_between(judge.gated_since_ns(), imu_gate.stamp_ns()) > seconds;
+}
+
+BarometerFault PriorEstimator::State::robot_fault() const {
+  const BarometerFault seen = altimeter.robot_fault();
+  if (seen != BarometerFault::kOk && seen != BarometerFault::kSpiking) return seen;
+  return disturbed_for(kWrongS) || height.pressure_faulty() ? BarometerFault::kWrong : seen;
+}
+
+void PriorEstimator::State::watch_barometers() {
+  const auto take = [](BarometerFault& known, BarometerFault now, std::uint64_t& count) {
+    if (now != known && now != BarometerFault::kOk && known == BarometerFault::kOk) ++count;
+    known = now;
+  };
+  take(barometers.robot, robot_fault(), counters.robot_faults);
+  for (std::size_t station = 0; station < barometers.base.size(); ++station) {
+    take(barometers.base[station], altimeter.base_fault(station), counters.base_faults);
+    barometers.base_heard[station] =
+        barometers.base_heard[station] || barometers.base[station] != BarometerFault::kOff;
+  }
+  barometers.base_active = static_cast<std::uint8_t>(altimeter.base_active());
+  barometers.base_usable = static_cast<std::uint8_t>(altimeter.base_usable_count());
+  barometers.base_undecided = altimeter.base_undecided();
+}
+
 PriorEstimator::PriorEstimator(const PriorConfig& config) : state_(std::make_unique<State>(config)) {}
 PriorEstimator::~PriorEstimator() = default;
 PriorEstimator::PriorEstimator(PriorEstimator&&) noexcept = default;
 PriorEstimator& PriorEstimator::operator=(PriorEstimator&&) noexcept = default;
 
 const PriorCounters& PriorEstimator::counters() const { return state_->counters; }
+const BarometerHealth& PriorEstimator::barometers() const { return state_->barometers; }
 
 bool PriorEstimator::add_imu(const ImuSample& sample, Prior& out) {
   State& s = *state_;
@@ -362,6 +407,8 @@ bool PriorEstimator::add_imu(const ImuSample& sample, Prior& out) {
     }
   }
   s.gyro_before = gyro;
+  s.altimeter.set_time(sample.stamp_ns);
+  s.watch_barometers();
   s.fill(sample, out);
   return true;
 }
@@ -375,10 +422,12 @@ void PriorEstimator::add_pressure(const PressureSample& measured) {
   const PressureSample sample = compensated(measured, s.compensation, s.counters.pressure_outside_calibration,
                                             s.counters.pressure_without_temperature);
   AltimeterReading reading;
+  s.altimeter.set_witness(s.witness_m());
   switch (s.altimeter.add_robot(sample, reading)) {
     case PressureStatus::kBadValue:
       ++s.counters.pressure_bad_value;
       return;
+    case PressureStatus::kStale:
     case PressureStatus::kBadTime:
       ++s.counters.pressure_bad_time;
       return;
@@ -390,6 +439,7 @@ void PriorEstimator::add_pressure(const PressureSample& measured) {
   }
   ++s.counters.pressure_accepted;
   if (reading.event == ReferenceEvent::kBaseLost) ++s.counters.base_lost;
+  if (reading.event == ReferenceEvent::kBaseSwitched) ++s.counters.base_switched;
   s.reading_source = reading.source;
   if (!s.attitude.started() || !s.height.started()) return;
   const double lever_m = s.above_base(s.config.p_base_port - s.p_base_imu);
@@ -414,6 +464,9 @@ void PriorEstimator::add_base_pressure(const PressureSample& measured) {
       return;
     case PressureStatus::kBadTime:
       ++s.counters.base_bad_time;
+      return;
+    case PressureStatus::kStale:
+      ++s.counters.base_stale;
       return;
     case PressureStatus::kRepeated:
       ++s.counters.base_repeated;

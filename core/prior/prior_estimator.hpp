@@ -3,9 +3,11 @@
 // at.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 
+#include "core/altitude/barometer_monitor.hpp"
 #include "core/estimates.hpp"
 #include "core/prior/prior_config.hpp"
 #include "core/samples.hpp"
@@ -35,11 +37,25 @@ struct PriorCounters {
   std::uint64_t base_bad_value = 0;
   std::uint64_t base_bad_time = 0;
   std::uint64_t base_repeated = 0;
-  std::uint64_t base_lost = 0;  ///< times the base station fell silent
+  std::uint64_t base_stale = 0;     ///< too old for the robot's clock when they arrived
+  std::uint64_t base_lost = 0;      ///< times that no base station was left
+  std::uint64_t base_switched = 0;  ///< times that one base station took over from another
+  std::uint64_t robot_faults = 0;   ///< times that the robot's barometer became faulty
+  std::uint64_t base_faults = 0;    ///< the same for base stations
   std::uint64_t wheel_accepted = 0;
   std::uint64_t wheel_bad_value = 0;
   std::uint64_t wheel_bad_time = 0;
   std::uint64_t moving_ground = 0;  ///< times the ground was seen to move (elevator rides)
+};
+
+/// How the barometers are.
+struct BarometerHealth {
+  BarometerFault robot = BarometerFault::kOff;
+  std::array<BarometerFault, 2> base{BarometerFault::kOff, BarometerFault::kOff};
+  std::uint8_t base_active = 0;      ///< the base station that heights are measured against, or were last
+  std::uint8_t base_usable = 0;      ///< base stations that could be measured against
+  std::array<bool, 2> base_heard{};  ///< ever
+  bool base_undecided = false;       ///< both are there, disagree, and nobody can tell which is wrong
 };
 
 /// Takes samples in order of arrival, gives one Prior an accepted IMU sample. No clock, no allocation after
@@ -62,6 +78,8 @@ class PriorEstimator {
   void add_wheel(const WheelSample& sample);
 
   [[nodiscard]] const PriorCounters& counters() const;
+  /// At the time of the last IMU sample.
+  [[nodiscard]] const BarometerHealth& barometers() const;
 
  private:
   struct State;

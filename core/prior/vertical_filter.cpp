@@ -28,6 +28,8 @@ void VerticalFilter::start(double z_m, double vz_sigma_m_s) {
   P_(kSlope, kSlope) = squared(config_.slope_sigma_rad);
   P_(kOffset, kOffset) = squared(kOffsetSigmaM);
   P_(kTurbulence, kTurbulence) = squared(config_.turbulence_sigma_m);
+  P_(kWeatherRate, kWeatherRate) = squared(config_.weather_rate_m_s);
+  step_open_ = false;
 }
 
 void VerticalFilter::predict(double up_accel_m_s2, double dt_s, double accel_density, bool weather_moves) {
@@ -54,7 +56,20 @@ void VerticalFilter::predict(double up_accel_m_s2, double dt_s, double accel_den
   P_(kSlope, kSlope) += squared(config_.slope_walk_rad_sqrt_s) * dt_s;
   P_(kTurbulence, kTurbulence) += squared(config_.turbulence_sigma_m) * (1.0 - keep * keep);
   if (offset_age_s_ >= 0.0) age_offset(dt_s);
-  if (weather_moves) P_(kWeather, kWeather) += squared(config_.weather_walk_m_sqrt_s) * dt_s;
+  if (weather_moves) drift_weather(dt_s);
+}
+
+void VerticalFilter::drift_weather(double dt_s) {
+  x_[kWeather] += dt_s * x_[kWeatherRate];
+  P_.row(kWeather) += dt_s * P_.row(kWeatherRate);
+  P_.col(kWeather) += dt_s * P_.col(kWeatherRate);
+  P_(kWeather, kWeather) += squared(config_.weather_walk_m_sqrt_s) * dt_s;
+  // Gauss-Markov of the rate: a front goes by, and another comes.
+  const double keep = std::exp(-dt_s / kWeatherRateTimeS);
+  x_[kWeatherRate] *= keep;
+  P_.row(kWeatherRate) *= keep;
+  P_.col(kWeatherRate) *= keep;
+  P_(kWeatherRate, kWeatherRate) += squared(config_.weather_rate_m_s) * (1.0 - keep * keep);
 }
 
 void VerticalFilter::age_offset(double dt_s) {
@@ -70,7 +85,7 @@ void VerticalFilter::age_offset(double dt_s) {
 
 VerticalFilter::Vector VerticalFilter::pressure_row(double delay_s) const {
   Vector h = Vector::Zero();
-  h[kZ] = h[kOffset] = h[kTurbulence] = h[kWeather] = 1.0;
+  h[kZ] = h[kOffset] = h[kTurbulence] = h[kWeather] = h[kStep] = 1.0;
   h[kVz] = -delay_s;
   return h;
 }
@@ -92,6 +107,13 @@ VerticalFilter::Innovation VerticalFilter::pressure_innovation(double height_m, 
   return innovation(pressure_row(delay_s), height_m, variance_m2);
 }
 
+VerticalFilter::Innovation VerticalFilter::innovation_without_step(double height_m, double delay_s,
+                                                                   double variance_m2) const {
+  Vector h = pressure_row(delay_s);
+  h[kStep] = 0.0;
+  return innovation(h, height_m, variance_m2);
+}
+
 void VerticalFilter::update_pressure(double height_m, double delay_s, double variance_m2) {
   update(pressure_row(delay_s), height_m, variance_m2);
   if (offset_age_s_ < 0.0) offset_age_s_ = 0.0;
@@ -106,22 +128,48 @@ void VerticalFilter::update_climb(double climb_m_s, double forward_m_s, double v
   update(climb_row(forward_m_s), climb_m_s, variance);
 }
 
+void VerticalFilter::forget(State state) {
+  x_[state] = 0.0;
+  P_.row(state).setZero();
+  P_.col(state).setZero();
+}
+
+void VerticalFilter::release_weather() {
+  forget(kWeatherRate);
+  P_(kWeatherRate, kWeatherRate) = squared(config_.weather_rate_m_s);
+}
+
+// The gain is that of a Kalman filter but for the motion, which the weather of minutes has nothing to say
+// about: what it was thought to be by is the walk's doing. Joseph's form holds for any gain.
 void VerticalFilter::settle_weather(double weather_m, double variance_m2) {
   Vector h = Vector::Zero();
   h[kWeather] = 1.0;
-  update(h, weather_m, variance_m2);
-  x_[kWeather] = 0.0;
-  P_.row(kWeather).setZero();
-  P_.col(kWeather).setZero();
+  const double S = P_(kWeather, kWeather) + variance_m2;
+  Vector K = P_.col(kWeather) / S;
+  K[kVz] = K[kAccelBias] = K[kSlope] = 0.0;
+  x_ += K * (weather_m - x_[kWeather]);
+  const Matrix keep = Matrix::Identity() - K * h.transpose();
+  P_ = (keep * P_ * keep.transpose() + variance_m2 * K * K.transpose()).eval();
+  P_ = (0.5 * (P_ + P_.transpose())).eval();
+  forget(kWeather);
 }
 
 void VerticalFilter::fold_weather_into_offset() {
   x_[kOffset] += x_[kWeather];
   P_.row(kOffset) += P_.row(kWeather);
   P_.col(kOffset) += P_.col(kWeather);
-  x_[kWeather] = 0.0;
-  P_.row(kWeather).setZero();
-  P_.col(kWeather).setZero();
+  forget(kWeather);
+}
+
+void VerticalFilter::open_step(double sigma_m) {
+  forget(kStep);
+  P_(kStep, kStep) = squared(sigma_m);
+  step_open_ = true;
+}
+
+void VerticalFilter::close_step() {
+  forget(kStep);
+  step_open_ = false;
 }
 
 void VerticalFilter::update(const Vector& h, double measured, double variance) {

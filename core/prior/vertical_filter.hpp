@@ -12,13 +12,16 @@ namespace isobar {
 ///
 /// States: z [m], vz [m/s], b_a bias of the vertical acceleration [m/s^2], s slope error of the wheels [rad],
 /// b_p offset between the barometers [m], n slow local pressure noise (Gauss-Markov) [m],
-/// w weather since the base station was lost (random walk) [m].
+/// w weather since the base station was lost [m] and r its rate [m/s], q a step of the pressure that is no
+/// height (ventilation zone, fault) [m].
 ///
-///   dz/dt = vz,  dvz/dt = a_up - b_a,  barometer = z + b_p + n + w (+ lever arm),  wheels' climb = vz - s
-///   v_forward
+///   dz/dt = vz,  dvz/dt = a_up - b_a,  dw/dt = r (+ walk),  wheels' climb = vz - s v_forward
+///   barometer = z + b_p + n + w + q (+ lever arm)
 class VerticalFilter {
  public:
-  enum State { kZ, kVz, kAccelBias, kSlope, kOffset, kTurbulence, kWeather, kStates };
+  enum State { kZ, kVz, kAccelBias, kSlope, kOffset, kTurbulence, kWeather, kWeatherRate, kStep, kStates };
+  /// How long a front moves the pressure one way: correlation time of the weather's rate [s].
+  static constexpr double kWeatherRateTimeS = 7'200.0;
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Matrix = Eigen::Matrix<double, kStates, kStates>;
 
@@ -38,16 +41,27 @@ class VerticalFilter {
 
   /// A barometer's height of the IMU's place, measured `delay_s` ago.
   [[nodiscard]] Innovation pressure_innovation(double height_m, double delay_s, double variance_m2) const;
+  /// The same if the step were over.
+  [[nodiscard]] Innovation innovation_without_step(double height_m, double delay_s, double variance_m2) const;
   void update_pressure(double height_m, double delay_s, double variance_m2);
 
   /// Vertical speed as wheels and attitude see it, at forward speed `forward_m_s`.
   [[nodiscard]] Innovation climb_innovation(double climb_m_s, double forward_m_s, double variance) const;
   void update_climb(double climb_m_s, double forward_m_s, double variance);
 
+  /// The base station is lost: from here on nothing is known of the weather but how fast it can be.
+  void release_weather();
   /// The weather since the base station was lost is known now: `weather_m`. The state is zero afterwards.
   void settle_weather(double weather_m, double variance_m2);
   /// The weather so far becomes part of the constant offset (a base station has joined).
   void fold_weather_into_offset();
+
+  /// The pressure has stepped, by nobody knows how much: `sigma_m` is far more than that. The next pressure
+  /// tells. What was known of the offset is kept, for when the step is over.
+  void open_step(double sigma_m);
+  /// The pressure is back where it was before the step.
+  void close_step();
+  [[nodiscard]] bool step_open() const { return step_open_; }
 
   void inflate(State state, double variance) { P_(state, state) += variance; }
 
@@ -60,12 +74,15 @@ class VerticalFilter {
   [[nodiscard]] Vector climb_row(double forward_m_s) const;
   [[nodiscard]] Innovation innovation(const Vector& h, double measured, double variance) const;
   void age_offset(double dt_s);
+  void drift_weather(double dt_s);
+  void forget(State state);
   void update(const Vector& h, double measured, double variance);
 
   HeightConfig config_;
   Vector x_ = Vector::Zero();
   Matrix P_ = Matrix::Zero();
   double offset_age_s_ = -1.0;  // since the first pressure; negative before it
+  bool step_open_ = false;
 };
 
 }  // namespace isobar

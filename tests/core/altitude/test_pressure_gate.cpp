@@ -39,20 +39,6 @@ TEST_CASE("spikes are refused, a new level is believed once it has been confirme
   CHECK(gate.check(sample(t += 0.03, 9e4)) == PressureStatus::kAccepted);
 }
 
-TEST_CASE("repeats keep a sensor alive for the stuck time-out only") {
-  AltimeterConfig config;
-  config.stuck_timeout_s = 3.0;
-  PressureGate gate{config};
-  gate.check(sample(0.0, 1e5));
-  double t = 0.0;
-  while (t < 2.9) CHECK(gate.check(sample(t += 0.1, 1e5)) == PressureStatus::kRepeated);
-  CHECK_FALSE(gate.lost(static_cast<std::int64_t>(2.95e9), 1.0));
-  CHECK(gate.lost(static_cast<std::int64_t>(3.5e9), 1.0));
-  CHECK(gate.check(sample(4.0, 1e5 + 0.1)) == PressureStatus::kAccepted);
-  CHECK_FALSE(gate.lost(static_cast<std::int64_t>(4.1e9), 1.0));
-  CHECK(gate.lost(static_cast<std::int64_t>(5.1e9), 1.0));
-}
-
 TEST_CASE("after a jump of the clock the next sample follows") {
   PressureGate gate{AltimeterConfig{}};
   gate.check(sample(1000.0, 1e5));

@@ -63,8 +63,8 @@ TEST_CASE("a silent barometer is held, its variance grows, and it returns withou
   SimulatedRobot robot = robot_for(60.0);
   robot.robot_on = [](double t) { return t < 20.0 || t > 40.0; };
   const auto comparisons = run(robot, config_for(robot), 2, nullptr, 2);
-  CHECK(at_time(comparisons, 20.5).prior.height_source == HeightSource::kDifferential);
-  CHECK(at_time(comparisons, 21.5).prior.height_source == HeightSource::kHeld);
+  CHECK(at_time(comparisons, 20.3).prior.height_source == HeightSource::kDifferential);
+  CHECK(at_time(comparisons, 20.5).prior.height_source == HeightSource::kHeld);
   CHECK(at_time(comparisons, 39.0).prior.height_variance_m2 >
         at_time(comparisons, 21.0).prior.height_variance_m2);
   CHECK(at_time(comparisons, 41.0).prior.height_source == HeightSource::kDifferential);

@@ -25,6 +25,9 @@ TEST_CASE("the covariance is propagated as F P F^T + Q") {
   F(V::kZ, V::kAccelBias) = -0.5 * dt * dt;
   F(V::kVz, V::kAccelBias) = -dt;
   F(V::kTurbulence, V::kTurbulence) = keep;
+  const double keep_rate = std::exp(-dt / V::kWeatherRateTimeS);
+  F(V::kWeather, V::kWeatherRate) = dt;
+  F(V::kWeatherRate, V::kWeatherRate) = keep_rate;
   V::Matrix Q = V::Matrix::Zero();
   Q(V::kZ, V::kZ) = 1e-4 * dt * dt * dt / 3.0;
   Q(V::kZ, V::kVz) = Q(V::kVz, V::kZ) = 1e-4 * dt * dt / 2.0;
@@ -33,6 +36,7 @@ TEST_CASE("the covariance is propagated as F P F^T + Q") {
   Q(V::kSlope, V::kSlope) = std::pow(config.slope_walk_rad_sqrt_s, 2) * dt;
   Q(V::kTurbulence, V::kTurbulence) = std::pow(config.turbulence_sigma_m, 2) * (1.0 - keep * keep);
   Q(V::kWeather, V::kWeather) = std::pow(config.weather_walk_m_sqrt_s, 2) * dt;
+  Q(V::kWeatherRate, V::kWeatherRate) = std::pow(config.weather_rate_m_s, 2) * (1.0 - keep_rate * keep_rate);
   const V::Matrix expected = F * filter.covariance() * F.transpose() + Q;
   filter.predict(0.0, dt, 1e-4, true);
   CHECK((filter.covariance() - expected).cwiseAbs().maxCoeff() < 1e-12);
@@ -128,4 +132,25 @@ TEST_CASE("weather becomes part of the offset, or is settled when it is known") 
   settled.settle_weather(0.4, 1e-6);
   CHECK(std::abs(settled.value(V::kZ)) < 0.3 * std::abs(filter.value(V::kZ)));
   CHECK(settled.variance(V::kZ) < filter.variance(V::kZ));
+}
+
+TEST_CASE("a step takes all of a jump, and when it is over the offset is as sure as before it") {
+  HeightConfig config;
+  V filter(config);
+  filter.start(0.0, 0.01);
+  for (int i = 0; i < 200; ++i) {
+    filter.predict(0.0, 0.01, 1e-6, false);
+    filter.update_pressure(0.0, 0.0, 1e-4);
+  }
+  const double before_m = filter.value(V::kZ);
+  const double offset_variance_m2 = filter.variance(V::kOffset);
+  filter.open_step(100.0);
+  filter.update_pressure(7.0, 0.0, 1e-4);
+  CHECK(filter.value(V::kStep) == doctest::Approx(7.0).epsilon(1e-2));
+  CHECK(std::abs(filter.value(V::kZ) - before_m) < 1e-4);
+  CHECK(filter.innovation_without_step(0.0, 0.0, 1e-4).value == doctest::Approx(0.0).epsilon(1e-3));
+  filter.close_step();
+  CHECK_FALSE(filter.step_open());
+  CHECK(std::abs(filter.pressure_innovation(0.0, 0.0, 1e-4).value) < 1e-2);
+  CHECK(filter.variance(V::kOffset) == doctest::Approx(offset_variance_m2).epsilon(1e-3));
 }

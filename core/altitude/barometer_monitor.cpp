@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/altitude/barometer_monitor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/altitude/stamp.hpp"
+
+namespace isobar {
+namespace {
+
+// So many of its own intervals a sensor may be silent, or unchanged.
+constexpr double kSilentIntervals = 3.0;
+constexpr double kUnchangedIntervals = 6.0;
+// Slower sensors than this are lost between two samples.
+constexpr double kSlowestS = 10.0;
+constexpr double kIntervalShare = 0.1;
+// Only refused values for this long: not a spike but a fault [s].
+constexpr double kRefusedS = 0.5;
+// Three spikes within ten seconds are a habit.
+constexpr double kSpikeMemoryS = 10.0;
+constexpr double kSpikeHabit = 2.0;
+
+void learn(double& interval_s, double measured_s) {
+  measured_s = std::min(measured_s, kSlowestS);
+  if (interval_s <= 0.0) {
+    interval_s = measured_s;
+    return;
+  }
+  // A pause is no new rate, but a sensor that has become slower is followed.
+  interval_s += kIntervalShare * (std::min(measured_s, 2.0 * interval_s) - interval_s);
+}
+
+}  // namespace
+
+double noise_variance_pa2(const PressureSample& sample, const NoiseEstimator& seen,
+                          const AltimeterConfig& config) {
+  if (!(sample.variance_pa2 > 0.0)) return seen.variance();
+  return std::clamp(sample.variance_pa2, config.noise_floor_pa * config.noise_floor_pa,
+                    config.noise_ceiling_pa * config.noise_ceiling_pa);
+}
+
+void BarometerMonitor::learn_interval(std::int64_t now_ns) {
+  if (heard_ && now_ns > arrived_ns_) learn(interval_s_, seconds_between(arrived_ns_, now_ns));
+  arrived_ns_ = std::max(now_ns, heard_ ? arrived_ns_ : now_ns);
+  heard_ = true;
+}
+
+PressureStatus BarometerMonitor::check(const PressureSample& sample, std::int64_t now_ns) {
+  const bool started = gate_.started();
+  const std::int64_t fresh_ns = gate_.fresh_stamp_ns();
+  const PressureStatus status = gate_.check(sample);
+  if (status == PressureStatus::kBadTime) return status;
+  learn_interval(now_ns);
+  if (status != PressureStatus::kBadValue) {
+    refusing_ = false;
+    if (status == PressureStatus::kAccepted && started)
+      learn(fresh_interval_s_, seconds_between(fresh_ns, sample.stamp_ns));
+    return status;
+  }
+  if (!refusing_) {
+    refusing_ = true;
+    refused_since_ns_ = now_ns;
+    const double since_s = std::max(0.0, seconds_between(spike_ns_, now_ns));
+    spike_score_ = 1.0 + spike_score_ * std::exp(-since_s / kSpikeMemoryS);
+    spike_ns_ = now_ns;
+  }
+  return status;
+}
+
+double BarometerMonitor::stuck_after_s() const {
+  return std::max(config_.stuck_timeout_s, kUnchangedIntervals * fresh_interval_s_);
+}
+
+BarometerFault BarometerMonitor::fault(std::int64_t now_ns) const {
+  const double silent_s = std::max(config_.silent_timeout_s, kSilentIntervals * interval_s_);
+  if (!heard_ || seconds_between(arrived_ns_, now_ns) > silent_s) return BarometerFault::kOff;
+  if (refusing_ && seconds_between(refused_since_ns_, now_ns) > kRefusedS) return BarometerFault::kWrong;
+  if (gate_.started() && seconds_between(gate_.fresh_stamp_ns(), gate_.alive_stamp_ns()) > stuck_after_s())
+    return BarometerFault::kStuck;
+  const double since_s = std::max(0.0, seconds_between(spike_ns_, now_ns));
+  if (spike_score_ * std::exp(-since_s / kSpikeMemoryS) > kSpikeHabit) return BarometerFault::kSpiking;
+  return BarometerFault::kOk;
+}
+
+bool BarometerMonitor::lost(std::int64_t now_ns, double timeout_s) const {
+  if (!gate_.started()) return true;
+  timeout_s = std::max(timeout_s, kSilentIntervals * interval_s_);
+  return seconds_between(gate_.alive_stamp_ns(), now_ns) > timeout_s ||
+         seconds_between(gate_.fresh_stamp_ns(), now_ns) > std::max(stuck_after_s(), timeout_s);
+}
+
+void BarometerMonitor::restart_clock() {
+  gate_.restart_clock();
+  heard_ = refusing_ = false;
+  spike_score_ = 0.0;
+}
+
+}  // namespace isobar

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/altitude/base_station.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/altitude/stamp.hpp"
+
+namespace isobar {
+namespace {
+
+// A station is smoothed this long before it becomes the reference: one noisy sample would shift all heights.
+constexpr double kSettlingS = 1.0;
+// Weather without a base station, see weather_sigma_pa.
+constexpr double kWeatherRatePaS = 0.025;
+constexpr double kWeatherWalkPaSqrtS = 0.2;
+// Noise memory in samples: some seconds of a 32 Hz barometer.
+constexpr double kNoiseMemorySamples = 200.0;
+// Nearer than this to the smoothed pressure is no jump: turbulence [Pa]. And so many sigmas of noise.
+constexpr double kStillPa = 4.0;
+constexpr double kNoiseSigmas = 6.0;
+// What the weather may do at most, in sigmas of weather_sigma_pa.
+constexpr double kWeatherSigmas = 4.0;
+// A new level is followed when it has been steady for this long; doors and gusts are over by then.
+constexpr double kNewLevelS = 5.0;
+// A level is the mean of so many samples.
+constexpr double kLevelSamples = 30.0;
+// Left out for longer: a fault rather than a gust.
+constexpr double kJumpFaultS = 1.0;
+
+double squared(double x) { return x * x; }
+
+}  // namespace
+
+double weather_sigma_pa(double age_s) {
+  return std::sqrt(squared(kWeatherRatePaS * age_s) + squared(kWeatherWalkPaSqrtS) * age_s);
+}
+
+BaseStation::BaseStation(const AltimeterConfig& config)
+    : config_(config),
+      monitor_(config),
+      noise_({config.initial_noise_pa, config.noise_floor_pa, config.noise_ceiling_pa, kNoiseMemorySamples}),
+      filter_(config.base_walk_pa_sqrt_s) {}
+
+double BaseStation::value() const { return std::log(filter_.pressure_pa()) - jump_log_; }
+
+double BaseStation::variance(std::int64_t now_ns) const {
+  // Up to the time-out the filter's own walk would do, but a station that is silent may be so for good.
+  const double age = std::max(0.0, seconds_between(used_ns_, now_ns));
+  return (filter_.variance_pa2() + squared(weather_sigma_pa(age))) / squared(filter_.pressure_pa());
+}
+
+double BaseStation::age_s(std::int64_t now_ns) const {
+  return started() ? std::max(0.0, seconds_between(used_ns_, now_ns))
+                   : std::numeric_limits<double>::infinity();
+}
+
+bool BaseStation::lost(std::int64_t now_ns) const {
+  return !started() || monitor_.lost(now_ns, config_.base_timeout_s) ||
+         seconds_between(used_ns_, now_ns) > config_.base_timeout_s;
+}
+
+bool BaseStation::ready(std::int64_t now_ns) const {
+  return !jumping_ && !lost(now_ns) && seconds_between(since_ns_, std::max(used_ns_, now_ns)) >= kSettlingS;
+}
+
+BarometerFault BaseStation::fault(std::int64_t now_ns) const {
+  const BarometerFault seen = monitor_.fault(now_ns);
+  if (seen != BarometerFault::kOk && seen != BarometerFault::kSpiking) return seen;
+  if (jumping_ && seconds_between(jumping_ns_, now_ns) > kJumpFaultS) return BarometerFault::kWrong;
+  return seen;
+}
+
+void BaseStation::restart_clock() {
+  monitor_.restart_clock();
+  jumping_ = false;
+  // The weather in between is not known, nor how long it was.
+  filter_.restart();
+}
+
+PressureStatus BaseStation::add(const PressureSample& sample, std::int64_t now_ns) {
+  if (plausible_stamp(sample.stamp_ns) && seconds_between(sample.stamp_ns, now_ns) > config_.base_timeout_s)
+    return PressureStatus::kStale;
+  const PressureStatus status = monitor_.check(sample, now_ns);
+  if (status != PressureStatus::kAccepted) return status;
+  const double gap_s = std::max(0.0, seconds_between(used_ns_, sample.stamp_ns));
+  if (!filter_.started()) {
+    since_ns_ = sample.stamp_ns;
+    noise_.restart();
+  } else if (!jumping_ && gap_s > config_.base_timeout_s) {
+    rejoin(sample, gap_s);
+  } else if (jumps(sample, gap_s, noise_variance_pa2(sample, noise_, config_))) {
+    return status;
+  }
+  noise_.add(sample.pressure_pa);
+  filter_.add(sample.pressure_pa, gap_s, noise_variance_pa2(sample, noise_, config_));
+  used_ns_ = sample.stamp_ns;
+  return status;
+}
+
+// Back after a silence: what the weather can have done is believed, what it cannot is a new level.
+void BaseStation::rejoin(const PressureSample& sample, double gap_s) {
+  const double moved_pa = sample.pressure_pa - filter_.pressure_pa();
+  if (std::abs(moved_pa) > kStillPa + kWeatherSigmas * weather_sigma_pa(gap_s)) settle(sample.pressure_pa);
+  filter_.restart();
+  noise_.restart();
+  since_ns_ = sample.stamp_ns;
+}
+
+bool BaseStation::jumps(const PressureSample& sample, double gap_s, double noise_variance_pa2) {
+  const double still_pa = std::max(kStillPa, kNoiseSigmas * std::sqrt(noise_variance_pa2));
+  const double allowed_pa = still_pa + (gap_s > kSettlingS ? kWeatherSigmas * weather_sigma_pa(gap_s) : 0.0);
+  if (std::abs(sample.pressure_pa - filter_.pressure_pa()) <= allowed_pa) {
+    jumping_ = false;
+    return false;
+  }
+  if (!jumping_) {
+    jumping_ = true;
+    jumping_ns_ = candidate_ns_ = sample.stamp_ns;
+    candidate_pa_ = sample.pressure_pa;
+    candidate_count_ = 1.0;
+    return true;
+  }
+  if (std::abs(sample.pressure_pa - candidate_pa_) > still_pa) {
+    candidate_pa_ = sample.pressure_pa;
+    candidate_ns_ = sample.stamp_ns;
+    candidate_count_ = 1.0;
+    return true;
+  }
+  candidate_count_ = std::min(candidate_count_ + 1.0, kLevelSamples);
+  candidate_pa_ += (sample.pressure_pa - candidate_pa_) / candidate_count_;
+  if (seconds_between(candidate_ns_, sample.stamp_ns) < kNewLevelS) return true;
+  settle(candidate_pa_);
+  jumping_ = false;
+  filter_.restart();
+  filter_.add(candidate_pa_, 0.0, noise_variance_pa2 / candidate_count_);
+  noise_.restart();
+  since_ns_ = sample.stamp_ns;
+  return false;
+}
+
+void BaseStation::settle(double pressure_pa) {
+  if (jump_log_ == 0.0) {
+    level_pa_ = filter_.pressure_pa();
+    level_ns_ = used_ns_;
+  }
+  const double away_s = std::max(0.0, seconds_between(level_ns_, monitor_.gate().alive_stamp_ns()));
+  const bool back = jump_log_ != 0.0 &&
+                    std::abs(pressure_pa - level_pa_) < kStillPa + kWeatherSigmas * weather_sigma_pa(away_s);
+  jump_log_ = back ? 0.0 : jump_log_ + std::log(pressure_pa / filter_.pressure_pa());
+}
+
+}  // namespace isobar

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/altitude/station_vote.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/altitude/base_station.hpp"
+#include "core/altitude/stamp.hpp"
+
+namespace isobar {
+namespace {
+
+// Means over this long: turbulence and noise go down, a drift is still young.
+constexpr double kMeanS = 2.0;
+// The robot must be this much nearer to one station than to the other, and their distance at least this [Pa].
+// It is more than turbulence at the robot (0.2 Pa) and what slipping wheels make of a climb within the time.
+constexpr double kNearer = 2.0;
+constexpr double kLeastPa = 0.5;
+// The weather at most, in sigmas.
+constexpr double kWeatherSigmas = 4.0;
+constexpr double kPa = 1e5;  // ln to pascals, nearly enough
+
+}  // namespace
+
+void StationVote::Mean::add(const Sample& sample) {
+  first_log += sample.first_log;
+  second_log += sample.second_log;
+  robot_known = robot_known && std::isfinite(sample.robot_log);
+  if (robot_known) robot_log += sample.robot_log;
+  ++count;
+}
+
+StationVote::Sample StationVote::Mean::value() const {
+  return {first_log / count, second_log / count,
+          robot_known ? robot_log / count : std::numeric_limits<double>::quiet_NaN()};
+}
+
+void StationVote::restart() { *this = StationVote(); }
+
+void StationVote::add(std::int64_t stamp_ns, const Sample& sample, bool agree) {
+  if (open_.count == 0) opened_ns_ = stamp_ns;
+  open_.add(sample);
+  if (seconds_between(opened_ns_, stamp_ns) >= kMeanS) close(stamp_ns, agree);
+}
+
+void StationVote::close(std::int64_t stamp_ns, bool agree) {
+  newest_ = open_.value();
+  newest_ns_ = stamp_ns;
+  has_newest_ = true;
+  open_ = Mean();
+  const auto known = [](const Sample& sample) { return std::isfinite(sample.robot_log); };
+  broken_ = broken_ || !known(newest_);
+  if (!agree) return;
+  // The smoothed difference lags: what counts as agreed begins some seconds before they parted.
+  if (agreed_count_ == kKept) {
+    std::move(agreed_.begin() + 1, agreed_.end(), agreed_.begin());
+    --agreed_count_;
+  }
+  agreed_[agreed_count_++] = newest_;
+  agreed_ns_ = stamp_ns;
+  broken_ =
+      !std::all_of(agreed_.begin(), agreed_.begin() + static_cast<std::ptrdiff_t>(agreed_count_), known);
+}
+
+int StationVote::wrong() const {
+  if (agreed_count_ == 0 || !has_newest_) return -1;
+  const Sample& before = agreed_.front();
+  const double first_pa = kPa * (newest_.first_log - before.first_log);
+  const double second_pa = kPa * (newest_.second_log - before.second_log);
+  if (std::abs(first_pa - second_pa) < kLeastPa) return -1;
+  if (!broken_) {
+    const double robot_pa = kPa * (newest_.robot_log - before.robot_log);
+    const double to_first_pa = std::abs(first_pa - robot_pa);
+    const double to_second_pa = std::abs(second_pa - robot_pa);
+    if (to_first_pa > kNearer * to_second_pa) return 0;
+    if (to_second_pa > kNearer * to_first_pa) return 1;
+  }
+  const double seconds = seconds_between(agreed_ns_, newest_ns_) + static_cast<double>(kKept) * kMeanS;
+  const double weather_pa = kWeatherSigmas * weather_sigma_pa(seconds);
+  const bool first_too_fast = std::abs(first_pa) > weather_pa;
+  const bool second_too_fast = std::abs(second_pa) > weather_pa;
+  if (first_too_fast == second_too_fast) return -1;
+  return first_too_fast ? 0 : 1;
+}
+
+}  // namespace isobar

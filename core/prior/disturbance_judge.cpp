@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/prior/disturbance_judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/altitude/stamp.hpp"
+
+namespace isobar {
+namespace {
+
+// Less than this is never called a step [m]: three floors' worth of air is not that still.
+constexpr double kLeastStepM = 0.3;
+// Vertical speed that accelerometer and wheels may have missed, beyond what the filter thinks of them [m/s]:
+// HeightFilter has seen every faster lift start.
+constexpr double kUnfeltSpeed = 0.05;
+constexpr double kUnfeltSigmas = 4.0;
+// A pressure that ran away is believed to be back when it has been steady for this long: a broken sensor
+// passes by now and then, and so does the back swing of a door.
+constexpr double kBackS = 0.7;
+
+double squared(double x) { return x * x; }
+
+}  // namespace
+
+bool DisturbanceJudge::fits(const VerticalFilter::Innovation& innovation) const {
+  return squared(innovation.value) <= squared(gate_sigma_) * innovation.variance;
+}
+
+double DisturbanceJudge::noise_limit_m(const Evidence& evidence) const {
+  return gate_sigma_ * std::sqrt(2.0 * evidence.noise_variance_m2);
+}
+
+bool DisturbanceJudge::outran_motion(const Evidence& evidence) const {
+  if (!has_used_) return false;
+  const double since_s = std::max(0.0, seconds_between(used_ns_, evidence.stamp_ns));
+  const double limit_m = std::max(kLeastStepM, noise_limit_m(evidence)) +
+                         (kUnfeltSpeed + kUnfeltSigmas * evidence.climb_sigma_m_s) * since_s;
+  // Both: a shock to the accelerometer moves the prediction, a fast lift the pressure; neither is a step.
+  return std::abs(evidence.innovation.value - used_m_) > limit_m &&
+         std::abs(evidence.height_m - used_height_m_) > limit_m;
+}
+
+void DisturbanceJudge::begin(const Evidence& evidence) {
+  gated_ = true;
+  unfelt_ = is_back_ = false;
+  gated_since_ns_ = steady_since_ns_ = evidence.stamp_ns;
+  first_m_ = level_m_ = evidence.innovation.value;
+}
+
+void DisturbanceJudge::accept(const Evidence& evidence) {
+  gated_ = false;
+  has_used_ = true;
+  used_m_ = evidence.innovation.value;
+  used_height_m_ = evidence.height_m;
+  used_ns_ = evidence.stamp_ns;
+}
+
+void DisturbanceJudge::watch_steadiness(const Evidence& evidence) {
+  const double since_s = std::max(0.0, seconds_between(steady_since_ns_, evidence.stamp_ns));
+  const double limit_m = noise_limit_m(evidence) + 2.0 * evidence.climb_sigma_m_s * since_s;
+  if (std::abs(evidence.innovation.value - level_m_) <= limit_m) return;
+  level_m_ = evidence.innovation.value;
+  steady_since_ns_ = evidence.stamp_ns;
+}
+
+DisturbanceJudge::Verdict DisturbanceJudge::back(const Evidence& evidence, bool here) {
+  // What comes by is neither a step nor a motion: they stay.
+  gated_since_ns_ = evidence.stamp_ns;
+  if (!is_back_) back_since_ns_ = evidence.stamp_ns;
+  is_back_ = true;
+  const std::int64_t since_ns = std::max(back_since_ns_, steady_since_ns_);
+  if (unfelt_ && seconds_between(since_ns, evidence.stamp_ns) < kBackS) return Verdict::kWait;
+  accept(evidence);
+  return here ? Verdict::kFits : Verdict::kReturned;
+}
+
+DisturbanceJudge::Verdict DisturbanceJudge::judge(const Evidence& evidence) {
+  const bool here = fits(evidence.innovation);
+  if (here && !gated_) {
+    accept(evidence);
+    return Verdict::kFits;
+  }
+  if (!gated_) begin(evidence);
+  unfelt_ = unfelt_ || outran_motion(evidence);
+  watch_steadiness(evidence);
+  if (here || (evidence.step_open && fits(evidence.without_step))) return back(evidence, here);
+  if (is_back_) first_m_ = evidence.innovation.value;
+  is_back_ = false;
+  moved_m_ = evidence.innovation.value - first_m_;
+  if (seconds_between(gated_since_ns_, evidence.stamp_ns) < evidence.wait_s) return Verdict::kWait;
+  if (unfelt_ && seconds_between(steady_since_ns_, evidence.stamp_ns) < evidence.wait_s)
+    return Verdict::kWait;
+  accept(evidence);
+  // What is left of the innovation goes where the verdict says.
+  used_m_ = 0.0;
+  return unfelt_ ? Verdict::kStep : Verdict::kMotion;
+}
+
+}  // namespace isobar

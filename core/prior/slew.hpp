@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Corrections that a map could not bear at once.
+#pragma once
+
+#include <algorithm>
+
+namespace isobar {
+
+/// Holds back corrections of a height and lets them through at a bounded speed.
+class Slew {
+ public:
+  /// `rate_m_s` > 0; of more than `bound_m` the rest goes through at once.
+  Slew(double rate_m_s, double bound_m) : rate_m_s_(rate_m_s), bound_m_(bound_m) {}
+
+  /// Corrections are to be held back for the next kOpenS.
+  void begin() { open_s_ = kOpenS; }
+  [[nodiscard]] bool open() const { return open_s_ > 0.0; }
+
+  /// The height has just been corrected by `step_m`.
+  void hold_back(double step_m) { rest_m_ = std::clamp(rest_m_ - step_m, -bound_m_, bound_m_); }
+
+  void advance(double dt_s) {
+    open_s_ = std::max(0.0, open_s_ - dt_s);
+    const double most_m = rate_m_s_ * dt_s;
+    rest_m_ -= std::clamp(rest_m_, -most_m, most_m);
+  }
+
+  void restart() { open_s_ = rest_m_ = 0.0; }
+
+  /// To be added to the corrected height [m].
+  [[nodiscard]] double rest_m() const { return rest_m_; }
+
+ private:
+  // A filter takes a correction in over some pressures. Longer, and corrections of the motion itself would
+  // wait.
+  static constexpr double kOpenS = 3.0;
+
+  double rate_m_s_;
+  double bound_m_;
+  double rest_m_ = 0.0;
+  double open_s_ = 0.0;
+};
+
+}  // namespace isobar
