@@ -49,6 +49,7 @@ std::string show_config(const Config& config) {
       out);
   std::string section;
   for (const Setting& setting : settings_of(copy)) {
+    if (config.role == Role::kBaseStation && is_for_robots_only(setting.key)) continue;
     if (setting.section() != section) {
       section = setting.section();
       out += "\n";

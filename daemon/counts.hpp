@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/prior/prior_estimator.hpp"
+#include "core/time/base_station_stream.hpp"
 #include "daemon/run_output.hpp"
 #include "drivers/datagram/datagram.hpp"
 #include "drivers/velodyne/velodyne_decoder.hpp"
@@ -16,6 +17,8 @@ std::vector<RunCount> counts_of(const velodyne::VelodyneCounters& counters,
                                 const std::string& wrong_model_message);
 std::vector<RunCount> counts_of(const PriorCounters& counters);
 std::vector<RunCount> counts_of(const datagram::Counters& counters);
+/// Of the base station that sends datagrams.
+std::vector<RunCount> counts_of(const BaseStationStatus& base);
 
 /// Appends `more` to `counts`.
 void append(std::vector<RunCount>& counts, std::vector<RunCount> more);

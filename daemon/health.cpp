@@ -3,9 +3,11 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "daemon/base_station_health.hpp"
+#include "daemon/health_entries.hpp"
 #include "tools/report/replay_output.hpp"
 
 namespace isobar {
@@ -15,20 +17,6 @@ namespace {
 using ipc::HealthLevel;
 using ipc::HealthReport;
 
-constexpr std::int64_t kSilenceNs = 1'000'000'000;
-
-double per_second(std::uint64_t now, std::uint64_t before, double elapsed_s) {
-  return elapsed_s > 0.0 ? static_cast<double>(now - before) / elapsed_s : 0.0;
-}
-
-/// An entry for a count that should be zero.
-void add_count(HealthReport& report, const char* name, std::uint64_t now, std::uint64_t before,
-               const char* sentence) {
-  if (now == 0) return;
-  report.add(name, now > before ? HealthLevel::kWarning : HealthLevel::kOk, sentence,
-             static_cast<double>(now));
-}
-
 /// Where samples of this kind may come from.
 std::string input_of(const Config& config, datagram::Kind kind) {
   using datagram::Kind;
@@ -36,18 +24,6 @@ std::string input_of(const Config& config, datagram::Kind kind) {
                           ? config.dds.receive_base_pressure
                           : config.dds.receive_sensors && (kind == Kind::kImu || kind == Kind::kWheel);
   return "UDP port " + std::to_string(config.input.port) + (by_dds ? " or over DDS" : "");
-}
-
-void add_stream(HealthReport& report, const std::string& name, std::int64_t last_ns, std::int64_t now_ns,
-                double rate_hz, const std::string& where) {
-  if (last_ns == 0) {
-    report.add(name, HealthLevel::kStale, "nothing received yet on " + where, 0.0);
-  } else if (now_ns - last_ns > kSilenceNs) {
-    const double silent_s = static_cast<double>(now_ns - last_ns) * 1e-9;
-    report.add(name, HealthLevel::kError, fmt::format("silent for {:.0f} s on {}", silent_s, where), 0.0);
-  } else {
-    report.add(name, HealthLevel::kOk, fmt::format("{:.1f} per second", rate_hz), rate_hz);
-  }
 }
 
 }  // namespace
@@ -62,16 +38,14 @@ void HealthMonitor::fill(const StatusSnapshot& now, HealthReport& report) {
   fill_lidar(now, elapsed_s, report);
   fill_samples(now, elapsed_s, report);
   fill_estimate(now, report);
-  for (std::size_t i = 0; i < refusals_.size(); ++i) {  // numbered: news() knows an entry by its name
-    report.add("realtime/" + std::to_string(i + 1), HealthLevel::kWarning, refusals_[i], 0.0);
-  }
+  add_refusals(report, refusals_);
   last_ = now;
 }
 
 void HealthMonitor::fill_lidar(const StatusSnapshot& now, double elapsed_s, HealthReport& report) const {
   const auto& counters = now.lidar.counters;
   const auto& before = last_.lidar.counters;
-  add_stream(report, "lidar", now.lidar.last_packet_ns, now.now_ns,
+  add_stream(report, "lidar", now.lidar.last_packet_ns, now.now_ns, kSilenceNs,
              per_second(counters.scans, before.scans, elapsed_s),
              "UDP port " + std::to_string(config_.lidar.port));
   if (counters.wrong_model > before.wrong_model) {
@@ -97,23 +71,35 @@ void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, He
   const auto& counters = now.inertial.counters;
   const auto& before = last_.inertial.counters;
   for (std::size_t kind = 0; kind < datagram::kKinds; ++kind) {
-    add_stream(report, kNames[kind], now.prior.last_sample_ns[kind], now.now_ns,
-               per_second(now.prior.samples[kind], last_.prior.samples[kind], elapsed_s),
-               input_of(config_, static_cast<datagram::Kind>(kind)));
+    const auto which = static_cast<datagram::Kind>(kind);
+    if (which == datagram::Kind::kBasePressure) {
+      fill_base_stations(now, report);
+    } else {
+      add_stream(report, kNames[kind], now.prior.last_sample_ns[kind], now.now_ns, kSilenceNs,
+                 per_second(now.prior.samples[kind], last_.prior.samples[kind], elapsed_s),
+                 input_of(config_, which));
+    }
     add_count(report, (std::string(kNames[kind]) + "/lost").c_str(), counters.lost[kind], before.lost[kind],
               "samples missing, by their numbers");
   }
-  add_count(report, "input/refused", counters.malformed + counters.implausible + counters.unknown_kind,
-            before.malformed + before.implausible + before.unknown_kind,
-            "lines malformed or implausible, refused");
-  add_count(report, "input/clock_steps", now.inertial.clock_steps, last_.inertial.clock_steps,
-            "a sender's clock was set");
-  add_count(report, "input/dropped_by_kernel", now.inertial.dropped_by_kernel,
-            last_.inertial.dropped_by_kernel, "datagrams dropped by the kernel: the machine is too busy");
-  add_count(report, "input/no_memory", now.inertial.samples_without_memory,
-            last_.inertial.samples_without_memory, "samples dropped: no free chunk of shared memory");
+  add_input(report, now.inertial, last_.inertial);
   add_count(report, "input/dropped", now.prior.dropped_samples, last_.prior.dropped_samples,
             "samples that came faster than they could be used");
+}
+
+// Base stations may send once a second or less: what is silence they teach themselves.
+void HealthMonitor::fill_base_stations(const StatusSnapshot& now, HealthReport& report) const {
+  constexpr std::array<const char*, 2> kNames = {"base_station", "second_base_station"};
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    const Cadence& cadence = now.prior.base_stations[i];
+    if (i > 0 && !cadence.started() && config_.dds.second_base_station.empty()) continue;
+    const double rate_hz = cadence.interval_ns() > 0 ? 1e9 / static_cast<double>(cadence.interval_ns()) : 0.0;
+    add_stream(report, kNames[i], cadence.last_ns(), now.now_ns, cadence.limit_ns(), rate_hz,
+               input_of(config_, datagram::Kind::kBasePressure));
+  }
+  add_base_station_counts("base_station", now.inertial.base, last_.inertial.base,
+                          [&report](const std::string& name, HealthLevel level, const std::string& message,
+                                    double value) { report.add(name, level, message, value); });
 }
 
 void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& report) const {
@@ -152,25 +138,7 @@ void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& repor
 }
 
 std::vector<std::string> HealthMonitor::news(const HealthReport& report) {
-  constexpr const char* kWords[] = {"ok", "warning", "error", "waiting"};  // NOLINT(modernize-avoid-c-arrays)
-  std::vector<std::string> lines;
-  for (std::uint32_t i = 0; i < report.entry_count; ++i) {
-    const ipc::HealthEntry& entry = report.entries[i];
-    const std::string name = entry.name;
-    auto known =
-        std::find_if(levels_.begin(), levels_.end(), [&](const auto& pair) { return pair.first == name; });
-    if (known == levels_.end()) {
-      levels_.emplace_back(name, HealthLevel::kOk);
-      known = levels_.end() - 1;
-      // Figures that are well from the start are no news.
-      if (entry.level == HealthLevel::kOk && name.find('/') != std::string::npos) continue;
-    } else if (known->second == entry.level) {
-      continue;
-    }
-    known->second = entry.level;
-    lines.push_back(name + ": " + kWords[static_cast<std::size_t>(entry.level)] + ": " + entry.message);
-  }
-  return lines;
+  return isobar::news(report, changes_);
 }
 
 }  // namespace isobar

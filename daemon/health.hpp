@@ -8,6 +8,7 @@
 
 #include "config/config.hpp"
 #include "daemon/inertial_thread.hpp"
+#include "daemon/level_changes.hpp"
 #include "daemon/lidar_thread.hpp"
 #include "daemon/map_thread.hpp"
 #include "daemon/prior_thread.hpp"
@@ -40,12 +41,13 @@ class HealthMonitor {
  private:
   void fill_lidar(const StatusSnapshot& now, double elapsed_s, ipc::HealthReport& report) const;
   void fill_samples(const StatusSnapshot& now, double elapsed_s, ipc::HealthReport& report) const;
+  void fill_base_stations(const StatusSnapshot& now, ipc::HealthReport& report) const;
   void fill_estimate(const StatusSnapshot& now, ipc::HealthReport& report) const;
 
   Config config_;
   std::vector<std::string> refusals_;
   StatusSnapshot last_;
-  std::vector<std::pair<std::string, ipc::HealthLevel>> levels_;
+  LevelChanges changes_;
 };
 
 }  // namespace isobar

@@ -5,8 +5,10 @@
 
 namespace isobar {
 
-InertialThread::InertialThread(const std::string& address, std::uint16_t port, ThreadSettings settings)
+InertialThread::InertialThread(const std::string& address, std::uint16_t port, ThreadSettings settings,
+                               Takes takes)
     : settings_(std::move(settings)),
+      takes_(takes),
       receiver_(address, port),
       imu_(ipc::topics::kImu),
       barometer_(ipc::topics::kBarometer),
@@ -34,19 +36,26 @@ void InertialThread::take_datagram(const ReceivedDatagram& received) noexcept {
   parser_.begin(received.payload);
   datagram::Sample sample;
   while (parser_.next(sample)) {
-    to_robot_clock(sample, received.stamp_ns);
-    if (!publish(sample)) ++own_.samples_without_memory;
+    if (takes_ == Takes::kBarometer && sample.kind != datagram::Kind::kPressure) {
+      ++own_.not_of_this_role;
+      continue;
+    }
+    if (to_robot_clock(sample, received) && !publish(sample)) ++own_.samples_without_memory;
   }
 }
 
-void InertialThread::to_robot_clock(datagram::Sample& sample, std::int64_t receive_ns) noexcept {
-  if (sample.stamp_ns() == 0) {
-    sample.set_stamp_ns(receive_ns);
-    return;
+// False for a sample of a base station that is not of now.
+bool InertialThread::to_robot_clock(datagram::Sample& sample, const ReceivedDatagram& received) noexcept {
+  const bool stamped = sample.stamp_ns() != 0;
+  if (!stamped) sample.set_stamp_ns(received.stamp_ns);
+  if (sample.kind == datagram::Kind::kBasePressure) {
+    return base_.check(received.sender_ipv4, sample.pressure, received.stamp_ns) == BaseVerdict::kAccepted;
   }
+  if (!stamped) return true;
   ClockAnchor& anchor = anchors_[static_cast<std::size_t>(sample.kind)];
-  (void)anchor.add(sample.stamp_ns(), receive_ns);
+  (void)anchor.add(sample.stamp_ns(), received.stamp_ns);
   sample.set_stamp_ns(anchor.to_host_ns(anchor.device_unwrapped_ns()));
+  return true;
 }
 
 bool InertialThread::publish(const datagram::Sample& sample) noexcept {
@@ -68,6 +77,7 @@ void InertialThread::report() noexcept {
   own_.dropped_by_kernel = receiver_.dropped_by_kernel();
   own_.clock_steps = 0;
   for (const ClockAnchor& anchor : anchors_) own_.clock_steps += anchor.steps();
+  own_.base = base_.status();
   status_.put(own_);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// isobard: the whole graph on one screen.
+// isobard: the whole graph on one screen. (A base station's is in base_station.cpp.)
 //
 //   lidar ──packets→scan──────────────┐                    ┌─▶ poses ──▶ isobar-dds ──▶ DDS
 //   imu ─┐                            ▼                    │
@@ -18,6 +18,7 @@
 
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
+#include "daemon/base_station.hpp"
 #include "daemon/counts.hpp"
 #include "daemon/health.hpp"
 #include "daemon/inertial_thread.hpp"
@@ -62,7 +63,7 @@ std::vector<std::string> refusals_of(const Scheduling& scheduling, bool realtime
   return refusals;
 }
 
-void run(const Config& config, Service& service) {
+void run_robot(const Config& config, Service& service) {
   const StageSettings stages = stage_settings(config);
   const Scheduling scheduling = scheduling_of(config.realtime);
   const std::vector<std::string> refusals = refusals_of(scheduling, config.realtime.enabled);
@@ -122,6 +123,7 @@ void run(const Config& config, Service& service) {
     const StatusSnapshot last = look();
     std::vector<RunCount> counts = counts_of(last.lidar.counters, last.lidar.wrong_model_message.data());
     append(counts, counts_of(last.inertial.counters));
+    append(counts, counts_of(last.inertial.base));
     append(counts, counts_of(last.prior.counters));
     output->close(counts);
     spdlog::info("{} poses and {} map points in {}", output->poses(), output->map_points(),
@@ -149,8 +151,13 @@ int main_with_errors(int argc, char** argv) {
   // First of all, so that every thread inherits the blocked signals.
   Service service;
   Config config = config_file.empty() ? Config{} : load_config(config_file);
+  if (config.role == Role::kBaseStation) {
+    if (!output_directory.empty()) throw UsageError("--output: a base station writes no run");
+    run_base_station(config, service);
+    return 0;
+  }
   if (!output_directory.empty()) config.output.directory = output_directory;
-  run(config, service);
+  run_robot(config, service);
   return 0;
 }
 

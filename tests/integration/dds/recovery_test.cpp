@@ -162,7 +162,7 @@ TEST_CASE("a base station's pressure reaches isobard on isobard's clock, and non
   Listener<dds::DiagnosticsMessage> listener(dds::topics::kDiagnostics);
   REQUIRE(listener.receive(2));  // isobard has told its clock
   const dds::Participant& participant = listener.participant();
-  dds::Writer<dds::PressureMessage> writer(participant.get(), dds::topics::kBasePressure);
+  dds::Writer<dds::PressureMessage> writer(participant.get(), dds::topics::kBasePressure, "base");
   dds::PressureMessage message{};
   message.header.frame_id = dds::text("base");
   std::string line;
