@@ -155,7 +155,7 @@ void Forwarding::add_station_health(const ReceivedCounts& received) {
                                          const std::string& message,
                                          double value) { add(name, level, message, value); };
   for (std::size_t i = 0; i < received.station_count; ++i) {
-    add_base_station_state(kNames[i], received.stations[i], clock_.now_ns(), station_topics_[i],
+    add_base_station_state(kNames[i], received.stations[i], received.taken_ns, station_topics_[i],
                            to_diagnostics);
     add_base_station_counts(kNames[i], received.stations[i], last_received_.stations[i], to_diagnostics);
   }

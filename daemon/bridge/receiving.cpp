@@ -84,8 +84,12 @@ std::vector<dds_entity_t> Receiving::readers() const {
 }
 
 ReceivedCounts Receiving::counts() const noexcept {
-  return {samples_.load(std::memory_order_relaxed), refused_.load(std::memory_order_relaxed),
-          too_early_.load(std::memory_order_relaxed), station_status_.get(), stations_.size()};
+  return {samples_.load(std::memory_order_relaxed),
+          refused_.load(std::memory_order_relaxed),
+          too_early_.load(std::memory_order_relaxed),
+          station_status_.get(),
+          stations_.size(),
+          clock_.now_ns()};
 }
 
 template <class Message, class Sample>

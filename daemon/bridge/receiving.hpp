@@ -43,6 +43,7 @@ struct ReceivedCounts {
   /// The base stations that are listened to, [0 … station_count-1].
   std::array<BaseStationStatus, 2> stations;
   std::size_t station_count = 0;
+  std::int64_t taken_ns = 0;  ///< robot clock, when this was true
 };
 
 /// Readers of the topics that the configuration asks for, and one thread that hands on what they get.
