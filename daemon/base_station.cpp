@@ -36,7 +36,7 @@ void add_barometer(const StationSnapshot& now, const StationSnapshot& before, co
   const double elapsed_s = before.now_ns == 0 ? 1.0 : static_cast<double>(now.now_ns - before.now_ns) * 1e-9;
   const std::string where = "UDP port " + std::to_string(config.input.port);
   const std::int64_t unchanged_ns = station.cadence.last_ns() - station.changed_ns;
-  if (station.samples > 0 && unchanged_ns > stuck_ns) {
+  if (unchanged_ns > stuck_ns && !station.cadence.silent(now.now_ns)) {
     report.add("barometer", HealthLevel::kError,
                fmt::format("stuck: {:.3f} Pa for {:.0f} s", station.newest.pressure_pa,
                            static_cast<double>(unchanged_ns) * 1e-9),

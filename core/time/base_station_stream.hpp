@@ -24,7 +24,7 @@ struct BaseStationConfig {
   /// … for this long on both clocks [ns], and none of the known sender and clock has come meanwhile.
   std::int64_t confirm_ns = 500'000'000;
   /// Another base station that was heard beside the one in use takes its place after this silence [ns].
-  /// Longer than the altimeter holds a base's pressure as present: it must not take the change of place for
+  /// Longer than the altimeter's time-out as it is by default, so that the change of place is not taken for
   /// weather.
   std::int64_t takeover_ns = 15'000'000'000;
 };

@@ -85,13 +85,13 @@ TEST_CASE("whatever was refused has a line of its own, a warning only while it g
   CHECK(growing.size() == 1 + 6 + 3);
   CHECK(growing.at("base/too_old").value == 10.0 + static_cast<double>(BaseVerdict::kTooOld));
   CHECK(growing.at("base/clock_steps").value == 3.0);
-  for (const auto& [name, entry] : growing) {
-    CAPTURE(name);
-    CHECK(entry.level == (name == "base" ? HealthLevel::kOk : HealthLevel::kWarning));
+  for (const auto& entry : growing) {
+    CAPTURE(entry.first);
+    CHECK(entry.second.level == (entry.first == "base" ? HealthLevel::kOk : HealthLevel::kWarning));
   }
-  for (const auto& [name, entry] : entries(now, now)) {
-    CAPTURE(name);
-    CHECK(entry.level == HealthLevel::kOk);
+  for (const auto& entry : entries(now, now)) {
+    CAPTURE(entry.first);
+    CHECK(entry.second.level == HealthLevel::kOk);
   }
 }
 

@@ -30,6 +30,7 @@ using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
 using test::ChildProcess;
 using test::Listener;
 using test::says;
+using test::text_of;
 
 constexpr int kOk = 0;
 constexpr int kWarning = 1;
@@ -170,14 +171,18 @@ class Robot {
 /// A barometer that sends datagrams: 0.4 Pa of white noise.
 class Barometer {
  public:
-  Barometer(std::uint16_t port, datagram::Kind kind, bool sends_twice = false)
-      : kind_(kind), sends_twice_(sends_twice), sender_("127.0.0.1", port), ticker_([this] { send(); }) {}
+  Barometer(std::uint16_t port, datagram::Kind kind, bool sends_twice = false, double noise_pa = 0.4)
+      : kind_(kind),
+        sends_twice_(sends_twice),
+        sender_("127.0.0.1", port),
+        noise_pa_(noise_pa),
+        ticker_([this] { send(); }) {}
 
  private:
   void send() {
     datagram::Sample sample;
     sample.kind = kind_;
-    sample.pressure = {wall_ns(), 97'000.0 + noise_(random_), 21.25};
+    sample.pressure = {wall_ns(), 97'000.0 + noise_pa_ * noise_(random_), 21.25};
     for (int i = 0; i < (sends_twice_ ? 2 : 1); ++i) {
       sample.sequence = sequence_++;  // a copy with a number of its own: the numbers do not show it
       std::array<char, datagram::kMaxLineBytes> line{};
@@ -191,14 +196,16 @@ class Barometer {
   UdpSender sender_;
   std::uint32_t sequence_ = 0;
   std::mt19937_64 random_{7};
-  std::normal_distribution<double> noise_{0.0, 0.4};
+  double noise_pa_;
+  std::normal_distribution<double> noise_;
   Ticker ticker_;
 };
 
 TEST_CASE(
     "a base station tells pressure, its measured variance and the temperature under one stamp and its name") {
-  const std::string config =
-      write_config("base", "role = \"base-station\"\n[dds]\nbase_station = \"roof\"\n");
+  const std::string config = write_config(
+      "base",
+      "role = \"base-station\"\n[dds]\nbase_station = \"roof\"\n[altimeter]\nstuck_timeout_s = 0.5\n");
   auto participant = std::make_shared<dds::Participant>(dds::ParticipantSettings{});
   Listener<dds::PressureMessage> pressure(participant, dds::topics::kBasePressure, "roof");
   Listener<dds::TemperatureMessage> temperature(participant, dds::topics::kBaseTemperature, "roof");
@@ -248,8 +255,17 @@ TEST_CASE(
     }
     CHECK(topics == 2);
   }
-  CHECK(diagnostics.receive(
-      1, [](const auto& message) { return says(message, "isobar_roof: barometer", kError); }));
+  const auto fails_as = [&diagnostics](const std::string& word) {
+    return diagnostics.receive(1, [&word](const dds::DiagnosticsMessage& message) {
+      const std::string barometer = text_of(message, "isobar_roof: barometer");
+      return says(message, "isobar_roof: barometer", kError) && barometer.find(word) != std::string::npos;
+    });
+  };
+  CHECK(fails_as("silent"));
+  {
+    const Barometer stuck(7373, datagram::Kind::kPressure, false, 0.0);
+    CHECK(fails_as("stuck"));
+  }
   // It is no robot, and says nothing about where it is.
   for (const dds_entity_t reader : {odometry.get(), mounts.get()}) {
     CHECK(dds_get_matched_publications(reader, nullptr, 0) == 0);

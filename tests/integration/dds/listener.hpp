@@ -49,15 +49,27 @@ class Listener {
   dds::Entity waitset_;
 };
 
-/// Does this message hold a status of that name ("node: entry") and level?
-inline bool says(const dds::DiagnosticsMessage& message, const std::string& name, int level) {
+/// The status of that name ("node: entry"), nullptr if there is none.
+inline const diagnostic_msgs_msg_dds__DiagnosticStatus_* find_status(const dds::DiagnosticsMessage& message,
+                                                                     const std::string& name) {
   for (std::uint32_t i = 0; i < message.status._length; ++i) {
-    const auto& status = message.status._buffer[i];
-    if (name == status.name && status.level == level) {
-      return true;
+    if (name == message.status._buffer[i].name) {
+      return &message.status._buffer[i];
     }
   }
-  return false;
+  return nullptr;
+}
+
+/// Does this message hold a status of that name and level?
+inline bool says(const dds::DiagnosticsMessage& message, const std::string& name, int level) {
+  const auto* status = find_status(message, name);
+  return status != nullptr && status->level == level;
+}
+
+/// What the status of that name says; empty if there is none.
+inline std::string text_of(const dds::DiagnosticsMessage& message, const std::string& name) {
+  const auto* status = find_status(message, name);
+  return status != nullptr ? status->message : "";
 }
 
 }  // namespace isobar::test
