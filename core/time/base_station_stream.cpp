@@ -51,7 +51,7 @@ BaseVerdict BaseStationStream::verdict_on(std::uint64_t sender, const PressureSa
   }
   const bool is_new = sender != clock_.sender;
   if (is_new && !may_follow(sender, receive_ns)) {
-    add_rival(sender, receive_ns);
+    note_rival(sender, receive_ns);
     return BaseVerdict::kOtherSender;
   }
   if (remembers(print)) {
@@ -66,31 +66,35 @@ BaseVerdict BaseStationStream::verdict_on(std::uint64_t sender, const PressureSa
   if (is_new) {
     cadence_.restart();
     left_ = false;
-    rival_count_ = next_rival_ = 0;
+    rivals_ = {};
+    next_rival_ = 0;
   }
   return BaseVerdict::kAccepted;
 }
 
-bool BaseStationStream::is_rival(std::uint64_t sender) const noexcept {
-  const auto end = rivals_.begin() + static_cast<std::ptrdiff_t>(rival_count_);
-  return std::find(rivals_.begin(), end, sender) != end;
+const BaseStationStream::Rival* BaseStationStream::find_rival(std::uint64_t sender) const noexcept {
+  const auto found = std::find_if(rivals_.begin(), rivals_.end(), [sender](const Rival& rival) {
+    return rival.known && rival.sender == sender;
+  });
+  return found != rivals_.end() ? &*found : nullptr;
 }
 
 bool BaseStationStream::may_follow(std::uint64_t sender, std::int64_t receive_ns) const noexcept {
   const bool other_is_watched = candidate_.samples > 0 && candidate_.sender != sender &&
                                 receive_ns - candidate_.newest_receive_ns <= kCandidateSilenceNs;
   if (other_is_watched) return false;
-  return is_rival(sender)
-             ? receive_ns - cadence_.last_ns() > std::max(config_.takeover_ns, cadence_.limit_ns())
-             : lost(receive_ns);
+  const Rival* rival = find_rival(sender);
+  if (rival == nullptr || !rival->is_beside) return lost(receive_ns);
+  return receive_ns - cadence_.last_ns() > std::max(config_.takeover_ns, cadence_.limit_ns());
 }
 
-void BaseStationStream::add_rival(std::uint64_t sender, std::int64_t receive_ns) noexcept {
-  status_.rival_ns = receive_ns;
-  if (is_rival(sender)) return;
-  rivals_[next_rival_] = sender;
+void BaseStationStream::note_rival(std::uint64_t sender, std::int64_t receive_ns) noexcept {
+  if (const Rival* rival = find_rival(sender); rival != nullptr) {
+    if (rival->is_beside) status_.rival_ns = receive_ns;
+    return;
+  }
+  rivals_[next_rival_] = {sender, true, false};
   next_rival_ = (next_rival_ + 1) % kRivals;
-  rival_count_ = std::min(rival_count_ + 1, kRivals);
 }
 
 BaseVerdict BaseStationStream::judge(std::int64_t stamp_ns, std::int64_t receive_ns) const noexcept {
@@ -119,6 +123,7 @@ void BaseStationStream::accept(PressureSample& sample, std::uint64_t print,
   // A confirmed clock has taken this sample already.
   if (clock_.samples == 0 || clock_.newest_ns != sample.stamp_ns) clock_.add(sample.stamp_ns, receive_ns);
   candidate_.samples = 0;
+  for (Rival& rival : rivals_) rival.is_beside = rival.known;
   status_.outages += cadence_.silent(receive_ns) || left_ ? 1 : 0;
   left_ = false;
   cadence_.add(receive_ns);

@@ -24,8 +24,8 @@ struct BaseStationConfig {
   /// … for this long on both clocks [ns], and none of the known sender and clock has come meanwhile.
   std::int64_t confirm_ns = 500'000'000;
   /// Another base station that was heard beside the one in use takes its place after this silence [ns].
-  /// Longer than the altimeter's time-out as it is by default, so that the change of place is not taken for
-  /// weather.
+  /// Longer than the altimeter's time-out as it is by default: it has then said that the base is lost, and
+  /// takes the other one as a return.
   std::int64_t takeover_ns = 15'000'000'000;
 };
 
@@ -113,12 +113,19 @@ class BaseStationStream {
   };
   static constexpr std::size_t kBuckets = 1024;
   static constexpr std::size_t kRivals = 4;
+  /// Another sender than the one in use. Whether it is a restart of that one or another base station beside
+  /// it shows when the one in use is heard again.
+  struct Rival {
+    std::uint64_t sender = 0;
+    bool known = false;
+    bool is_beside = false;
+  };
 
   [[nodiscard]] BaseVerdict verdict_on(std::uint64_t sender, const PressureSample& sample,
                                        std::uint64_t print, std::int64_t receive_ns) noexcept;
   [[nodiscard]] bool may_follow(std::uint64_t sender, std::int64_t receive_ns) const noexcept;
-  [[nodiscard]] bool is_rival(std::uint64_t sender) const noexcept;
-  void add_rival(std::uint64_t sender, std::int64_t receive_ns) noexcept;
+  [[nodiscard]] const Rival* find_rival(std::uint64_t sender) const noexcept;
+  void note_rival(std::uint64_t sender, std::int64_t receive_ns) noexcept;
   [[nodiscard]] BaseVerdict judge(std::int64_t stamp_ns, std::int64_t receive_ns) const noexcept;
   [[nodiscard]] bool confirms(std::uint64_t sender, std::int64_t stamp_ns, std::int64_t receive_ns) noexcept;
   void accept(PressureSample& sample, std::uint64_t print, std::int64_t receive_ns) noexcept;
@@ -133,9 +140,8 @@ class BaseStationStream {
   BaseStationStatus status_;
   bool left_ = false;
   std::int64_t newest_robot_ns_ = 0;
-  std::array<std::uint64_t, kRivals> rivals_{};  // those heard beside the sender in use
+  std::array<Rival, kRivals> rivals_{};
   std::size_t next_rival_ = 0;
-  std::size_t rival_count_ = 0;
   std::array<Bucket, kBuckets> memory_{};
 };
 

@@ -317,4 +317,19 @@ TEST_CASE("Two new base stations that come at once do not keep each other out") 
   CHECK(robot.stream.status().restarts == 1);
 }
 
+TEST_CASE("A slow base that is started again before its silence shows is no second base station") {
+  const Base base = base_at(1.0);
+  Listener robot;
+  for (std::int64_t i = 0; i < 20; ++i) robot.give(base, i);
+  // Killed and back within 2 s, without a goodbye: four silent seconds must pass, and three samples agree.
+  std::int64_t first_taken = 0;
+  for (std::int64_t i = 21; i < 40 && first_taken == 0; ++i) {
+    if (robot.give(base, i, 2 * kMs, kSecondSender) == V::kAccepted) first_taken = i;
+  }
+  CHECK(first_taken >= 24);
+  CHECK(first_taken <= 26);
+  CHECK(robot.stream.status().restarts == 1);
+  CHECK(robot.stream.status().rival_ns == 0);
+}
+
 }  // namespace isobar
