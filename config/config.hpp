@@ -18,6 +18,12 @@
 
 namespace isobar {
 
+/// What this machine is, and so which threads run.
+enum class Role : std::uint8_t {
+  kRobot,        ///< estimates where it is
+  kBaseStation,  ///< stands still, reads a barometer and tells robots its pressure
+};
+
 /// [lidar]
 struct LidarSettings {
   std::string model = "VLP-16";     ///< "VLP-16" or "HDL-32E"
@@ -79,6 +85,7 @@ struct RealtimeSettings {
 };
 
 struct Config {
+  Role role = Role::kRobot;
   Method method = Method::k3Dof;
   LidarSettings lidar;
   ImuSettings imu;

@@ -90,6 +90,7 @@ class Assign {
     list(*target, "must be a list of numbers, each" + range_text(setting_),
          [](const toml::node& element) { return element.is_number(); });
   }
+  void operator()(Role* target) const { *target = static_cast<Role>(choice()); }
   void operator()(Method* target) const { *target = static_cast<Method>(choice()); }
   void operator()(AirTemperatureMode* target) const { *target = static_cast<AirTemperatureMode>(choice()); }
   void operator()(CompensationModel* target) const { *target = static_cast<CompensationModel>(choice()); }
@@ -207,6 +208,7 @@ class Loader {
                                       [&key](const Setting& setting) { return setting.key == key; });
       if (found != settings_.end()) {
         std::visit(Assign(*found, node, place), found->target);
+        if (is_for_robots_only(key) && !for_robots_) for_robots_.emplace(place);
       } else if (is_section(key)) {
         if (!node.is_table()) {
           place.fail("must be a section, [" + key + "]");
@@ -219,6 +221,15 @@ class Loader {
     }
   }
 
+  /// Throws for a key that means nothing to a base station.
+  void refuse_robots_keys() const {
+    if (for_robots_) {
+      for_robots_->fail(
+          "means nothing where role = \"base-station\", which only reads a barometer; remove it "
+          "(`isobar config show --role base-station` prints the keys that are left)");
+    }
+  }
+
  private:
   [[nodiscard]] bool is_section(const std::string& key) const {
     return std::any_of(settings_.begin(), settings_.end(),
@@ -227,6 +238,7 @@ class Loader {
 
   std::string file_;
   std::vector<Setting>& settings_;
+  std::optional<Place> for_robots_;  // the first one
 };
 
 std::string read_file(const std::filesystem::path& file) {
@@ -282,7 +294,9 @@ Config parse_config(std::string_view text, const std::string& file) {
   const toml::table root = parse_toml(text, file);
   Config config;
   std::vector<Setting> settings = settings_of(config);
-  Loader(file, settings).load(root, "");
+  Loader loader(file, settings);
+  loader.load(root, "");
+  if (config.role == Role::kBaseStation) loader.refuse_robots_keys();
   take_compensation(file, "barometer.compensation_file", config.barometer.compensation_file,
                     config.prior.compensation);
   take_compensation(file, "base_barometer.compensation_file", config.base_barometer.compensation_file,

@@ -47,7 +47,9 @@ void add_dds(dds::DdsConfig& dds, std::vector<Setting>& settings) {
                       .doc = "Put before the topics' names, such as \"robot1\"; empty: none. Never before "
                              "/tf, /tf_static and /diagnostics.",
                       .text_rule = TextRule::kNameOrEmpty});
-  add_name("dds.node_name", dds.node_name, "Under this name ROS 2 tools show the bridge.", settings);
+  add_name("dds.node_name", dds.node_name,
+           "Under this name ROS 2 tools show the bridge. A base station that leaves it is isobar_NAME.",
+           settings);
   settings.push_back(
       {.key = "dds.ros_gid_bytes",
        .target = &dds.ros_gid_bytes,
@@ -66,17 +68,21 @@ void add_dds(dds::DdsConfig& dds, std::vector<Setting>& settings) {
   settings.push_back({.key = "dds.publish_clouds",
                       .target = &dds.publish_clouds,
                       .doc = "Publish registered scans and the map. Off saves most of the bridge's load."});
+  add_name("dds.base_station", dds.base_station,
+           "Name of the base station: its topics are NAME/fluid_pressure and NAME/temperature. A robot "
+           "listens to it; a base station bears it, as its frame too.",
+           settings);
+  settings.push_back({.key = "dds.second_base_station",
+                      .target = &dds.second_base_station,
+                      .doc = "Name of a second base station, by which a bad first one shows; empty: none.",
+                      .text_rule = TextRule::kNameOrEmpty});
   settings.push_back({.key = "dds.receive_base_pressure",
                       .target = &dds.receive_base_pressure,
-                      .doc = "Take the base station's pressure from base/fluid_pressure."});
+                      .doc = "Take the pressure of the base stations over DDS."});
   settings.push_back({.key = "dds.receive_sensors",
                       .target = &dds.receive_sensors,
                       .doc = "Take the robot's own sensors from imu/data and wheel/odom. Off: a sensor must "
                              "not reach isobard in two ways."});
-  settings.push_back(
-      {.key = "dds.is_base_station",
-       .target = &dds.is_base_station,
-       .doc = "This is a base station: publish the barometer as base/fluid_pressure and receive none."});
 }
 
 void add_propagator(PosePropagatorConfig& propagator, std::vector<Setting>& settings) {

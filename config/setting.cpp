@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "config/setting.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace isobar {
@@ -13,6 +14,11 @@ std::string Setting::section() const {
 std::string Setting::name() const {
   const auto dot = key.rfind('.');
   return dot == std::string::npos ? key : key.substr(dot + 1);
+}
+
+const std::vector<std::string>& role_choices() {
+  static const std::vector<std::string> names{"robot", "base-station"};
+  return names;
 }
 
 const std::vector<std::string>& method_choices() {
@@ -37,6 +43,11 @@ const std::vector<std::string>& compensation_choices() {
 
 std::vector<Setting> settings_of(Config& config) {
   std::vector<Setting> settings;
+  settings.push_back({.key = "role",
+                      .target = &config.role,
+                      .doc = "robot: estimates where it is. base-station: stands still, reads a barometer "
+                             "only and tells all robots its pressure.",
+                      .choices = role_choices()});
   settings.push_back(
       {.key = "method",
        .target = &config.method,
@@ -50,6 +61,28 @@ std::vector<Setting> settings_of(Config& config) {
   add_registration_settings(config.registration, settings);
   add_map_settings(config.map, settings);
   return settings;
+}
+
+bool is_for_robots_only(std::string_view key) {
+  // What a base station needs of a section that it does not need.
+  static constexpr std::array<std::string_view, 4> kForBoth{
+      "altimeter.noise_floor_pa", "altimeter.noise_ceiling_pa", "altimeter.initial_noise_pa",
+      "altimeter.stuck_timeout_s"};
+  // Sections end with a dot.
+  // clang-format off
+  static constexpr std::array<std::string_view, 31> kForRobots{
+      "method", "lidar.", "imu.", "barometer.xyz_m", "base_barometer.", "output.", "realtime.prior_priority",
+      "realtime.lidar_priority", "realtime.registration_priority", "realtime.map_cpus",
+      "dds.second_base_station", "dds.map_frame", "dds.odom_frame", "dds.base_frame", "dds.lidar_frame",
+      "dds.imu_frame", "dds.barometer_frame", "dds.odom_rate_hz", "dds.altitude_rate_hz", "dds.publish_clouds",
+      "dds.receive_base_pressure", "dds.receive_sensors", "dds.propagator.", "altimeter.", "attitude.",
+      "standstill.", "dead_reckoning.", "height.", "limits.", "registration.", "map."};
+  // clang-format on
+  const auto names = [key](std::string_view entry) {
+    return entry.ends_with('.') ? key.starts_with(entry) : key == entry;
+  };
+  return std::none_of(kForBoth.begin(), kForBoth.end(), names) &&
+         std::any_of(kForRobots.begin(), kForRobots.end(), names);
 }
 
 std::string_view section_doc(std::string_view section) {

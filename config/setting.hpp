@@ -28,7 +28,7 @@ enum class TextRule : std::uint8_t {
 /// One key of the configuration, bound to its place in a Config.
 struct Setting {
   using Target = std::variant<double*, int*, std::uint16_t*, std::uint32_t*, std::size_t*, bool*,
-                              std::string*, Eigen::Vector3d*, std::vector<int>*, std::vector<double>*,
+                              std::string*, Eigen::Vector3d*, std::vector<int>*, std::vector<double>*, Role*,
                               Method*, AirTemperatureMode*, CompensationModel*>;
 
   std::string key;  ///< with its section, "registration.max_range_m"
@@ -45,12 +45,16 @@ struct Setting {
 };
 
 /// The names of an enumeration's values, in their order.
+const std::vector<std::string>& role_choices();
 const std::vector<std::string>& method_choices();
 const std::vector<std::string>& air_temperature_choices();
 const std::vector<std::string>& compensation_choices();
 
 /// All settings of `config`, in the order in which they are shown.
 std::vector<Setting> settings_of(Config& config);
+
+/// Does this key mean nothing to a base station? It has no lidar, no motion and no map.
+bool is_for_robots_only(std::string_view key);
 
 /// A sentence for the head of a section.
 std::string_view section_doc(std::string_view section);

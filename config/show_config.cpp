@@ -64,7 +64,11 @@ std::string show_config(const Config& config) {
       "the value in use. `isobar config check FILE` checks a file; `isobar config show [FILE]` prints this "
       "one.",
       out);
-  append_settings(settings_of(copy), out);
+  std::vector<Setting> settings = settings_of(copy);
+  if (config.role == Role::kBaseStation) {
+    std::erase_if(settings, [](const Setting& setting) { return is_for_robots_only(setting.key); });
+  }
+  append_settings(settings, out);
   return out;
 }
 

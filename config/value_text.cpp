@@ -47,6 +47,9 @@ struct ValueText {
   }
   std::string operator()(const std::vector<int>* values) const { return list_text(*values, shortest<int>); }
   std::string operator()(const std::vector<double>* values) const { return list_text(*values, float_text); }
+  std::string operator()(const Role* value) const {
+    return quoted_toml(setting.choices.at(static_cast<std::size_t>(*value)));
+  }
   std::string operator()(const Method* value) const {
     return quoted_toml(setting.choices.at(static_cast<std::size_t>(*value)));
   }
@@ -150,7 +153,10 @@ void check_together(const Config& config, const std::string& file) {
           "must lie between altimeter.noise_floor_pa and altimeter.noise_ceiling_pa");
   require(config.registration.last_distance_m <= config.registration.first_distance_m,
           "registration.last_distance_m", "must not be above registration.first_distance_m");
-  require(config.lidar.port != config.input.port, "input.port", "must differ from lidar.port");
+  require(config.dds.second_base_station != config.dds.base_station, "dds.second_base_station",
+          "must differ from dds.base_station");
+  require(config.lidar.port != config.input.port || config.role == Role::kBaseStation, "input.port",
+          "must differ from lidar.port");
   check_compensation(config.prior.compensation, file + ": barometer.compensation.");
   check_compensation(config.prior.base_compensation, file + ": base_barometer.compensation.");
   const BarometerSettings& barometer = config.barometer;

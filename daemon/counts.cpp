@@ -81,6 +81,22 @@ std::vector<RunCount> counts_of(const datagram::Counters& counters) {
   return counts;
 }
 
+std::vector<RunCount> counts_of(const BaseStationStatus& base) {
+  using V = BaseVerdict;
+  return {
+      {"base lines in time", base.count(V::kAccepted), ""},
+      {"base lines that came before", base.count(V::kRepeated), ""},
+      {"base lines outdated", base.count(V::kOutdated), ""},
+      {"base lines too old", base.count(V::kTooOld), ""},
+      {"base lines from the future", base.count(V::kAhead), ""},
+      {"base lines of another station", base.count(V::kOtherSender), ""},
+      {"base lines of a new sender", base.count(V::kUnconfirmed), ""},
+      {"base station outages", base.outages, ""},
+      {"base station restarts", base.restarts, ""},
+      {"base station clock steps", base.clock_steps, ""},
+  };
+}
+
 std::vector<RunCount> counts_of(const BarometerCounters& counters) {
   return {
       {"barometer readings", counters.samples, ""},

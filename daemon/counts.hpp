@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/prior/prior_estimator.hpp"
+#include "core/time/base_station_stream.hpp"
 #include "daemon/run_output.hpp"
 #include "drivers/barometer/barometer_device.hpp"
 #include "drivers/datagram/datagram.hpp"
@@ -17,6 +18,8 @@ std::vector<RunCount> counts_of(const velodyne::VelodyneCounters& counters,
                                 const std::string& wrong_model_message);
 std::vector<RunCount> counts_of(const PriorCounters& counters);
 std::vector<RunCount> counts_of(const datagram::Counters& counters);
+/// Of the base station that sends datagrams.
+std::vector<RunCount> counts_of(const BaseStationStatus& base);
 std::vector<RunCount> counts_of(const BarometerCounters& counters);
 
 /// Appends `more` to `counts`.

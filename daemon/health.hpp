@@ -9,6 +9,7 @@
 #include "config/config.hpp"
 #include "daemon/barometer_thread.hpp"
 #include "daemon/inertial_thread.hpp"
+#include "daemon/level_changes.hpp"
 #include "daemon/lidar_thread.hpp"
 #include "daemon/map_thread.hpp"
 #include "daemon/prior_thread.hpp"
@@ -45,15 +46,15 @@ class HealthMonitor {
  private:
   void fill_lidar(const StatusSnapshot& now, double elapsed_s, ipc::HealthReport& report) const;
   void fill_samples(const StatusSnapshot& now, double elapsed_s, ipc::HealthReport& report) const;
-  void fill_barometer(const StatusSnapshot& now, double rate_hz, ipc::HealthReport& report) const;
+  void fill_base_stations(const StatusSnapshot& now, ipc::HealthReport& report) const;
   static void fill_faults(const StatusSnapshot& now, ipc::HealthReport& report);
   void fill_estimate(const StatusSnapshot& now, ipc::HealthReport& report) const;
 
   Config config_;
   std::vector<std::string> refusals_;
   StatusSnapshot last_;
+  LevelChanges changes_;
   std::int64_t first_look_ns_ = 0;
-  std::vector<std::pair<std::string, ipc::HealthLevel>> levels_;
 };
 
 }  // namespace isobar

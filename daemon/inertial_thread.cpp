@@ -5,10 +5,10 @@
 
 namespace isobar {
 
-InertialThread::InertialThread(const std::string& address, std::uint16_t port, bool takes_pressure,
+InertialThread::InertialThread(const std::string& address, std::uint16_t port, Takes takes,
                                ThreadSettings settings)
     : settings_(std::move(settings)),
-      takes_pressure_(takes_pressure),
+      takes_(takes),
       receiver_(address, port),
       imu_(ipc::topics::kImu),
       barometer_(ipc::topics::kBarometer),
@@ -36,19 +36,27 @@ void InertialThread::take_datagram(const ReceivedDatagram& received) noexcept {
   parser_.begin(received.payload);
   datagram::Sample sample;
   while (parser_.next(sample)) {
-    to_robot_clock(sample, received.stamp_ns);
-    if (!publish(sample)) ++own_.samples_without_memory;
+    const bool is_barometer = sample.kind == datagram::Kind::kPressure;
+    if (!(is_barometer ? takes_.barometer : takes_.others)) {
+      ++(is_barometer ? own_.refused_pressure : own_.not_of_this_role);
+      continue;
+    }
+    if (to_robot_clock(sample, received) && !publish(sample)) ++own_.samples_without_memory;
   }
 }
 
-void InertialThread::to_robot_clock(datagram::Sample& sample, std::int64_t receive_ns) noexcept {
-  if (sample.stamp_ns() == 0) {
-    sample.set_stamp_ns(receive_ns);
-    return;
+// False for a sample of a base station that is not of now.
+bool InertialThread::to_robot_clock(datagram::Sample& sample, const ReceivedDatagram& received) noexcept {
+  const bool stamped = sample.stamp_ns() != 0;
+  if (!stamped) sample.set_stamp_ns(received.stamp_ns);
+  if (sample.kind == datagram::Kind::kBasePressure) {
+    return base_.check(received.sender_ipv4, sample.pressure, received.stamp_ns) == BaseVerdict::kAccepted;
   }
+  if (!stamped) return true;
   ClockAnchor& anchor = anchors_[static_cast<std::size_t>(sample.kind)];
-  (void)anchor.add(sample.stamp_ns(), receive_ns);
+  (void)anchor.add(sample.stamp_ns(), received.stamp_ns);
   sample.set_stamp_ns(anchor.to_host_ns(anchor.device_unwrapped_ns()));
+  return true;
 }
 
 bool InertialThread::publish(const datagram::Sample& sample) noexcept {
@@ -56,10 +64,6 @@ bool InertialThread::publish(const datagram::Sample& sample) noexcept {
     case datagram::Kind::kImu:
       return imu_.send(sample.imu);
     case datagram::Kind::kPressure:
-      if (!takes_pressure_) {
-        ++own_.refused_pressure;
-        return true;
-      }
       return barometer_.send(sample.pressure);
     case datagram::Kind::kBasePressure:
       return base_barometer_.send(sample.pressure);
@@ -74,6 +78,7 @@ void InertialThread::report() noexcept {
   own_.dropped_by_kernel = receiver_.dropped_by_kernel();
   own_.clock_steps = 0;
   for (const ClockAnchor& anchor : anchors_) own_.clock_steps += anchor.steps();
+  own_.base = base_.status();
   status_.put(own_);
 }
 

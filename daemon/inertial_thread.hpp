@@ -5,6 +5,7 @@
 #include <string>
 #include <thread>
 
+#include "core/time/base_station_stream.hpp"
 #include "core/time/clock_anchor.hpp"
 #include "daemon/mailbox.hpp"
 #include "daemon/realtime.hpp"
@@ -21,15 +22,20 @@ struct InertialStatus {
   std::uint64_t dropped_by_kernel = 0;
   std::uint64_t samples_without_memory = 0;
   std::uint64_t refused_pressure = 0;  ///< of a barometer that this machine reads itself
+  std::uint64_t not_of_this_role = 0;  ///< samples that a base station has no use for
+  BaseStationStatus base;              ///< of the base station that sends datagrams
 };
 
 /// Sample datagrams of IMU, barometers and wheels in, samples on the robot's clock out.
 class InertialThread {
  public:
-  /// takes_pressure: false where another thread writes the barometer's topic; datagrams of it are then
-  /// refused and counted. Throws ServiceError when the port cannot be bound.
-  InertialThread(const std::string& address, std::uint16_t port, bool takes_pressure,
-                 ThreadSettings settings);
+  /// What is taken; the rest is refused and counted.
+  struct Takes {
+    bool barometer = true;  ///< false where another thread writes the barometer's topic
+    bool others = true;     ///< false on a base station
+  };
+  /// Throws ServiceError when the port cannot be bound.
+  InertialThread(const std::string& address, std::uint16_t port, Takes takes, ThreadSettings settings);
   ~InertialThread();
   InertialThread(const InertialThread&) = delete;
   InertialThread& operator=(const InertialThread&) = delete;
@@ -43,15 +49,16 @@ class InertialThread {
  private:
   void loop() noexcept;
   void take_datagram(const ReceivedDatagram& received) noexcept;
-  void to_robot_clock(datagram::Sample& sample, std::int64_t receive_ns) noexcept;
+  [[nodiscard]] bool to_robot_clock(datagram::Sample& sample, const ReceivedDatagram& received) noexcept;
   bool publish(const datagram::Sample& sample) noexcept;
   void report() noexcept;
 
   ThreadSettings settings_;
-  bool takes_pressure_;
+  Takes takes_;
   UdpReceiver receiver_;
   datagram::DatagramParser parser_;
   std::array<ClockAnchor, datagram::kKinds> anchors_;  ///< every sender may have a clock of its own
+  BaseStationStream base_;
   ipc::Publisher<ImuSample> imu_;
   ipc::Publisher<PressureSample> barometer_;
   ipc::Publisher<PressureSample> base_barometer_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// isobard: the whole graph on one screen.
+// isobard: the whole graph on one screen. (A base station's is in base_station.cpp.)
 //
 //   lidar ──packets→scan──────────────┐                    ┌─▶ poses ──▶ isobar-dds ──▶ DDS
 //   imu ─┐                            ▼                    │
@@ -20,6 +20,7 @@
 #include "core/errors.hpp"
 #include "daemon/barometer_source.hpp"
 #include "daemon/barometer_thread.hpp"
+#include "daemon/base_station.hpp"
 #include "daemon/counts.hpp"
 #include "daemon/health.hpp"
 #include "daemon/inertial_thread.hpp"
@@ -65,7 +66,7 @@ std::vector<std::string> refusals_of(const Scheduling& scheduling, bool realtime
   return refusals;
 }
 
-void run(const Config& config, Service& service) {
+void run_robot(const Config& config, Service& service) {
   const StageSettings stages = stage_settings(config);
   const Scheduling scheduling = scheduling_of(config.realtime);
   const std::vector<std::string> refusals = refusals_of(scheduling, config.realtime.enabled);
@@ -83,7 +84,8 @@ void run(const Config& config, Service& service) {
                                   scheduling.registration);
   PriorThread prior(stages.prior, scheduling.prior);
   std::unique_ptr<BarometerDevice> device = make_barometer(config.barometer);
-  InertialThread inertial(config.input.address, config.input.port, device == nullptr, scheduling.inertial);
+  InertialThread inertial(config.input.address, config.input.port, {.barometer = device == nullptr},
+                          scheduling.inertial);
   std::optional<BarometerThread> barometer;
   if (device) barometer.emplace(std::move(device), scheduling.barometer);
   LidarThread lidar(stages.lidar, config.lidar.address, config.lidar.port, scheduling.lidar);
@@ -134,6 +136,7 @@ void run(const Config& config, Service& service) {
     const StatusSnapshot last = look();
     std::vector<RunCount> counts = counts_of(last.lidar.counters, last.lidar.wrong_model_message.data());
     append(counts, counts_of(last.inertial.counters));
+    append(counts, counts_of(last.inertial.base));
     if (last.barometer.present) append(counts, counts_of(last.barometer.device.counters));
     append(counts, {{"baro lines refused", last.inertial.refused_pressure, ""}});
     append(counts, counts_of(last.prior.counters));
@@ -163,8 +166,13 @@ int main_with_errors(int argc, char** argv) {
   // First of all, so that every thread inherits the blocked signals.
   Service service;
   Config config = config_file.empty() ? Config{} : load_config(config_file);
+  if (config.role == Role::kBaseStation) {
+    if (!output_directory.empty()) throw UsageError("--output: a base station writes no run");
+    run_base_station(config, service);
+    return 0;
+  }
   if (!output_directory.empty()) config.output.directory = output_directory;
-  run(config, service);
+  run_robot(config, service);
   return 0;
 }
 

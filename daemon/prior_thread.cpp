@@ -45,6 +45,8 @@ ipc::Received<Sample> PriorThread::take(ipc::Subscriber<Sample>& from, datagram:
 void PriorThread::drain() noexcept {
   using datagram::Kind;
   while (const auto sample = take(base_barometer_, Kind::kBasePressure)) {
+    if (sample->station < own_.base_stations.size())
+      own_.base_stations[sample->station].add(sample->stamp_ns);
     estimator_.add_base_pressure(*sample);
   }
   while (const auto sample = take(barometer_, Kind::kPressure)) estimator_.add_pressure(*sample);

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "core/prior/prior_estimator.hpp"
+#include "core/time/cadence.hpp"
 #include "daemon/mailbox.hpp"
 #include "daemon/realtime.hpp"
 #include "drivers/datagram/datagram.hpp"
@@ -18,6 +19,7 @@ struct PriorStatus {
   PriorCounters counters;
   std::array<std::uint64_t, datagram::kKinds> samples{};        ///< by Kind, however they came
   std::array<std::int64_t, datagram::kKinds> last_sample_ns{};  ///< robot clock, by Kind, 0: none yet
+  std::array<Cadence, 2> base_stations;                         ///< by PressureSample::station, robot clock
   std::uint64_t dropped_samples = 0;                            ///< lost because this thread came too late
   std::int64_t stamp_ns = 0;                                    ///< of the newest prior, 0: none yet
   double height_m = 0.0;

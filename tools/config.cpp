@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "config/config_io.hpp"
+#include "config/setting.hpp"
 #include "daemon/stage_settings.hpp"
 #include "drivers/recording/manifest.hpp"
 #include "tools/commands.hpp"
@@ -28,11 +29,16 @@ void add_config_command(CLI::App& app) {
   CLI::App* show =
       command->add_subcommand("show", "Print every setting with unit, range and reason, as TOML");
   show->add_option("FILE", *file, "configuration whose values take the place of the defaults");
+  const auto role = std::make_shared<std::string>();
+  show->add_option("--role", *role, "print the defaults of a robot or of a base-station")
+      ->check(CLI::IsMember(role_choices()))
+      ->excludes("FILE");
   const auto recording = std::make_shared<std::string>();
   show->add_option("--sensors-of", *recording,
                    "recording whose sensors and mounts take the place of the defaults");
-  show->callback([file, recording] {
+  show->callback([file, role, recording] {
     Config config = file->empty() ? Config{} : load_config(*file);
+    if (*role == role_choices().back()) config.role = Role::kBaseStation;
     if (!recording->empty()) {
       std::vector<std::string> warnings;
       config = with_sensors_of(recording::read_manifest(*recording, warnings), config);

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/bridge/forwarding.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
+
+#include "daemon/base_station_health.hpp"
 
 namespace isobar::bridge {
 namespace {
@@ -27,29 +31,31 @@ HealthLevel warn_if(bool condition) { return condition ? HealthLevel::kWarning :
 
 }  // namespace
 
-void report_absence(dds::PoseOutputs& outputs, dds::DiagnosticsBuilder& builder) {
+void report_absence(Outputs& outputs, dds::DiagnosticsBuilder& builder) {
   builder.start(wall_ns());
   builder.add("bridge/isobard", HealthLevel::kError, "isobard is not running", 0.0);
-  outputs.write_diagnostics(builder);
+  outputs.diagnostics.write(builder.message());
 }
 
 Forwarding::CloudsIn::CloudsIn()
     : scan(ipc::topics::kRegisteredScan), map(ipc::topics::kMapCloud), waiter({&scan.raw(), &map.raw()}) {}
 
-Forwarding::Forwarding(dds::PoseOutputs& poses, dds::CloudOutputs& clouds, bool with_clouds)
-    : poses_(poses),
-      clouds_(clouds),
+Forwarding::Forwarding(Outputs& outputs, const dds::DdsConfig& config)
+    : outputs_(outputs),
+      station_topics_{dds::dds_name(dds::topics::kBasePressure, config.base_station).substr(3),
+                      dds::dds_name(dds::topics::kBasePressure, config.second_base_station).substr(3)},
       prior_in_(ipc::topics::kPrior),
       pose_in_(ipc::topics::kPose),
-      barometer_in_(ipc::topics::kBarometer),
+      station_in_(ipc::topics::kBaseBarometer),
       health_in_(ipc::topics::kHealth),
-      pose_waiter_({&prior_in_.raw(), &pose_in_.raw(), &barometer_in_.raw(), &health_in_.raw()}),
+      pose_waiter_({&prior_in_.raw(), &pose_in_.raw(), &station_in_.raw(), &health_in_.raw()}),
+      diagnostics_(config.node_name),
       last_report_ns_(steady_ns()) {
-  if (with_clouds) {
+  if (outputs.clouds) {
     clouds_in_.emplace();
   }
   pose_thread_ = std::thread([this] { forward_poses(); });
-  if (with_clouds) {
+  if (clouds_in_) {
     cloud_thread_ = std::thread([this] { forward_clouds(); });
   }
 }
@@ -76,23 +82,20 @@ void Forwarding::forward_poses() noexcept {
     // Priors first: a pose needs the height that the altimeter had at its time.
     while (const auto prior = prior_in_.take()) {
       note_data();
-      poses_.on_prior(*prior);
+      if (outputs_.poses) outputs_.poses->on_prior(*prior);
     }
     while (const auto pose = pose_in_.take()) {
       note_data();
-      poses_.on_pose(*pose);
+      if (outputs_.poses) outputs_.poses->on_pose(*pose);
     }
-    while (const auto sample = barometer_in_.take()) {
-      poses_.on_pressure(*sample);
+    while (const auto sample = station_in_.take()) {
+      if (outputs_.station) outputs_.station->on_pressure(*sample);
     }
     forward_health();
   }
 }
 
-void Forwarding::note_received(const ReceivedCounts& counts) noexcept {
-  received_refused_.store(counts.refused, std::memory_order_relaxed);
-  received_early_.store(counts.too_early, std::memory_order_relaxed);
-}
+void Forwarding::note_received(const ReceivedCounts& counts) noexcept { received_.put(counts); }
 
 void Forwarding::forward_health() {
   const auto report = health_in_.take_latest();
@@ -114,36 +117,61 @@ void Forwarding::forward_health() {
     diagnostics_.add("bridge/isobard", HealthLevel::kStale, "isobard runs but says nothing", 0.0);
   }
   add_own_health();
-  poses_.write_diagnostics(diagnostics_);
+  outputs_.diagnostics.write(diagnostics_.message());
+}
+
+void Forwarding::add(const std::string& name, HealthLevel level, const std::string& message, double value) {
+  diagnostics_.add(name.c_str(), level, message.c_str(), value);
+  if (const auto line = changes_.note(name, level, message)) spdlog::info("{}", *line);
 }
 
 void Forwarding::add_own_health() {
-  const auto add = [this](const char* name, std::uint64_t count, const char* message) {
-    diagnostics_.add(name, warn_if(count > 0), count > 0 ? message : "", static_cast<double>(count));
+  const auto add_count = [this](const char* name, std::uint64_t count, const char* message) {
+    add(name, warn_if(count > 0), count > 0 ? message : "", static_cast<double>(count));
   };
   const auto value = [](const std::atomic<std::uint64_t>& count) {
     return count.load(std::memory_order_relaxed);
   };
-  add("bridge/samples_lost", prior_in_.dropped() + pose_in_.dropped(), "the bridge was too slow for isobard");
-  add("bridge/clouds_lost", value(clouds_dropped_), "the bridge was too slow for isobard");
-  add("bridge/messages_unsent", poses_.failures(), "a DDS reader is too slow");
-  add("bridge/clouds_unsent", value(cloud_failures_), "a DDS reader is too slow");
-  add("bridge/samples_refused", prior_in_.rejected() + pose_in_.rejected() + health_in_.rejected(),
-      "isobard and isobar-dds are of different builds");
-  add("bridge/received_implausible", value(received_refused_), "a DDS writer sends values that cannot be");
-  add("bridge/received_too_early", value(received_early_), "came before isobard was ready for it");
+  const std::uint64_t unsent = outputs_.diagnostics.failures() +
+                               (outputs_.poses ? outputs_.poses->failures() : 0) +
+                               (outputs_.station ? outputs_.station->failures() : 0);
+  const ReceivedCounts received = received_.get();
+  add_count("bridge/samples_lost", prior_in_.dropped() + pose_in_.dropped() + station_in_.dropped(),
+            "the bridge was too slow for isobard");
+  add_count("bridge/clouds_lost", value(clouds_dropped_), "the bridge was too slow for isobard");
+  add_count("bridge/messages_unsent", unsent, "a DDS reader is too slow");
+  add_count("bridge/clouds_unsent", value(cloud_failures_), "a DDS reader is too slow");
+  add_count("bridge/samples_refused",
+            prior_in_.rejected() + pose_in_.rejected() + station_in_.rejected() + health_in_.rejected(),
+            "isobard and isobar-dds are of different builds");
+  add_count("bridge/received_implausible", received.refused, "a DDS writer sends values that cannot be");
+  add_count("bridge/received_too_early", received.too_early, "came before isobard was ready for it");
+  add_station_health(received);
+}
+
+void Forwarding::add_station_health(const ReceivedCounts& received) {
+  static constexpr std::array<const char*, 2> kNames{"bridge/base_station", "bridge/second_base_station"};
+  const AddEntry to_diagnostics = [this](const std::string& name, HealthLevel level,
+                                         const std::string& message,
+                                         double value) { add(name, level, message, value); };
+  for (std::size_t i = 0; i < received.station_count; ++i) {
+    add_base_station_state(kNames[i], received.stations[i], received.taken_ns, station_topics_[i],
+                           to_diagnostics);
+    add_base_station_counts(kNames[i], received.stations[i], last_received_.stations[i], to_diagnostics);
+  }
+  last_received_ = received;
 }
 
 void Forwarding::forward_clouds() noexcept {
   while (clouds_in_->waiter.wait_for(kRound) != ipc::Waiter::Event::kStopped) {
     if (const auto scan = clouds_in_->scan.take_latest()) {
-      clouds_.on_scan(*scan);
+      outputs_.clouds->on_scan(*scan);
     }
     if (const auto map = clouds_in_->map.take_latest()) {
-      clouds_.on_map(*map);
+      outputs_.clouds->on_map(*map);
     }
     clouds_dropped_.store(clouds_in_->scan.dropped(), std::memory_order_relaxed);
-    cloud_failures_.store(clouds_.failures(), std::memory_order_relaxed);
+    cloud_failures_.store(outputs_.clouds->failures(), std::memory_order_relaxed);
   }
 }
 

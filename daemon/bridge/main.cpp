@@ -15,11 +15,11 @@
 
 #include "core/errors.hpp"
 #include "daemon/bridge/forwarding.hpp"
+#include "daemon/bridge/outputs.hpp"
 #include "daemon/bridge/process.hpp"
 #include "daemon/bridge/receiving.hpp"
 #include "daemon/bridge/settings.hpp"
 #include "ipc/dds/discovery.hpp"
-#include "ipc/dds/outputs.hpp"
 #include "ipc/dds/participant.hpp"
 #include "ipc/shared_memory.hpp"
 
@@ -39,32 +39,26 @@ constexpr auto kLeavingLimit = 4s;
 /// Everything on the DDS side.
 struct Network {
   dds::Participant participant;
-  dds::PoseOutputs poses;
-  dds::CloudOutputs clouds;
+  Outputs outputs;
   dds::NodeAnnouncement announcement;
 
   explicit Network(const Settings& settings)
       : participant({settings.dds.domain_id, settings.dds.network_interface, settings.dds.max_message_bytes}),
-        poses(participant.get(), settings.dds, settings.mounts),
-        clouds(participant.get(), settings.dds),
+        outputs(participant.get(), settings),
         announcement(participant.get(), settings.dds.ros_gid_bytes) {
     announce(settings, {});
   }
 
   /// Tells ROS 2 tools what belongs to this node.
   void announce(const Settings& settings, const std::vector<dds_entity_t>& readers) {
-    std::vector<dds_entity_t> writers = poses.writers();
-    for (const dds_entity_t writer : clouds.writers()) {
-      writers.push_back(writer);
-    }
-    announcement.announce(settings.dds.ros_namespace, settings.dds.node_name, writers, readers);
+    announcement.announce(settings.dds.ros_namespace, settings.dds.node_name, outputs.writers(), readers);
   }
 };
 
 /// Null when the program was told to end meanwhile.
-std::unique_ptr<ipc::Attachment> wait_for_isobard(Network& network, StopSignals& signals,
-                                                  const ServiceManager& manager) {
-  dds::DiagnosticsBuilder builder;
+std::unique_ptr<ipc::Attachment> wait_for_isobard(Network& network, const Settings& settings,
+                                                  StopSignals& signals, const ServiceManager& manager) {
+  dds::DiagnosticsBuilder builder(settings.dds.node_name);
   for (bool told = false; !signals.wait_for(0ms);) {
     manager.alive();
     limit_time(kJoiningLimit, &replace_process);
@@ -76,7 +70,7 @@ std::unique_ptr<ipc::Attachment> wait_for_isobard(Network& network, StopSignals&
         manager.status("waiting for isobard");
         told = true;
       }
-      report_absence(network.poses, builder);
+      report_absence(network.outputs, builder);
     }
   }
   lift_time_limit();
@@ -102,8 +96,8 @@ std::optional<std::string> reason_to_restart(const ipc::Attachment& attachment, 
 void forward(Network& network, const Settings& settings, const ipc::Attachment& attachment,
              StopSignals& signals, const ServiceManager& manager) {
   limit_time(kJoiningLimit, &replace_process);
-  Forwarding forwarding(network.poses, network.clouds, settings.dds.publish_clouds);
-  const Receiving receiving(network.participant.get(), settings.dds, forwarding.clock());
+  Forwarding forwarding(network.outputs, settings.dds);
+  const Receiving receiving(network.participant.get(), settings, forwarding.clock());
   lift_time_limit();
   network.announce(settings, receiving.readers());
   manager.status("forwarding");
@@ -136,7 +130,7 @@ int run(const Settings& settings) {
   const std::string& interface = network.participant.network_interface();
   spdlog::info("DDS domain {} on {}", settings.dds.domain_id, interface.empty() ? "the network" : interface);
   manager.ready("DDS is up");
-  if (const auto attachment = wait_for_isobard(network, signals, manager)) {
+  if (const auto attachment = wait_for_isobard(network, settings, signals, manager)) {
     forward(network, settings, *attachment, signals, manager);
   }
   manager.stopping();

@@ -32,24 +32,37 @@ std::int64_t RobotClock::now_ns() const noexcept {
   return monotonic_ns() + offset_ns_.load(std::memory_order_relaxed);
 }
 
-Receiving::Receiving(dds_entity_t participant, const dds::DdsConfig& config, const RobotClock& clock)
+Receiving::Receiving(dds_entity_t participant, const Settings& settings, const RobotClock& clock)
     : clock_(clock) {
+  const dds::DdsConfig& config = settings.dds;
   const auto open = [&](auto& stream, const auto& from, const auto& to) {
     stream.emplace(participant, from, config.ros_namespace, to);
   };
-  if (config.receive_base_pressure && !config.is_base_station) {
-    open(base_pressure_, dds::topics::kBasePressure, ipc::topics::kBaseBarometer);
+  if (config.receive_base_pressure && !settings.is_base_station) {
+    base_pressure_.emplace(ipc::topics::kBaseBarometer);
+    stations_.push_back(std::make_unique<StationInput>(participant, config.base_station, 0));
+    if (!config.second_base_station.empty()) {
+      stations_.push_back(std::make_unique<StationInput>(participant, config.second_base_station, 1));
+    }
   }
-  if (config.receive_sensors) {
+  if (config.receive_sensors && !settings.is_base_station) {
     open(imu_, dds::topics::kImu, ipc::topics::kImu);
     open(wheel_, dds::topics::kWheel, ipc::topics::kWheel);
   }
   waitset_ = dds::checked(dds_create_waitset(participant), "no wait set");
   stop_ = dds::checked(dds_create_guardcondition(participant), "no guard condition");
   dds_waitset_attach(waitset_.get(), stop_.get(), 0);
-  for (const dds_entity_t reader : readers()) {
-    dds_set_status_mask(reader, DDS_DATA_AVAILABLE_STATUS);
-    dds_waitset_attach(waitset_.get(), reader, 0);
+  const auto attach = [this](const auto& stream) {
+    if (!stream) {
+      return;
+    }
+    dds_set_status_mask(stream->reader.get(), DDS_DATA_AVAILABLE_STATUS);
+    dds_waitset_attach(waitset_.get(), stream->reader.get(), 0);
+  };
+  attach(imu_);
+  attach(wheel_);
+  for (const auto& station : stations_) {
+    dds_waitset_attach(waitset_.get(), station->pressure_reader(), 0);
   }
   thread_ = std::thread([this] { loop(); });
 }
@@ -61,15 +74,22 @@ Receiving::~Receiving() {
 
 std::vector<dds_entity_t> Receiving::readers() const {
   std::vector<dds_entity_t> readers;
-  add_reader(base_pressure_, readers);
+  for (const auto& station : stations_) {
+    readers.push_back(station->pressure_reader());
+    readers.push_back(station->temperature_reader());
+  }
   add_reader(imu_, readers);
   add_reader(wheel_, readers);
   return readers;
 }
 
 ReceivedCounts Receiving::counts() const noexcept {
-  return {samples_.load(std::memory_order_relaxed), refused_.load(std::memory_order_relaxed),
-          too_early_.load(std::memory_order_relaxed)};
+  return {samples_.load(std::memory_order_relaxed),
+          refused_.load(std::memory_order_relaxed),
+          too_early_.load(std::memory_order_relaxed),
+          station_status_.get(),
+          stations_.size(),
+          clock_.now_ns()};
 }
 
 template <class Message, class Sample>
@@ -95,10 +115,29 @@ void Receiving::forward(std::optional<Stream<Message, Sample>>& stream) {
   });
 }
 
+void Receiving::forward_stations() {
+  std::array<BaseStationStatus, 2> status;
+  for (std::size_t i = 0; i < stations_.size(); ++i) {
+    if (clock_.known()) {
+      refused_.fetch_add(stations_[i]->take(clock_.now_ns(),
+                                            [this](const PressureSample& sample) {
+                                              auto& count =
+                                                  base_pressure_->send(sample) ? samples_ : too_early_;
+                                              count.fetch_add(1, std::memory_order_relaxed);
+                                            }),
+                         std::memory_order_relaxed);
+    } else {
+      too_early_.fetch_add(stations_[i]->drop(), std::memory_order_relaxed);
+    }
+    status[i] = stations_[i]->status();
+  }
+  station_status_.put(status);
+}
+
 void Receiving::loop() noexcept {
   bool stopped = false;
   while (!stopped && dds_waitset_wait(waitset_.get(), nullptr, 0, DDS_INFINITY) >= 0) {
-    forward(base_pressure_);
+    forward_stations();
     forward(wheel_);
     forward(imu_);
     static_cast<void>(dds_read_guardcondition(stop_.get(), &stopped));

@@ -5,13 +5,16 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "core/time/clock_anchor.hpp"
-#include "ipc/dds/dds_config.hpp"
+#include "daemon/bridge/settings.hpp"
+#include "daemon/bridge/station_input.hpp"
+#include "daemon/mailbox.hpp"
 #include "ipc/dds/endpoints.hpp"
 #include "ipc/shared_memory.hpp"
 
@@ -37,13 +40,17 @@ struct ReceivedCounts {
   std::uint64_t samples = 0;
   std::uint64_t refused = 0;    ///< implausible
   std::uint64_t too_early = 0;  ///< before isobard's clock was known, or without room in shared memory
+  /// The base stations that are listened to, [0 … station_count-1].
+  std::array<BaseStationStatus, 2> stations;
+  std::size_t station_count = 0;
+  std::int64_t taken_ns = 0;  ///< robot clock, when this was true
 };
 
 /// Readers of the topics that the configuration asks for, and one thread that hands on what they get.
 class Receiving {
  public:
   /// @throws ServiceError DDS or shared memory refuses
-  Receiving(dds_entity_t participant, const dds::DdsConfig& config, const RobotClock& clock);
+  Receiving(dds_entity_t participant, const Settings& settings, const RobotClock& clock);
   ~Receiving();
   Receiving(const Receiving&) = delete;
   Receiving& operator=(const Receiving&) = delete;
@@ -66,10 +73,12 @@ class Receiving {
 
   template <class Message, class Sample>
   void forward(std::optional<Stream<Message, Sample>>& stream);
+  void forward_stations();
   void loop() noexcept;
 
   const RobotClock& clock_;
-  std::optional<Stream<dds::PressureMessage, PressureSample>> base_pressure_;
+  std::vector<std::unique_ptr<StationInput>> stations_;
+  std::optional<ipc::Publisher<PressureSample>> base_pressure_;
   std::optional<Stream<dds::ImuMessage, ImuSample>> imu_;
   std::optional<Stream<dds::OdometryMessage, WheelSample>> wheel_;
   dds::Entity waitset_;
@@ -77,6 +86,7 @@ class Receiving {
   std::atomic<std::uint64_t> samples_{0};
   std::atomic<std::uint64_t> refused_{0};
   std::atomic<std::uint64_t> too_early_{0};
+  Mailbox<std::array<BaseStationStatus, 2>> station_status_;
   std::thread thread_;
 };
 

@@ -2,6 +2,7 @@
 #include "daemon/bridge/settings.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "config/config_io.hpp"
 
@@ -19,7 +20,12 @@ void add_options(CLI::App& app, Options& options) {
 Settings load_settings(const Options& options) {
   const Config config = options.config_file.empty() ? Config{} : load_config(options.config_file);
   Settings settings;
+  settings.is_base_station = config.role == Role::kBaseStation;
   settings.dds = config.dds;
+  if (settings.is_base_station && config.dds.node_name == dds::DdsConfig{}.node_name) {
+    settings.dds.node_name += "_" + config.dds.base_station;
+    std::replace(settings.dds.node_name.begin(), settings.dds.node_name.end(), '/', '_');
+  }
   settings.mounts = {config.lidar.mount, config.imu.mount, config.barometer.mount};
   if (options.domain) {
     settings.dds.domain_id = *options.domain;

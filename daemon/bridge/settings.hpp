@@ -21,6 +21,7 @@ struct Options {
 };
 
 struct Settings {
+  bool is_base_station = false;
   dds::DdsConfig dds;
   dds::SensorMounts mounts;
 };

@@ -142,7 +142,10 @@ UdpReceiver::Status UdpReceiver::receive(ReceivedDatagram& datagram, int timeout
   }
   iovec bytes{buffer_.data(), buffer_.size()};
   alignas(cmsghdr) std::array<char, 128> control;
+  sockaddr_in sender{};
   msghdr message{};
+  message.msg_name = &sender;
+  message.msg_namelen = sizeof sender;
   message.msg_iov = &bytes;
   message.msg_iovlen = 1;
   message.msg_control = control.data();
@@ -159,6 +162,7 @@ UdpReceiver::Status UdpReceiver::receive(ReceivedDatagram& datagram, int timeout
   datagram.payload = {buffer_.data(), static_cast<std::size_t>(length)};
   datagram.stamp_ns =
       ancillary.realtime_ns == 0 ? RobotClock::now_ns() : RobotClock::from_realtime_ns(ancillary.realtime_ns);
+  datagram.sender_ipv4 = ntohl(sender.sin_addr.s_addr);
   datagram.cut = (message.msg_flags & MSG_TRUNC) != 0;
   return Status::kDatagram;
 }

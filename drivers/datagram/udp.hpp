@@ -15,8 +15,9 @@ namespace isobar {
 /// One received datagram. The bytes live in the receiver until its next receive().
 struct ReceivedDatagram {
   std::span<const std::uint8_t> payload;
-  std::int64_t stamp_ns = 0;  ///< kernel's receive time on the robot clock (RobotClock)
-  bool cut = false;           ///< the datagram was longer than the buffer
+  std::int64_t stamp_ns = 0;      ///< kernel's receive time on the robot clock (RobotClock)
+  std::uint32_t sender_ipv4 = 0;  ///< address of the sender
+  bool cut = false;               ///< the datagram was longer than the buffer
 };
 
 /// The robot clock of a live run: CLOCK_MONOTONIC plus the offset to the wall clock that held when the

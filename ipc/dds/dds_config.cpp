@@ -53,6 +53,12 @@ void validate(const DdsConfig& config) {
   require_name(config.lidar_frame, "lidar_frame");
   require_name(config.imu_frame, "imu_frame");
   require_name(config.barometer_frame, "barometer_frame");
+  require_name(config.base_station, "base_station");
+  if (!config.second_base_station.empty()) {
+    require_name(config.second_base_station, "second_base_station");
+    require(config.second_base_station != config.base_station, "second_base_station",
+            "must differ from dds.base_station");
+  }
   require(is_within(config.odom_rate_hz, 1.0, 1000.0), "odom_rate_hz", "must be 1 to 1000 Hz");
   require(is_within(config.altitude_rate_hz, 0.1, 200.0), "altitude_rate_hz", "must be 0.1 to 200 Hz");
   require(is_within(config.propagator.slew_time_s, 0.01, 10.0), "propagator.slew_time_s",

@@ -41,14 +41,16 @@ struct DdsConfig {
   /// Publish each registered scan and the map. Off saves most of the bridge's load.
   bool publish_clouds = true;
 
-  /// Take the base station's pressure from base/fluid_pressure.
+  /// Name of the base station, whose topics are NAME/fluid_pressure and NAME/temperature. A robot listens to
+  /// it, a base station bears it.
+  std::string base_station = "base";
+  /// Name of a second base station that a robot listens to; empty: none.
+  std::string second_base_station;
+  /// Take the pressure of the base stations over DDS.
   bool receive_base_pressure = true;
   /// Take the robot's own sensors from imu/data and wheel/odom, for robots whose drivers are ROS 2 nodes.
   /// Off, because a sensor must not reach isobard in two ways.
   bool receive_sensors = false;
-  /// This is a base station: publish the barometer as base/fluid_pressure, and receive none.
-  bool is_base_station = false;
-
   /// How corrections of the registration enter odom.
   PosePropagatorConfig propagator;
 };

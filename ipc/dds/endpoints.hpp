@@ -2,8 +2,11 @@
 // One writer or one reader of one topic.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
+#include <type_traits>
 
 #include "ipc/dds/participant.hpp"
 #include "ipc/dds/topics.hpp"
@@ -60,7 +63,8 @@ class Reader {
     reader_ = checked(dds_create_reader(participant, topic_.get(), qos.get(), nullptr), "reader of " + name);
   }
 
-  /// Hands every waiting message to `use(const Message&)`; they are valid during the call only.
+  /// Hands every waiting message to `use(const Message&)`, or to `use(const Message&, sender)` with the
+  /// instance handle of its writer; they are valid during the call only.
   /// @return how many there were
   template <class Use>
   int take(Use&& use) {
@@ -72,13 +76,29 @@ class Reader {
         return used;
       }
       if (info.valid_data) {
-        use(*static_cast<const Message*>(sample));
+        const auto& message = *static_cast<const Message*>(sample);
+        if constexpr (std::is_invocable_v<Use, const Message&, dds_instance_handle_t>) {
+          use(message, info.publication_handle);
+        } else {
+          use(message);
+        }
         ++used;
       }
       dds_return_loan(reader_.get(), &sample, 1);
     }
   }
   [[nodiscard]] dds_entity_t get() const noexcept { return reader_.get(); }
+
+  /// Is this writer still there, for all that is known? True while there are more than some dozens.
+  [[nodiscard]] bool is_matched(dds_instance_handle_t writer) const noexcept {
+    std::array<dds_instance_handle_t, 64> writers{};
+    const dds_return_t count = dds_get_matched_publications(reader_.get(), writers.data(), writers.size());
+    if (count < 0 || static_cast<std::size_t>(count) > writers.size()) {
+      return true;
+    }
+    const auto end = writers.begin() + count;
+    return std::find(writers.begin(), end, writer) != end;
+  }
 
  private:
   Entity topic_;

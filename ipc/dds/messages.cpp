@@ -139,7 +139,7 @@ const CloudMessage& CloudBuilder::build(std::int64_t stamp_ns, const std::string
   return message_;
 }
 
-DiagnosticsBuilder::DiagnosticsBuilder() {
+DiagnosticsBuilder::DiagnosticsBuilder(const std::string& node) : node_(node) {
   for (std::size_t i = 0; i < kMaxStatuses; ++i) {
     values_[i] = {text("value"), texts_[i].value.data()};
     statuses_[i].name = texts_[i].name.data();
@@ -166,7 +166,7 @@ void DiagnosticsBuilder::add(const char* name, ipc::HealthLevel level, const cha
   }
   ++message_.status._length;
   Texts& texts = texts_[index];
-  std::snprintf(texts.name.data(), texts.name.size(), "isobar: %s", name);
+  std::snprintf(texts.name.data(), texts.name.size(), "%s: %s", node_.c_str(), name);
   std::snprintf(texts.message.data(), texts.message.size(), "%s", message);
   std::snprintf(texts.value.data(), texts.value.size(), "%.9g", value);
   statuses_[index].level = static_cast<std::uint8_t>(level);

@@ -58,7 +58,8 @@ class CloudBuilder {
 /// Builds the diagnostics of isobard's health report and of the bridge itself.
 class DiagnosticsBuilder {
  public:
-  DiagnosticsBuilder();
+  /// @param node whose state this is: "node: name" is what ROS 2 tools sort by
+  explicit DiagnosticsBuilder(const std::string& node = "isobar");
   DiagnosticsBuilder(const DiagnosticsBuilder&) = delete;
   DiagnosticsBuilder& operator=(const DiagnosticsBuilder&) = delete;
 
@@ -67,14 +68,15 @@ class DiagnosticsBuilder {
   void add(const char* name, ipc::HealthLevel level, const char* message, double value) noexcept;
   [[nodiscard]] const DiagnosticsMessage& message() const noexcept { return message_; }
 
-  static constexpr std::size_t kMaxStatuses = ipc::HealthReport::kMaxEntries + 16;
+  static constexpr std::size_t kMaxStatuses = ipc::HealthReport::kMaxEntries + 32;
 
  private:
   struct Texts {
-    std::array<char, ipc::HealthEntry::kNameBytes + 16> name{};
+    std::array<char, ipc::HealthEntry::kNameBytes + 110> name{};
     std::array<char, ipc::HealthEntry::kMessageBytes> message{};
     std::array<char, 32> value{};
   };
+  std::string node_;
   std::array<Texts, kMaxStatuses> texts_{};
   std::array<diagnostic_msgs_msg_dds__KeyValue_, kMaxStatuses> values_{};
   std::array<diagnostic_msgs_msg_dds__DiagnosticStatus_, kMaxStatuses> statuses_{};

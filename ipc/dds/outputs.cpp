@@ -2,6 +2,7 @@
 #include "ipc/dds/outputs.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "ipc/dds/samples.hpp"
 
@@ -27,11 +28,7 @@ PoseOutputs::PoseOutputs(dds_entity_t participant, const DdsConfig& config, cons
       pose_(participant, topics::kPose, config.ros_namespace),
       tf_(participant, topics::kTf),
       tf_static_(participant, topics::kTfStatic),
-      altitude_(participant, topics::kAltitude, config.ros_namespace),
-      diagnostics_(participant, topics::kDiagnostics) {
-  if (config.is_base_station) {
-    base_pressure_.emplace(participant, topics::kBasePressure, config.ros_namespace);
-  }
+      altitude_(participant, topics::kAltitude, config.ros_namespace) {
   write_static_transforms(mounts);
 }
 
@@ -58,12 +55,21 @@ void PoseOutputs::on_pose(const PoseEstimate& pose) {
   pose_.write(message);
 }
 
-void PoseOutputs::on_pressure(const PressureSample& sample) {
-  if (base_pressure_) {
-    PressureMessage message{};
-    fill_pressure(sample, config_.barometer_frame, message);
-    base_pressure_->write(message);
+StationOutputs::StationOutputs(dds_entity_t participant, const std::string& name)
+    : frame_(name),
+      pressure_(participant, topics::kBasePressure, name),
+      temperature_(participant, topics::kBaseTemperature, name) {}
+
+void StationOutputs::on_pressure(const PressureSample& sample) {
+  // First, so that a robot that gets the pressure has it.
+  if (!std::isnan(sample.temperature_c)) {
+    TemperatureMessage message{};
+    fill_temperature(sample, frame_, message);
+    temperature_.write(message);
   }
+  PressureMessage message{};
+  fill_pressure(sample, frame_, message);
+  pressure_.write(message);
 }
 
 void PoseOutputs::write_transforms(const Odometry& odometry) {
@@ -87,17 +93,11 @@ void PoseOutputs::write_static_transforms(const SensorMounts& mounts) {
 }
 
 std::vector<dds_entity_t> PoseOutputs::writers() const {
-  std::vector<dds_entity_t> writers{odom_.get(),      pose_.get(),     tf_.get(),
-                                    tf_static_.get(), altitude_.get(), diagnostics_.get()};
-  if (base_pressure_) {
-    writers.push_back(base_pressure_->get());
-  }
-  return writers;
+  return {odom_.get(), pose_.get(), tf_.get(), tf_static_.get(), altitude_.get()};
 }
 
 std::uint64_t PoseOutputs::failures() const noexcept {
-  return odom_.failures() + pose_.failures() + tf_.failures() + tf_static_.failures() + altitude_.failures() +
-         diagnostics_.failures();
+  return odom_.failures() + pose_.failures() + tf_.failures() + tf_static_.failures() + altitude_.failures();
 }
 
 CloudOutputs::CloudOutputs(dds_entity_t participant, const DdsConfig& config)

@@ -4,7 +4,7 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
+#include <string>
 #include <vector>
 
 #include "core/estimates.hpp"
@@ -38,7 +38,7 @@ class RateLimit {
   std::int64_t next_ns_ = INT64_MIN / 2;
 };
 
-/// odom, pose, tf, tf_static, altitude, diagnostics. One thread.
+/// odom, pose, tf, tf_static, altitude. One thread.
 class PoseOutputs {
  public:
   /// @throws ServiceError DDS refuses
@@ -49,10 +49,6 @@ class PoseOutputs {
   /// Publishes altitude, odom and tf at their rates.
   void on_prior(const Prior& prior);
   void on_pose(const PoseEstimate& pose);
-  /// A base station publishes its pressure; others do nothing.
-  void on_pressure(const PressureSample& sample);
-  /// Publishes what the builder holds.
-  void write_diagnostics(const DiagnosticsBuilder& builder) { diagnostics_.write(builder.message()); }
 
   [[nodiscard]] std::vector<dds_entity_t> writers() const;
   [[nodiscard]] std::uint64_t failures() const noexcept;
@@ -70,8 +66,30 @@ class PoseOutputs {
   Writer<TfMessage> tf_;
   Writer<TfMessage> tf_static_;
   Writer<AltitudeMessage> altitude_;
-  Writer<DiagnosticsMessage> diagnostics_;
-  std::optional<Writer<PressureMessage>> base_pressure_;
+};
+
+/// What a base station tells: NAME/fluid_pressure and NAME/temperature, which have the same stamp. One
+/// thread.
+class StationOutputs {
+ public:
+  /// @param name of the station and of its frame
+  /// @throws ServiceError DDS refuses
+  StationOutputs(dds_entity_t participant, const std::string& name);
+  StationOutputs(const StationOutputs&) = delete;
+  StationOutputs& operator=(const StationOutputs&) = delete;
+
+  /// A sample without temperature gives pressure only.
+  void on_pressure(const PressureSample& sample);
+
+  [[nodiscard]] std::vector<dds_entity_t> writers() const { return {pressure_.get(), temperature_.get()}; }
+  [[nodiscard]] std::uint64_t failures() const noexcept {
+    return pressure_.failures() + temperature_.failures();
+  }
+
+ private:
+  std::string frame_;
+  Writer<PressureMessage> pressure_;
+  Writer<TemperatureMessage> temperature_;
 };
 
 /// registered_scan and map. One thread, which need not be that of PoseOutputs.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ipc/dds/samples.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "core/plausibility.hpp"
@@ -31,6 +32,8 @@ const char* to_sample(const PressureMessage& message, PressureSample& sample) no
   PressureSample candidate;
   candidate.pressure_pa = message.fluid_pressure;
   candidate.temperature_c = std::numeric_limits<double>::quiet_NaN();
+  const bool variance_known = message.variance > 0.0 && std::isfinite(message.variance);
+  candidate.variance_pa2 = variance_known ? message.variance : std::numeric_limits<double>::quiet_NaN();
   return hand_over(message.header, candidate, sample);
 }
 
@@ -62,6 +65,25 @@ void fill_pressure(const PressureSample& sample, const std::string& frame,
                    PressureMessage& message) noexcept {
   fill_header(sample.stamp_ns, frame, message.header);
   message.fluid_pressure = sample.pressure_pa;
+  message.variance = sample.variance_pa2 > 0.0 ? sample.variance_pa2 : 0.0;  // NaN fails
+}
+
+const char* to_sample(const TemperatureMessage& message, TemperatureSample& sample) noexcept {
+  const std::int64_t stamp_ns = to_stamp_ns(message.header.stamp);
+  if (const char* broken = implausible_stamp(stamp_ns); broken != nullptr) {
+    return broken;
+  }
+  if (!kPlausibleTemperatureC.holds(message.temperature)) {
+    return "temperature must lie within -60 … 100 degrees C";
+  }
+  sample = {stamp_ns, message.temperature};
+  return nullptr;
+}
+
+void fill_temperature(const PressureSample& sample, const std::string& frame,
+                      TemperatureMessage& message) noexcept {
+  fill_header(sample.stamp_ns, frame, message.header);
+  message.temperature = sample.temperature_c;
   message.variance = 0.0;
 }
 

@@ -19,6 +19,7 @@ using AltitudeMessage = isobar_msgs_msg_dds__Altitude_;
 using CloudMessage = sensor_msgs_msg_dds__PointCloud2_;
 using DiagnosticsMessage = diagnostic_msgs_msg_dds__DiagnosticArray_;
 using PressureMessage = sensor_msgs_msg_dds__FluidPressure_;
+using TemperatureMessage = sensor_msgs_msg_dds__Temperature_;
 using ImuMessage = sensor_msgs_msg_dds__Imu_;
 
 /// One row of the table below.
@@ -43,7 +44,9 @@ inline const DdsTopic<CloudMessage> kRegisteredScan{"registered_scan", &sensor_m
 inline const DdsTopic<CloudMessage> kMap{"map", &sensor_msgs_msg_dds__PointCloud2__desc, Delivery::kLatched, 1, false};
 inline const DdsTopic<DiagnosticsMessage> kDiagnostics{"diagnostics", &diagnostic_msgs_msg_dds__DiagnosticArray__desc, Delivery::kReliable, 10, true};
 
-inline const DdsTopic<PressureMessage> kBasePressure{"base/fluid_pressure", &sensor_msgs_msg_dds__FluidPressure__desc, Delivery::kBestEffort, 5, true};
+// Of a base station: its name is their namespace, "base" for one.
+inline const DdsTopic<PressureMessage> kBasePressure{"fluid_pressure", &sensor_msgs_msg_dds__FluidPressure__desc, Delivery::kBestEffort, 5, false};
+inline const DdsTopic<TemperatureMessage> kBaseTemperature{"temperature", &sensor_msgs_msg_dds__Temperature__desc, Delivery::kBestEffort, 5, false};
 inline const DdsTopic<ImuMessage> kImu{"imu/data", &sensor_msgs_msg_dds__Imu__desc, Delivery::kBestEffort, 5, false};
 inline const DdsTopic<OdometryMessage> kWheel{"wheel/odom", &nav_msgs_msg_dds__Odometry__desc, Delivery::kBestEffort, 5, false};
 // clang-format on

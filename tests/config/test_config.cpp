@@ -39,6 +39,7 @@ struct Change {
   }
   void operator()(Eigen::Vector3d* v) const { *v += Eigen::Vector3d(1.0 / 3.0, -2.5, 1e-7); }
   void operator()(std::vector<int>* v) const { *v = {1, 0}; }
+  void operator()(Role* v) const { *v = Role::kBaseStation; }
   void operator()(Method* v) const { *v = Method::kOdometry; }
   void operator()(AirTemperatureMode* v) const { *v = AirTemperatureMode::kFixed; }
   void operator()(CompensationModel* v) const { *v = CompensationModel::kSimple; }
@@ -170,6 +171,37 @@ TEST_CASE("A barometer that cannot measure as it is told is refused, where it is
   fails("[barometer]\nsource = \"setra278\"\n[barometer.setra278]\nlow_v = 3.0\n",
         "barometer.setra278: high_v must be above low_v");
   fails("[barometer]\nsource = \"bmp280\"\n", "must be one of input, dps310, setra278, iio");
+}
+
+TEST_CASE("A base station's configuration is three lines, and its keys are those that mean something to it") {
+  const Config base = parse_config("role = \"base-station\"\n[dds]\nbase_station = \"roof\"\n", "c.toml");
+  CHECK(base.role == Role::kBaseStation);
+  CHECK(base.dds.base_station == "roof");
+  const std::string shown = show_config(base);
+  CHECK(show_config(parse_config(shown, "c.toml")) == shown);
+  for (const char* section : {"[lidar]", "[imu]", "[output]", "[dds.propagator]", "[altimeter.air]",
+                              "[attitude]", "[height]", "[limits]", "[registration]", "[map]", "method ="}) {
+    CAPTURE(section);
+    CHECK(shown.find(section) == std::string::npos);
+  }
+  for (const char* key : {"port = 7373", "base_station = \"roof\"", "stuck_timeout_s ="}) {
+    CAPTURE(key);
+    CHECK(shown.find(key) != std::string::npos);
+  }
+}
+
+TEST_CASE("What means nothing in the role of a base station is refused there, and only there") {
+  const std::string role = "role = \"base-station\"\n";
+  fails(role + "[lidar]\nport = 2369\n",
+        "c.toml:3:8: lidar.port: means nothing where role = \"base-station\"");
+  fails(role + "method = \"3dof\"\n", "c.toml:2:10: method: means nothing");
+  fails(role + "[dds]\nreceive_base_pressure = true\n", "dds.receive_base_pressure: means nothing");
+  fails(role + "[dds.propagator]\nslew_time_s = 0.2\n", "dds.propagator.slew_time_s: means nothing");
+  fails("role = \"base station\"\n", "role: must be one of robot, base-station (got 'base station')");
+  fails("[dds]\nis_base_station = true\n", "dds.is_base_station: unknown key");
+  fails("[dds]\nsecond_base_station = \"base\"\n",
+        "dds.second_base_station: must differ from dds.base_station");
+  CHECK(parse_config("role = \"robot\"\n[lidar]\nport = 2369\n", "c.toml").lidar.port == 2369);
 }
 
 TEST_CASE("An unknown key is an error that names the nearest one") {

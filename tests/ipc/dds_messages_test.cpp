@@ -31,6 +31,8 @@ TEST_CASE("the types have the names that ROS 2 gives them") {
         "diagnostic_msgs::msg::dds_::DiagnosticArray_");
   CHECK(std::string(topics::kBasePressure.descriptor->m_typename) ==
         "sensor_msgs::msg::dds_::FluidPressure_");
+  CHECK(std::string(topics::kBaseTemperature.descriptor->m_typename) ==
+        "sensor_msgs::msg::dds_::Temperature_");
   CHECK(std::string(topics::kImu.descriptor->m_typename) == "sensor_msgs::msg::dds_::Imu_");
 }
 
@@ -40,6 +42,8 @@ TEST_CASE("topics get ROS 2's prefix, and the namespace unless they are everybod
   CHECK(dds_name(topics::kTf, "robot1") == "rt/tf");
   CHECK(dds_name(topics::kTfStatic, "robot1") == "rt/tf_static");
   CHECK(dds_name(topics::kDiagnostics, "robot1") == "rt/diagnostics");
+  CHECK(dds_name(topics::kBasePressure, "roof") == "rt/roof/fluid_pressure");
+  CHECK(dds_name(topics::kBaseTemperature, "roof") == "rt/roof/temperature");
 }
 
 TEST_CASE("stamps become seconds and nanoseconds, and come back") {
@@ -175,6 +179,49 @@ TEST_CASE("diagnostics copy their texts, cut what is long and leave out what is 
   CHECK(builder->message().status._length == 0);
 }
 
+TEST_CASE(
+    "a base station's sample comes back from its two messages as it was, an unknown variance as unknown") {
+  const std::string frame = "roof";
+  PressureSample sent{7'000'000'123, 98'765.4321, 18.5};
+  const auto back = [&] {
+    PressureMessage pressure{};
+    TemperatureMessage temperature{};
+    fill_pressure(sent, frame, pressure);
+    fill_temperature(sent, frame, temperature);
+    CHECK(std::string(pressure.header.frame_id) == "roof");
+    CHECK(std::string(temperature.header.frame_id) == "roof");
+    PressureSample got;
+    TemperatureSample at_it;
+    CHECK(to_sample(pressure, got) == nullptr);
+    CHECK(to_sample(temperature, at_it) == nullptr);
+    CHECK(at_it.stamp_ns == got.stamp_ns);
+    got.temperature_c = at_it.temperature_c;
+    return got;
+  };
+  CHECK(back().stamp_ns == sent.stamp_ns);
+  CHECK(back().pressure_pa == sent.pressure_pa);
+  CHECK(back().temperature_c == sent.temperature_c);
+  CHECK(std::isnan(back().variance_pa2));
+  sent.variance_pa2 = 0.125;
+  CHECK(back().variance_pa2 == 0.125);
+  PressureMessage pressure{};
+  fill_pressure(sent, frame, pressure);
+  for (const double unknown :
+       {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    pressure.variance = unknown;
+    PressureSample got;
+    CHECK(to_sample(pressure, got) == nullptr);
+    CHECK(std::isnan(got.variance_pa2));
+  }
+  TemperatureMessage temperature{};
+  for (const double bad : {-273.15, 1e6, std::numeric_limits<double>::quiet_NaN()}) {
+    temperature.temperature = bad;
+    TemperatureSample got{1, 20.0};
+    CHECK(to_sample(temperature, got) != nullptr);
+    CHECK(got.temperature_c == 20.0);
+  }
+}
+
 TEST_CASE("samples from the network are taken if they can be true, and else leave everything as it was") {
   PressureMessage pressure{};
   pressure.header.stamp = {5, 6};
@@ -235,6 +282,8 @@ TEST_CASE("what cannot be configured is refused with its key") {
   refused([](DdsConfig& c) { c.network_interface = "eth0\"/><Bad"; }, "dds.network_interface");
   refused([](DdsConfig& c) { c.ros_namespace = "/robot"; }, "dds.ros_namespace");
   refused([](DdsConfig& c) { c.map_frame = ""; }, "dds.map_frame");
+  refused([](DdsConfig& c) { c.base_station = ""; }, "dds.base_station");
+  refused([](DdsConfig& c) { c.second_base_station = "base"; }, "dds.second_base_station");
   refused([](DdsConfig& c) { c.odom_rate_hz = std::numeric_limits<double>::quiet_NaN(); },
           "dds.odom_rate_hz");
   refused([](DdsConfig& c) { c.ros_gid_bytes = 20; }, "dds.ros_gid_bytes");

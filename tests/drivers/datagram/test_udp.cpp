@@ -25,6 +25,7 @@ TEST_CASE("Datagrams arrive whole, in order and stamped on the robot clock") {
     REQUIRE(receiver.receive(datagram, 2'000) == UdpReceiver::Status::kDatagram);
     CHECK(std::vector<std::uint8_t>(datagram.payload.begin(), datagram.payload.end()) ==
           std::vector<std::uint8_t>(i * 70, static_cast<std::uint8_t>(i)));
+    CHECK(datagram.sender_ipv4 == 0x7F000001U);
     CHECK(datagram.stamp_ns >= last_ns - 1'000'000);
     CHECK(datagram.stamp_ns <= RobotClock::now_ns() + 1'000'000);
     last_ns = datagram.stamp_ns;

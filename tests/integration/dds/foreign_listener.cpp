@@ -31,9 +31,10 @@ struct Expected {
   const char* topic;
   const char* type;
   bool latched;
+  bool best_effort = false;
 };
 
-constexpr std::array<Expected, 9> kExpected{{
+constexpr std::array<Expected, 11> kExpected{{
     {"rt/odom", "nav_msgs::msg::dds_::Odometry_", false},
     {"rt/pose", "geometry_msgs::msg::dds_::PoseWithCovarianceStamped_", false},
     {"rt/tf", "tf2_msgs::msg::dds_::TFMessage_", false},
@@ -43,6 +44,8 @@ constexpr std::array<Expected, 9> kExpected{{
     {"rt/map", "sensor_msgs::msg::dds_::PointCloud2_", true},
     {"rt/diagnostics", "diagnostic_msgs::msg::dds_::DiagnosticArray_", false},
     {"ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_", true},
+    {"rt/roof/fluid_pressure", "sensor_msgs::msg::dds_::FluidPressure_", false, true},
+    {"rt/roof/temperature", "sensor_msgs::msg::dds_::Temperature_", false, true},
 }};
 
 using Bytes = std::vector<unsigned char>;
@@ -127,7 +130,8 @@ int main(int argc, char** argv) {
     }
     auto* topic = participant->create_topic(expected.topic, expected.type, fast::TOPIC_QOS_DEFAULT);
     fast::DataReaderQos qos = fast::DATAREADER_QOS_DEFAULT;
-    qos.reliability().kind = fast::RELIABLE_RELIABILITY_QOS;
+    qos.reliability().kind =
+        expected.best_effort ? fast::BEST_EFFORT_RELIABILITY_QOS : fast::RELIABLE_RELIABILITY_QOS;
     qos.durability().kind =
         expected.latched ? fast::TRANSIENT_LOCAL_DURABILITY_QOS : fast::VOLATILE_DURABILITY_QOS;
     qos.history().depth = 20;

@@ -9,9 +9,8 @@
 #include <fstream>
 #include <string>
 
-#include "ipc/dds/endpoints.hpp"
-#include "ipc/dds/messages.hpp"
 #include "ipc/shared_memory.hpp"
+#include "tests/integration/dds/listener.hpp"
 #include "tests/ipc/child_process.hpp"
 
 namespace isobar {
@@ -19,50 +18,8 @@ namespace {
 
 using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
 using test::ChildProcess;
-
-/// A subscriber that waits for messages of one topic.
-template <class Message>
-class Listener {
- public:
-  explicit Listener(const dds::DdsTopic<Message>& topic, const std::string& ros_namespace = {})
-      : participant_({}), reader_(participant_.get(), topic, ros_namespace) {
-    waitset_ = dds::checked(dds_create_waitset(participant_.get()), "wait set");
-    dds_set_status_mask(reader_.get(), DDS_DATA_AVAILABLE_STATUS);
-    dds_waitset_attach(waitset_.get(), reader_.get(), 0);
-  }
-  void forget() {
-    reader_.take([](const Message&) {});
-  }
-  /// Waits until `wanted` fitting messages have come.
-  template <class Fits>
-  bool receive(int wanted, Fits&& fits, std::chrono::seconds timeout = 20s) {
-    const auto deadline = std::chrono::steady_clock::now() + timeout;
-    while (wanted > 0 && std::chrono::steady_clock::now() < deadline) {
-      dds_waitset_wait(waitset_.get(), nullptr, 0, DDS_MSECS(100));
-      reader_.take([&](const Message& message) { wanted -= fits(message) ? 1 : 0; });
-    }
-    return wanted <= 0;
-  }
-  [[nodiscard]] const dds::Participant& participant() const { return participant_; }
-  bool receive(int wanted) {
-    return receive(wanted, [](const Message&) { return true; });
-  }
-
- private:
-  dds::Participant participant_;
-  dds::Reader<Message> reader_;
-  dds::Entity waitset_;
-};
-
-bool says(const dds::DiagnosticsMessage& message, const std::string& name, int level) {
-  for (std::uint32_t i = 0; i < message.status._length; ++i) {
-    const auto& status = message.status._buffer[i];
-    if (name == status.name && status.level == level) {
-      return true;
-    }
-  }
-  return false;
-}
+using test::Listener;
+using test::says;
 
 TEST_CASE("without isobard the bridge waits, says so once and in the diagnostics, and ends cleanly") {
   Listener<dds::DiagnosticsMessage> listener(dds::topics::kDiagnostics);
@@ -162,7 +119,7 @@ TEST_CASE("a base station's pressure reaches isobard on isobard's clock, and non
   Listener<dds::DiagnosticsMessage> listener(dds::topics::kDiagnostics);
   REQUIRE(listener.receive(2));  // isobard has told its clock
   const dds::Participant& participant = listener.participant();
-  dds::Writer<dds::PressureMessage> writer(participant.get(), dds::topics::kBasePressure);
+  dds::Writer<dds::PressureMessage> writer(participant.get(), dds::topics::kBasePressure, "base");
   dds::PressureMessage message{};
   message.header.frame_id = dds::text("base");
   std::string line;

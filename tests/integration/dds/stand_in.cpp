@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Stands in for isobard: holds the broker and publishes what stand_in.hpp says, in real time, until SIGTERM.
 // Prints "ready", then once a second how many priors went out, and each base pressure that comes in, with how
-// old it is by the stand-in's own clock: "base PASCAL MILLISECONDS".
+// old it is by the stand-in's own clock: "base PASCAL MILLISECONDS STATION VARIANCE DEGREES".
 #include <signal.h>  // NOLINT(modernize-deprecated-headers)
 
 #include <chrono>
@@ -94,7 +94,9 @@ int run() {
     }
     while (const auto sample = base_pressure.take()) {
       const std::int64_t age_ns = stand_in::prior_at(start_ns, step).stamp_ns - sample->stamp_ns;
-      std::printf("base %.2f %lld\n", sample->pressure_pa, static_cast<long long>(age_ns / 1'000'000));
+      std::printf("base %.2f %lld %d %.4f %.2f\n", sample->pressure_pa,
+                  static_cast<long long>(age_ns / 1'000'000), sample->station, sample->variance_pa2,
+                  sample->temperature_c);
       std::fflush(stdout);
     }
     const auto next = std::chrono::nanoseconds((step + 1) * stand_in::kPriorPeriodNs);

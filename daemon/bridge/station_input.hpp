@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One base station's way in: from its DDS writers and its clock to isobard and the robot's clock.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "core/time/base_station_stream.hpp"
+#include "ipc/dds/endpoints.hpp"
+#include "ipc/dds/samples.hpp"
+#include "ipc/shared_memory.hpp"
+
+namespace isobar::bridge {
+
+/// The temperatures that came last, to be put beside the pressures of the same sensor.
+class Temperatures {
+ public:
+  /// @param source whatever tells base stations apart
+  void add(std::uint64_t source, const dds::TemperatureSample& sample) noexcept;
+  /// The one of this source with the stamp nearest to `stamp_ns`, which a base station's own has exactly; NaN
+  /// where there is none within two seconds.
+  [[nodiscard]] double at(std::uint64_t source, std::int64_t stamp_ns) const noexcept;
+
+ private:
+  struct Entry {
+    std::uint64_t source = 0;  // 0: none
+    dds::TemperatureSample sample;
+  };
+  std::array<Entry, 16> entries_{};
+  std::size_t next_ = 0;
+};
+
+/// Readers of NAME/fluid_pressure and NAME/temperature. One thread.
+class StationInput {
+ public:
+  /// @param station 0 the first, 1 the second
+  /// @throws ServiceError DDS refuses
+  StationInput(dds_entity_t participant, const std::string& name, std::uint8_t station);
+
+  /// Takes what has come.
+  /// @param now_ns robot clock
+  /// @param hand_on called with every good PressureSample, on the robot's clock
+  /// @return messages that are implausible
+  template <class HandOn>
+  std::uint64_t take(std::int64_t now_ns, const HandOn& hand_on) {
+    std::uint64_t refused = 0;
+    pressure_.take([&](const dds::PressureMessage& message, dds_instance_handle_t writer) {
+      PressureSample sample;
+      if (dds::to_sample(message, sample) != nullptr) {
+        ++refused;
+        return;
+      }
+      refused += take_temperatures();
+      sample.station = station_;
+      sample.temperature_c =
+          temperatures_.at(source_of(pressure_.get(), writer, pressure_source_), sample.stamp_ns);
+      if (stream_.check(writer, sample, now_ns) == BaseVerdict::kAccepted) hand_on(sample);
+    });
+    note_departures();
+    return refused;
+  }
+
+  /// Throws away what has come, while nothing can be done with it.
+  /// @return how many messages
+  std::uint64_t drop();
+
+  /// The reader that wakes the thread: a temperature is of no use without its pressure.
+  [[nodiscard]] dds_entity_t pressure_reader() const noexcept { return pressure_.get(); }
+  [[nodiscard]] dds_entity_t temperature_reader() const noexcept { return temperature_.get(); }
+  [[nodiscard]] BaseStationStatus status() const noexcept { return stream_.status(); }
+
+ private:
+  /// The participant of the writer that was asked for last.
+  struct Source {
+    dds_instance_handle_t writer = 0;
+    std::uint64_t participant = 0;
+  };
+
+  std::uint64_t take_temperatures();
+  void note_departures() noexcept;
+  /// Tells whose temperature belongs to whose pressure: both writers of a base are in one participant.
+  [[nodiscard]] static std::uint64_t source_of(dds_entity_t reader, dds_instance_handle_t writer,
+                                               Source& last) noexcept;
+
+  std::uint8_t station_;
+  dds::Reader<dds::PressureMessage> pressure_;
+  dds::Reader<dds::TemperatureMessage> temperature_;
+  Source pressure_source_;
+  Source temperature_source_;
+  Temperatures temperatures_;
+  BaseStationStream stream_;
+};
+
+}  // namespace isobar::bridge

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "core/time/base_station_stream.hpp"
+
+namespace isobar {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr std::int64_t kRobot = 1'700'000'000 * kSecond;  // robot clock at time 0
+constexpr std::int64_t kBase = 1'000'000 * kSecond;       // a base station that believes in 1970
+constexpr std::uint64_t kFirst = 11;
+constexpr std::uint64_t kSecondSender = 22;
+using V = BaseVerdict;
+
+/// A base station in true time: sample i is measured at i * period_ns.
+struct Base {
+  std::int64_t period_ns = kSecond / 32;
+  std::int64_t clock_ns = kBase;  ///< its clock at time 0
+  double pressure_pa = 98'000.0;  ///< tells one station's samples from another's
+
+  [[nodiscard]] std::int64_t samples_in(std::int64_t time_ns) const { return time_ns / period_ns; }
+  [[nodiscard]] PressureSample sample(std::int64_t i) const {
+    return {clock_ns + i * period_ns, pressure_pa + 0.001 * static_cast<double>(i), 20.0};
+  }
+};
+
+/// A stream and the true time.
+struct Listener {
+  BaseStationStream stream;
+  std::int64_t newest_ns = 0;
+  double worst_error_ms = 0.0;
+
+  /// Gives sample `i` after `delay_ns` on its way, and checks what is always true of an accepted one.
+  V give(const Base& base, std::int64_t i, std::int64_t delay_ns = 2 * kMs, std::uint64_t sender = kFirst) {
+    const std::int64_t true_ns = kRobot + i * base.period_ns;
+    PressureSample sample = base.sample(i);
+    const V verdict = stream.check(sender, sample, true_ns + delay_ns);
+    if (verdict == V::kAccepted) {
+      CHECK(sample.stamp_ns > newest_ns);
+      newest_ns = sample.stamp_ns;
+      worst_error_ms =
+          std::max(worst_error_ms, std::abs(static_cast<double>(sample.stamp_ns - true_ns)) * 1e-6);
+    }
+    return verdict;
+  }
+  [[nodiscard]] std::uint64_t count(V verdict) const { return stream.status().count(verdict); }
+};
+
+Base base_at(double rate_hz) {
+  Base base;
+  base.period_ns = static_cast<std::int64_t>(1e9 / rate_hz);
+  return base;
+}
+
+}  // namespace
+
+TEST_CASE("At 1 Hz and at 32 Hz every sample in time is taken, with its true time on the robot's clock") {
+  for (const double rate_hz : {1.0, 32.0}) {
+    const Base base = base_at(rate_hz);
+    Listener robot;
+    std::mt19937_64 random(3);
+    std::exponential_distribution<double> jitter(1.0 / 3e6);  // 3 ms on average
+    std::uint64_t given = 0;
+    for (std::int64_t i = 0; i < base.samples_in(120 * kSecond); ++i) {
+      if (random() % 10 == 0) continue;  // lost on its way
+      ++given;
+      const std::int64_t delay_ns =
+          kMs + static_cast<std::int64_t>(jitter(random)) + (i % 37 == 36 ? 800 * kMs : 0);
+      CHECK(robot.give(base, i, delay_ns) == V::kAccepted);
+      CHECK_FALSE(robot.stream.lost(kRobot + i * base.period_ns + delay_ns + base.period_ns));
+    }
+    CHECK(robot.count(V::kAccepted) == given);
+    // The first sample's jitter, some ms, is all that may be wrong until an earlier one comes.
+    CHECK(robot.worst_error_ms < 25.0);
+    CHECK(robot.stream.status().clock_steps == 0);
+    CHECK(robot.stream.status().clock_ahead_ns / kSecond == (kBase - kRobot) / kSecond);
+  }
+}
+
+TEST_CASE(
+    "Silence is told within four intervals that were learnt, or half a second, and its end is counted") {
+  for (const auto& [rate_hz, limit_s] : {std::pair{0.2, 20.0}, std::pair{1.0, 4.0}, std::pair{32.0, 0.5}}) {
+    const Base base = base_at(rate_hz);
+    Listener robot;
+    for (std::int64_t i = 0; i < 40; ++i) robot.give(base, i);
+    const std::int64_t last_ns = kRobot + 39 * base.period_ns + 2 * kMs;
+    const auto limit_ns = static_cast<std::int64_t>(limit_s * 1e9);
+    CHECK_FALSE(robot.stream.lost(last_ns + limit_ns - kMs));
+    CHECK(robot.stream.lost(last_ns + limit_ns + kMs));
+    CHECK(robot.stream.status().lost(last_ns + limit_ns + kMs));
+    CHECK(robot.give(base, 39 + base.samples_in(100 * kSecond)) == V::kAccepted);
+    CHECK(robot.stream.status().outages == 1);
+    // One outage of 100 s does not pass for a base that sends every 100 s.
+    CHECK(robot.stream.status().limit_ns < 2 * limit_ns);
+  }
+}
+
+TEST_CASE("A base that becomes slower is learnt within some ten samples") {
+  Listener robot;
+  const Base fast = base_at(32.0);
+  for (std::int64_t i = 0; i < 320; ++i) robot.give(fast, i);
+  Base slow = base_at(1.0);
+  for (std::int64_t i = 11; i < 21; ++i) robot.give(slow, i);
+  const std::uint64_t outages = robot.stream.status().outages;
+  for (std::int64_t i = 21; i < 40; ++i) robot.give(slow, i);
+  CHECK(robot.stream.status().outages == outages);
+  CHECK(robot.stream.status().interval_ns == doctest::Approx(1e9).epsilon(0.05));
+}
+
+TEST_CASE("Copies and overtaken samples are refused by name, and cost nothing else") {
+  const Base base;
+  Listener robot;
+  for (std::int64_t i = 0; i < 320; ++i) {
+    const std::int64_t j = i % 16 == 5 ? i + 1 : i % 16 == 6 ? i - 1 : i;  // 5 and 6 change places
+    CHECK(robot.give(base, j, 40 * kMs) == (i % 16 == 6 ? V::kOutdated : V::kAccepted));
+    if (i % 10 == 3) CHECK(robot.give(base, j, 41 * kMs) == (i % 16 == 6 ? V::kOutdated : V::kRepeated));
+  }
+  CHECK(robot.count(V::kOutdated) + robot.count(V::kRepeated) == 20 + 32);
+  CHECK(robot.stream.status().clock_steps == 0);
+}
+
+TEST_CASE("A replay of what was heard never gets in: beside the base, nor after it, nor by another sender") {
+  for (const double rate_hz : {1.0, 32.0}) {
+    const Base base = base_at(rate_hz);
+    const std::int64_t minute = base.samples_in(60 * kSecond);
+    Listener robot;
+    for (std::int64_t i = 0; i < minute; ++i) robot.give(base, i);
+    const auto replay = [&](std::int64_t i, std::int64_t begin, std::uint64_t sender) {
+      const std::int64_t since_ns = (i - (i - begin) % minute) * base.period_ns;
+      return robot.give(base, (i - begin) % minute, since_ns + 5 * kMs, sender);
+    };
+    for (std::int64_t i = minute; i < 2 * minute; ++i) {
+      CHECK(robot.give(base, i) == V::kAccepted);
+      CHECK(replay(i, minute, kFirst) != V::kAccepted);
+    }
+    for (std::int64_t i = 2 * minute; i < 3 * minute; ++i)
+      CHECK(replay(i, 2 * minute, kFirst) != V::kAccepted);
+    for (std::int64_t i = 3 * minute; i < 4 * minute; ++i) {
+      CHECK(replay(i, 3 * minute, kSecondSender) != V::kAccepted);
+    }
+    CHECK(robot.count(V::kAccepted) == static_cast<std::uint64_t>(2 * minute));
+    // The base itself comes back as if nothing had been.
+    CHECK(robot.give(base, 4 * minute) == V::kAccepted);
+    CHECK(robot.worst_error_ms < 20.0);  // clocks may drift apart by 100 ppm of the two silent minutes
+  }
+}
+
+TEST_CASE("A recording of last week does not get in while the base is alive, at any speed") {
+  for (const std::int64_t speed : {1, 10, 1000}) {
+    const Base base;
+    Base old;
+    old.clock_ns = kBase - 600'000 * kSecond;
+    old.pressure_pa = 97'000.0;
+    Listener robot;
+    for (std::int64_t i = 0; i < 960; ++i) {
+      CHECK(robot.give(base, i) == V::kAccepted);
+      for (std::int64_t k = 0; k < speed && i * speed + k < 4000; ++k) {
+        PressureSample sample = old.sample(i * speed + k);
+        CHECK(robot.stream.check(kFirst, sample, kRobot + i * base.period_ns + 4 * kMs) == V::kOutdated);
+      }
+    }
+  }
+}
+
+TEST_CASE("A file played faster than real time is no clock that was set, even when the base is silent") {
+  const Base base;
+  Listener robot;
+  for (std::int64_t i = 0; i < 320; ++i) robot.give(base, i);
+  Base file;
+  file.clock_ns = kBase - 600'000 * kSecond;
+  for (std::int64_t i = 0; i < 20'000; ++i) {
+    PressureSample sample = file.sample(i);
+    CHECK(robot.stream.check(kFirst, sample, kRobot + 11 * kSecond + i * 3 * kMs) == V::kOutdated);
+  }
+}
+
+TEST_CASE("A clock that is set, forward or back, is followed within three seconds and counted once") {
+  for (const double rate_hz : {1.0, 32.0}) {
+    for (const std::int64_t jump_ns :
+         {3'600 * kSecond, -3'600 * kSecond, 7 * kSecond, -7 * kSecond, kSecond / 5, -kSecond / 5}) {
+      CAPTURE(rate_hz);
+      CAPTURE(jump_ns);
+      const Base before = base_at(rate_hz);
+      Base after = before;
+      after.clock_ns += jump_ns;
+      Listener robot;
+      const std::int64_t minute = before.samples_in(60 * kSecond);
+      for (std::int64_t i = 0; i < minute; ++i) robot.give(before, i);
+      const std::int64_t settled = minute + before.samples_in(3 * kSecond);
+      for (std::int64_t i = minute; i < settled; ++i) robot.give(after, i);
+      robot.worst_error_ms = 0.0;
+      for (std::int64_t i = settled; i < settled + minute; ++i) CHECK(robot.give(after, i) == V::kAccepted);
+      CHECK(robot.worst_error_ms < 25.0);
+      // A clock set back by a fifth of a second looks like a delay, which needs no step to follow.
+      CHECK(robot.stream.status().clock_steps == (jump_ns == -kSecond / 5 ? 0 : 1));
+    }
+  }
+}
+
+TEST_CASE("Absurd stamps are refused and change nothing") {
+  const Base base;
+  Listener robot;
+  for (std::int64_t i = 0; i < 640; ++i) {
+    CHECK(robot.give(base, i) == V::kAccepted);
+    if (i % 7 != 0 || i == 0) continue;
+    Base absurd = base;
+    absurd.clock_ns = (i % 2 == 0 ? 4'000'000'000 : 5) * kSecond - i * 13 * kSecond / 1000;
+    CHECK(robot.give(absurd, i, 3 * kMs) == (i % 2 == 0 ? V::kAhead : V::kOutdated));
+  }
+  CHECK(robot.stream.status().clock_steps == 0);
+  CHECK(robot.worst_error_ms < 3.0);
+}
+
+TEST_CASE("What waited too long on its way is refused, and what waited less keeps its true time") {
+  const Base base;
+  Listener robot;
+  for (std::int64_t i = 0; i < 320; ++i) robot.give(base, i);
+  // The network stands still for 8 s; then everything comes at once.
+  const std::int64_t last = 320 + base.samples_in(8 * kSecond);
+  for (std::int64_t i = 320; i < last; ++i) {
+    const std::int64_t delay_ns = (last - i) * base.period_ns;
+    CHECK(robot.give(base, i, delay_ns) == (delay_ns > 5 * kSecond + 2 * kMs ? V::kTooOld : V::kAccepted));
+  }
+  for (std::int64_t i = last; i < last + 320; ++i) CHECK(robot.give(base, i) == V::kAccepted);
+  CHECK(robot.count(V::kTooOld) == 96);
+  CHECK(robot.worst_error_ms < 3.0);
+  CHECK(robot.stream.status().clock_steps == 0);
+}
+
+TEST_CASE("A first sample that waited for seconds is corrected by those after it") {
+  for (const double rate_hz : {1.0, 32.0}) {
+    const Base base = base_at(rate_hz);
+    Listener robot;
+    robot.give(base, 0, 3 * kSecond);
+    const std::int64_t start = base.samples_in(3 * kSecond) + 1;
+    for (std::int64_t i = start; i < start + base.samples_in(3 * kSecond); ++i) robot.give(base, i);
+    robot.worst_error_ms = 0.0;
+    for (std::int64_t i = start + base.samples_in(3 * kSecond); i < start + 200; ++i) {
+      CHECK(robot.give(base, i) == V::kAccepted);
+    }
+    CHECK(robot.worst_error_ms < 3.0);
+  }
+}
+
+TEST_CASE(
+    "A restarted base is taken within half a second of its return, if the old one said goodbye or is "
+    "silent") {
+  for (const bool goodbye : {true, false}) {
+    const Base before;
+    Base after;
+    after.clock_ns = kBase / 2;  // its clock starts somewhere else
+    Listener robot;
+    for (std::int64_t i = 0; i < 320; ++i) robot.give(before, i);
+    if (goodbye) robot.stream.sender_gone(kFirst);
+    CHECK(robot.stream.lost(kRobot + 10 * kSecond) == goodbye);
+    const std::int64_t back = goodbye ? 321 : 337;  // half a second and a bit
+    for (std::int64_t i = back; i < back + 64; ++i) {
+      // Half a second more, so that no single message can take the place of a base.
+      CHECK(robot.give(after, i, 2 * kMs, kSecondSender) == (i < back + 16 ? V::kUnconfirmed : V::kAccepted));
+    }
+    CHECK(robot.stream.status().restarts == 1);
+    CHECK(robot.stream.status().clock_steps == 0);
+    CHECK(robot.worst_error_ms < 3.0);
+    CHECK_FALSE(robot.stream.lost(kRobot + (back + 64) * before.period_ns));
+  }
+}
+
+TEST_CASE("Of two base stations of one name the first is used; the other only long after its end") {
+  const Base base;
+  Base other;
+  other.pressure_pa = 97'900.0;  // 8 m higher
+  Listener robot;
+  for (std::int64_t i = 0; i < 640; ++i) {
+    CHECK(robot.give(base, i) == V::kAccepted);
+    CHECK(robot.give(other, i, 3 * kMs, kSecondSender) == V::kOtherSender);
+  }
+  CHECK(robot.stream.status().rival_ns > kRobot);
+  const std::int64_t takeover = 640 + base.samples_in(15 * kSecond);
+  for (std::int64_t i = 640; i < takeover - 40; ++i) {
+    CHECK(robot.give(other, i, 3 * kMs, kSecondSender) == V::kOtherSender);
+  }
+  // The first one, restarted, comes before its rival.
+  SUBCASE("the first one is started again") {
+    for (std::int64_t i = takeover - 40; i < takeover + 64; ++i) {
+      CHECK(robot.give(base, i, 3 * kMs, 33) == (i < takeover - 24 ? V::kUnconfirmed : V::kAccepted));
+      CHECK(robot.give(other, i, 3 * kMs, kSecondSender) == V::kOtherSender);
+    }
+  }
+  SUBCASE("the first one stays away") {
+    for (std::int64_t i = takeover; i < takeover + 64; ++i) {
+      CHECK(robot.give(other, i, 3 * kMs, kSecondSender) ==
+            (i < takeover + 16 ? V::kUnconfirmed : V::kAccepted));
+    }
+    CHECK(robot.give(base, takeover + 64) == V::kOtherSender);
+  }
+}
+
+TEST_CASE("Two new base stations that come at once do not keep each other out") {
+  Base one;
+  Base two;
+  two.pressure_pa = 97'900.0;
+  Listener robot;
+  for (std::int64_t i = 0; i < 320; ++i) robot.give(one, i);
+  robot.stream.sender_gone(kFirst);
+  for (std::int64_t i = 321; i < 385; ++i) {
+    robot.give(one, i, 2 * kMs, kSecondSender);
+    CHECK(robot.give(two, i, 3 * kMs, 33) == V::kOtherSender);
+  }
+  CHECK(robot.stream.sender() == kSecondSender);
+  CHECK(robot.stream.status().restarts == 1);
+}
+
+TEST_CASE("A slow base that is started again before its silence shows is no second base station") {
+  const Base base = base_at(1.0);
+  Listener robot;
+  for (std::int64_t i = 0; i < 20; ++i) robot.give(base, i);
+  // Killed and back within 2 s, without a goodbye: four silent seconds must pass, and three samples agree.
+  std::int64_t first_taken = 0;
+  for (std::int64_t i = 21; i < 40 && first_taken == 0; ++i) {
+    if (robot.give(base, i, 2 * kMs, kSecondSender) == V::kAccepted) first_taken = i;
+  }
+  CHECK(first_taken >= 24);
+  CHECK(first_taken <= 26);
+  CHECK(robot.stream.status().restarts == 1);
+  CHECK(robot.stream.status().rival_ns == 0);
+}
+
+}  // namespace isobar
