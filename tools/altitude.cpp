@@ -45,11 +45,10 @@ struct AltitudeArguments {
 };
 
 PressureLog read_log(const std::filesystem::path& file, const std::string& columns) {
-  PressureLog log = read_pressure_log(file, columns.empty() ? PressureColumns{} : parse_columns(columns));
+  PressureLog log = read_new_values(file, parse_columns(columns));
   if (log.samples.size() < 2) throw DataError(file.string() + ": holds a single sample");
-  const std::string rest = left_out(log);
-  std::printf("%s: %zu samples%s%s\n", file.c_str(), log.samples.size(), rest.empty() ? "" : "; ",
-              rest.c_str());
+  std::printf("%s: %zu samples\n", file.c_str(), log.samples.size());
+  for (const std::string& note : log.notes) std::printf("  %s\n", note.c_str());
   return log;
 }
 

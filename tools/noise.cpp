@@ -50,8 +50,7 @@ struct Study {
 
 Study study(const NoiseArguments& arguments) {
   Study result;
-  result.log = read_pressure_log(
-      arguments.file, arguments.columns.empty() ? PressureColumns{} : parse_columns(arguments.columns));
+  result.log = read_new_values(arguments.file, parse_columns(arguments.columns));
   result.times_s = result.log.times_s();
   result.pressures_pa = result.log.pressures_pa();
   const std::span<const double> times(result.times_s);
@@ -99,9 +98,9 @@ FilterDesign chosen_design(const NoiseArguments& arguments, const SensorNoise& n
 
 void print_noise(const Study& study, double cm_per_pa) {
   const SensorNoise& noise = study.noise;
-  const std::string rest = left_out(study.log);
-  std::printf("%zu samples over %.1f s, %.2f Hz%s%s\n", study.times_s.size(), study.times_s.back(),
-              1.0 / noise.interval_s, rest.empty() ? "" : "; ", rest.c_str());
+  for (const std::string& note : study.log.notes) std::printf("%s\n", note.c_str());
+  std::printf("%zu samples over %.1f s, %.2f Hz\n", study.times_s.size(), study.times_s.back(),
+              1.0 / noise.interval_s);
   std::printf("still from %.1f to %.1f s: %zu samples\n\n", study.times_s[noise.still.begin],
               study.times_s[noise.still.end - 1], noise.still.count());
   std::printf("sigma of a sample    %8.4f Pa        %6.2f cm   (second differences)\n", noise.sigma_pa,

@@ -46,15 +46,13 @@ Files files_of(const RecordedRigRequest& request) {
 
 BarometerPair read_pair(const RecordedRigRequest& request, const Files& files,
                         std::vector<std::string>& notes) {
-  const PressureColumns columns =
-      request.columns.empty() ? PressureColumns{} : parse_columns(request.columns);
-  PressureLog moved = read_pressure_log(files.moved, columns);
-  PressureLog standing = read_pressure_log(files.standing, columns);
+  const recording::PressureColumns columns = parse_columns(request.columns);
+  PressureLog moved = read_new_values(files.moved, columns);
+  PressureLog standing = read_new_values(files.standing, columns);
   for (const auto& [file, log] : {std::pair{&files.moved, &moved}, std::pair{&files.standing, &standing}}) {
     if (log->samples.size() < 100)
       throw DataError(file->string() + ": fewer than 100 samples are no experiment");
-    const std::string rest = left_out(*log);
-    if (!rest.empty()) notes.push_back(file->string() + ": " + rest);
+    for (const std::string& note : log->notes) notes.push_back(file->string() + ": " + note);
   }
   notes.push_back("clocks: " + tie_clocks(moved, standing));
   return {request.sensor, std::move(moved.samples), std::move(standing.samples)};

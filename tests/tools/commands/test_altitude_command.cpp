@@ -124,7 +124,7 @@ TEST_CASE("on a real robot outdoors the height keeps to 12 cm rms of survey-grad
   // Nothing is tuned to this run: a lag of 1 s and the air temperature of the coldest thermometer. One
   // constant is fitted, the mean difference, because a barometer does not know what GNSS counts from.
   const auto read = [](const char* file, const char* columns) {
-    return tools::read_pressure_log(ugv() / file, tools::parse_columns(columns));
+    return tools::read_new_values(ugv() / file, tools::parse_columns(columns));
   };
   const tools::PressureLog log = read("dps310.csv", "timestamp:us,pressure,temperature");
   const tools::PressureLog rows = read("meteo_data.csv", "TIMESTAMP:us,CS106_Raw_mbar:hPa,T_probe_Avg");

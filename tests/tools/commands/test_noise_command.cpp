@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <random>
 #include <string>
@@ -42,11 +43,16 @@ std::string still_log(double factor) {
 
 std::string message_of(const std::filesystem::path& file) {
   try {
-    tools::read_pressure_log(file);
+    tools::read_new_values(file);
   } catch (const DataError& error) {
     return error.what();
   }
   return "";
+}
+
+std::ptrdiff_t says(const tools::PressureLog& log, const char* words) {
+  return std::count_if(log.notes.begin(), log.notes.end(),
+                       [words](const std::string& note) { return note.find(words) != std::string::npos; });
 }
 
 }  // namespace
@@ -79,25 +85,29 @@ TEST_CASE("a pressure log leaves out repeats and bad rows, and counts them") {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "log.csv";
   write_text_file(file, still_log(1.0) + "1,2\n1700000000000000000,101000,20\n1800000000000000000,nan,20\n");
-  const tools::PressureLog log = tools::read_pressure_log(file);
+  const tools::PressureLog log = tools::read_new_values(file);
   CHECK(log.samples.size() == 60 * 32);
   CHECK(log.repeats == 60 * 32);
-  CHECK(log.bad_rows == 3);
-  // The first: a header, 3840 good rows, then the one with two fields.
-  CHECK(log.first_bad_row.find(":3842: has 2 fields") != std::string::npos);
+  // A header, 3840 good rows, then the one with two fields and the one without a number.
+  CHECK(says(log, "no numbers: 2 (first: ") != 0);
+  CHECK(says(log, ":3842: has 2 fields") != 0);
+  CHECK(says(log, "time goes back: 1") != 0);
+  CHECK(says(log, "repeat the value before them, left out: 1920") != 0);
   CHECK(log.samples[1].stamp_ns - log.samples[0].stamp_ns == 31'250'000);
   CHECK(log.samples[0].temperature_c == 21.5);
 }
 
-TEST_CASE("pressures in another unit are refused by its name, not guessed") {
+TEST_CASE(
+    "a unit that is not the one of the column's name is refused, one that the name leaves open is said") {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "log.csv";
   write_text_file(file, still_log(0.01));
-  CHECK(message_of(file).find("looks like hPa") != std::string::npos);
-  write_text_file(file, still_log(0.001));
-  CHECK(message_of(file).find("looks like kPa") != std::string::npos);
-  write_text_file(file, still_log(7.5e-3));  // mmHg: no name, but no number either
-  CHECK(message_of(file).find("must lie within") != std::string::npos);
+  CHECK(message_of(file).find("pressure is in Pa, as the column's name says, but its median") !=
+        std::string::npos);
+  std::string unnamed = still_log(0.001);
+  unnamed.replace(unnamed.find("pressure_pa"), 11, "pressure");
+  write_text_file(file, unnamed);
+  CHECK(says(tools::read_new_values(file), "pressure is in kPa (column 'pressure', the only unit") != 0);
 }
 
 TEST_CASE("other names and units of the columns are understood to the nanosecond") {
@@ -105,12 +115,12 @@ TEST_CASE("other names and units of the columns are understood to the nanosecond
   const std::filesystem::path file = folder.path() / "log.csv";
   const auto first_stamp = [&](const char* columns, const std::string& text) {
     write_text_file(file, text);
-    return tools::read_pressure_log(file, tools::parse_columns(columns)).samples.front().stamp_ns;
+    return tools::read_new_values(file, tools::parse_columns(columns)).samples.front().stamp_ns;
   };
   CHECK(first_stamp("timestamp:us,p", "p,timestamp\n94212.4,1760456485602394\n") ==
         1'760'456'485'602'394'000);
   write_text_file(file, still_log(0.01));
-  const auto in_hpa = tools::read_pressure_log(file, tools::parse_columns("t_ns,pressure_pa:hPa"));
+  const auto in_hpa = tools::read_new_values(file, tools::parse_columns("t_ns,pressure_pa:hPa"));
   CHECK(in_hpa.samples.front().pressure_pa == doctest::Approx(101'000.0).epsilon(1e-4));
   CHECK(first_stamp("timestamp:s,p", "timestamp,p\n1760456485.602394123,94212.4\n") ==
         1'760'456'485'602'394'123);
