@@ -50,8 +50,9 @@ function(isobar_use_precompiled target name)
 endfunction()
 
 # isobar_library(NAME DEPENDS lib…): static library of every .cpp in the current folder (not below it).
+# PRECOMPILED names headers that all its files include and that are worth it in every build.
 function(isobar_library name)
-  cmake_parse_arguments(arg "" "" "DEPENDS;PRIVATE_DEPENDS;SOURCES" ${ARGN})
+  cmake_parse_arguments(arg "" "" "DEPENDS;PRIVATE_DEPENDS;SOURCES;PRECOMPILED" ${ARGN})
   if(NOT arg_SOURCES)
     file(GLOB arg_SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   endif()
@@ -59,7 +60,11 @@ function(isobar_library name)
     add_library(${name} STATIC ${arg_SOURCES})
     target_link_libraries(${name} PUBLIC Eigen3::Eigen ${arg_DEPENDS} PRIVATE isobar_options ${arg_PRIVATE_DEPENDS})
     target_include_directories(${name} PUBLIC ${CMAKE_SOURCE_DIR})
-    isobar_use_precompiled(${name} isobar_common_pch)
+    if(arg_PRECOMPILED)
+      target_precompile_headers(${name} PRIVATE ${arg_PRECOMPILED})
+    else()
+      isobar_use_precompiled(${name} isobar_common_pch)
+    endif()
   else()
     add_library(${name} INTERFACE)
     target_link_libraries(${name} INTERFACE Eigen3::Eigen ${arg_DEPENDS})
@@ -74,10 +79,14 @@ function(isobar_program name)
   target_link_libraries(${name} PRIVATE isobar_options ${arg_DEPENDS})
 endfunction()
 
-# isobar_test(NAME LABEL unit|integration SOURCES … DEPENDS …): one doctest program, one CTest entry.
+# isobar_test(NAME LABEL unit|integration COST … SOURCES … DEPENDS …): one doctest program, one CTest entry.
+# COST: seconds under AddressSanitizer, where it is many; the longest ones start first.
 # The sources name no main(); tests/test_main.cpp has the only one, compiled once.
 function(isobar_test name)
-  cmake_parse_arguments(arg "" "LABEL" "DEPENDS;SOURCES" ${ARGN})
+  cmake_parse_arguments(arg "" "LABEL;COST" "DEPENDS;SOURCES" ${ARGN})
+  if(arg_COST)
+    set(cost COST ${arg_COST})
+  endif()
   if(NOT arg_LABEL)
     set(arg_LABEL unit)
   endif()
@@ -87,7 +96,7 @@ function(isobar_test name)
     ISOBAR_SOURCE_DIR="${CMAKE_SOURCE_DIR}" ISOBAR_SHARED_DATA="${CMAKE_SOURCE_DIR}/../shared/data")
   isobar_use_precompiled(${name} isobar_test_pch)
   add_test(NAME ${name} COMMAND ${name})
-  set_tests_properties(${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 900)
+  set_tests_properties(${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 900 ${cost})
 endfunction()
 
 # isobar_has_threads(NAME …): tests of this folder with a second thread or process. They carry the label `threads`,
