@@ -35,6 +35,7 @@ const std::vector<std::string>& air_temperature_choices() {
 const std::vector<std::string>& compensation_choices() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> list;
+    list.reserve(kCompensationModels.size());
     for (const CompensationModel model : kCompensationModels) list.emplace_back(model_name(model));
     return list;
   }();

@@ -3,6 +3,7 @@
 // one.
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -77,8 +78,8 @@ std::vector<ImuSample> read_imu(const std::filesystem::path& file) {
   std::vector<ImuSample> samples;
   for (ImuSample sample; recording::next_sample(csv, sample, malformed, implausible);)
     samples.push_back(sample);
-  std::printf("%s: %zu samples, %llu bad rows %s\n", file.c_str(), samples.size(),
-              static_cast<unsigned long long>(malformed.count + implausible.count),
+  std::printf("%s: %zu samples, %ju bad rows %s\n", file.c_str(), samples.size(),
+              std::uintmax_t{malformed.count} + std::uintmax_t{implausible.count},
               (malformed.count > 0 ? malformed : implausible).first_message.c_str());
   return samples;
 }

@@ -103,9 +103,11 @@ class Viterbi {
     double drift = 0.0;  // what the first level reads now, in steps
   };
 
-  [[nodiscard]] std::size_t states() const { return static_cast<std::size_t>(levels_ * ages_); }
+  [[nodiscard]] std::size_t states() const {
+    return static_cast<std::size_t>(levels_) * static_cast<std::size_t>(ages_);
+  }
   [[nodiscard]] std::size_t index(int level, int age) const {
-    return static_cast<std::size_t>(level * ages_ + age);
+    return static_cast<std::size_t>(level) * static_cast<std::size_t>(ages_) + static_cast<std::size_t>(age);
   }
 
   void offer(std::vector<State>& next, std::size_t k, std::size_t to, const State& state, std::size_t from,
