@@ -45,7 +45,7 @@ void MapThread::drain() noexcept {
   while (const auto scan = scans_.take()) {
     points_.clear();
     const CpuTimer timer;
-    if (map_.update(*scan, points_)) {
+    if (map_.update(*scan)) {
       snapshots_.publish(map_.snapshot());
       own_.update_ms = timer.elapsed_ms();
     }

@@ -182,6 +182,7 @@ bool Registration::solve(const MapSnapshot& map, const Prediction& prediction, c
   const double search_m =
       2.0 * prediction.deviation.tail<3>().dot(traits.basis.bottomRows<3>().rowwise().norm());
 
+  correspondences_.start(map, pose.T_map_base.translation());
   double distance_m = config_.first_distance_m + std::min(search_m, kLargestSearchM);
   int coarse = kCoarseIterations;
   Step step;
