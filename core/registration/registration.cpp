@@ -131,8 +131,7 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
   }
   const MethodTraits& traits = traits_for(end);
   const Prediction prediction = motion_.predict(end, traits);
-  deskewer_.deskew(scan, history_, motion_.scan_motion(end, prediction), out);
-  sampler_.thin(out);
+  prepare_scan(scan, history_, motion_.scan_motion(end, prediction), deskewer_, sampler_, out);
 
   PoseEstimate& pose = out.pose;
   pose.T_map_base = prediction.T_map_base;
