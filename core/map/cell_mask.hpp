@@ -71,11 +71,40 @@ class CellMask {
 [[nodiscard]] constexpr std::uint64_t layer_window(int x0, int x1, int y0, int y1) {
   const std::uint64_t row = (std::uint64_t{0xFF} >> static_cast<unsigned>(7 - (x1 - x0)))
                             << static_cast<unsigned>(x0);
-  std::uint64_t window = 0;
-  for (int y = y0; y <= y1; ++y) {
-    window |= row << static_cast<unsigned>(8 * y);
+  // The row at each y0 … y1: a one at the start of each, times the row.
+  constexpr std::uint64_t kStarts = 0x0101010101010101;
+  const std::uint64_t starts = (kStarts >> static_cast<unsigned>(8 * (7 - (y1 - y0))))
+                               << static_cast<unsigned>(8 * y0);
+  return starts * row;
+}
+
+/// Calls `visit(slot)` for each member of one side whose place is within `low` … `high` (0 … 7 an axis, both
+/// included).
+template <typename Visit>
+void for_each_in_window(const CellMask& mask, int side, const CellIndex& low, const CellIndex& high,
+                        Visit visit) {
+  const std::uint64_t window = layer_window(low.x(), high.x(), low.y(), high.y());
+  for (int z = low.z(); z <= high.z(); ++z) {
+    std::uint64_t members = mask.layer(side, z) & window;
+    while (members != 0) {
+      visit((side * kBlockCells + z) * 64 + std::countr_zero(members));
+      members &= members - 1;
+    }
   }
-  return window;
+}
+
+/// Calls `visit(first, low, high)` for each block that the cells `first` … `last` touch: its first cell, and
+/// the window of them in it.
+template <typename Visit>
+void for_each_block(const CellIndex& first, const CellIndex& last, Visit visit) {
+  for (int z = first.z() >> 3; z <= last.z() >> 3; ++z) {
+    for (int y = first.y() >> 3; y <= last.y() >> 3; ++y) {
+      for (int x = first.x() >> 3; x <= last.x() >> 3; ++x) {
+        const CellIndex block = CellIndex(x, y, z) * kBlockCells;
+        visit(block, (first - block).cwiseMax(0).eval(), (last - block).cwiseMin(kBlockCells - 1).eval());
+      }
+    }
+  }
 }
 
 }  // namespace isobar

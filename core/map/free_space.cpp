@@ -76,6 +76,14 @@ void FreeSpace::spread_to_neighbours() {
   }
 }
 
+bool FreeSpace::may_pass_through(const Eigen::Vector3f& p_lidar, float margin_m) const {
+  int column = 0;
+  int row = 0;
+  pixel_of(p_lidar, column, row);
+  const float around = around_m_[index_of(column, row)];
+  return around > margin_m && p_lidar.squaredNorm() <= (around - margin_m) * (around - margin_m);
+}
+
 bool FreeSpace::passes_through(const Eigen::Vector3f& p_lidar, const Eigen::Vector3f& normal_lidar,
                                float margin_m) const {
   const float range = p_lidar.norm();

@@ -20,6 +20,9 @@ class FreeSpace {
   /// Takes the points of a scan. `T_lidar_base`: base_link in the lidar's frame.
   void set_scan(const RegisteredScan& scan, const Eigen::Isometry3d& T_lidar_base);
 
+  /// False where passes_through() is false whatever the normal, which is most often and costs less.
+  [[nodiscard]] bool may_pass_through(const Eigen::Vector3f& p_lidar, float margin_m) const;
+
   /// True if rays around the direction of `p_lidar` went farther than it: by at least `margin_m` measured
   /// across its surface. `normal_lidar`: unit normal there, or zero if unknown. A surface seen at a grazing
   /// angle is never called passed, since small errors of attitude or height would do that to a floor.

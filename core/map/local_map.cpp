@@ -2,6 +2,7 @@
 #include "core/map/local_map.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -112,7 +113,8 @@ void LocalMap::insert(const RegisteredScan& scan) {
   const auto radius = static_cast<float>(config_.radius_m);
   MapBlock::Observation observation;
   observation.freeze = config_.freeze_observations;
-  Tile* last = nullptr;
+  // Neighbours in a scan lie in few tiles, in turns: a ring each.
+  std::array<Tile*, 64> recent{};
   touched_.clear();
   for (std::uint32_t i = 0; i < scan.point_count; ++i) {
     const ScanPoint& point = scan.points[i];
@@ -123,7 +125,9 @@ void LocalMap::insert(const RegisteredScan& scan) {
       continue;
     }
     const CellIndex cell = frame.cell_of(p_local);
-    if (const TileKey key = tile_of(cell); last == nullptr || last->cells.key() != key) {
+    const TileKey key = tile_of(cell);
+    Tile*& last = recent[key.hash() % recent.size()];
+    if (last == nullptr || last->cells.key() != key) {
       last = tile_for_points(key);
     }
     if (last == nullptr) {
@@ -152,9 +156,6 @@ void LocalMap::remove_seen_through(const RegisteredScan& scan) {
       (T_lidar_map * Eigen::Translation3d(frame.origin_map)).cast<float>();
   const Eigen::Vector3f p_local_lidar = T_lidar_local.inverse().translation();
   const auto reach = static_cast<float>(config_.see_through_range_m);
-  const auto margin = static_cast<float>(config_.see_through_margin_m);
-  const auto limit = static_cast<std::uint8_t>(config_.see_through_limit);
-  constexpr std::uint8_t kMost = std::numeric_limits<std::uint8_t>::max();
   const float block_reach = reach + 0.87F * kBlockCells * cell_m_;  // half a block's diagonal
   for (auto& [key, tile] : tiles_) {
     if ((centre_map(key) - scan.pose.T_map_base.translation()).norm() > reach + tile_m()) {
@@ -165,27 +166,40 @@ void LocalMap::remove_seen_through(const RegisteredScan& scan) {
       if (block == nullptr) continue;
       const Eigen::Vector3f centre_local = block_centre_local(frame, first_cell(key, b));
       if ((centre_local - p_local_lidar).norm() > block_reach) continue;
-      const Eigen::Vector3f first_centre = centre_local.array() + 0.5F * (1 - kBlockCells) * cell_m_;
-      bool any = false;
-      for (MapCell& cell : block->cells()) {
-        const PackedPlane* plane = block->plane_at(cell.slot);
-        const Eigen::Vector3f normal = plane != nullptr
-                                           ? (T_lidar_local.linear() * plane->unit_normal()).eval()
-                                           : Eigen::Vector3f(0.0F, 0.0F, 0.0F);
-        const Eigen::Vector3f mean_local = first_centre +
-                                           offset_of(cell.slot % kPlacesPerBlock).cast<float>() * cell_m_ +
-                                           cell.moments.mean_m(cell_m_);
-        if (cell.seen_through < kMost &&
-            free_space_.passes_through(T_lidar_local * mean_local, normal, margin)) {
-          any = ++cell.seen_through > limit || any;
-        }
-      }
-      if (any) {
-        seen_through_count_ += block->remove_seen_through(limit);
+      if (count_seen_through(T_lidar_local, centre_local, *block)) {
+        seen_through_count_ +=
+            block->remove_seen_through(static_cast<std::uint8_t>(config_.see_through_limit));
         tile->changed = true;
       }
     }
   }
+}
+
+// Counts the rays that passed cells of a block; true if one has been seen through often enough.
+bool LocalMap::count_seen_through(const Eigen::Isometry3f& T_lidar_local, const Eigen::Vector3f& centre_local,
+                                  MapBlock& block) const {
+  const auto margin = static_cast<float>(config_.see_through_margin_m);
+  const auto limit = static_cast<std::uint8_t>(config_.see_through_limit);
+  constexpr std::uint8_t kMost = std::numeric_limits<std::uint8_t>::max();
+  const Eigen::Vector3f first_centre = centre_local.array() + 0.5F * (1 - kBlockCells) * cell_m_;
+  bool any = false;
+  for (MapCell& cell : block.cells()) {
+    const Eigen::Vector3f p_local = first_centre +
+                                    offset_of(cell.slot % kPlacesPerBlock).cast<float>() * cell_m_ +
+                                    cell.moments.mean_m(cell_m_);
+    const Eigen::Vector3f p_lidar = T_lidar_local * p_local;
+    if (cell.seen_through == kMost || !free_space_.may_pass_through(p_lidar, margin)) {
+      continue;
+    }
+    Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+    if (const PackedPlane* plane = block.plane_at(cell.slot)) {
+      normal = T_lidar_local.linear() * plane->unit_normal();
+    }
+    if (free_space_.passes_through(p_lidar, normal, margin)) {
+      any = ++cell.seen_through > limit || any;
+    }
+  }
+  return any;
 }
 
 void LocalMap::fit_touched() {

@@ -72,6 +72,8 @@ class LocalMap {
   [[nodiscard]] bool wants(const PoseEstimate& pose) const;
   void insert(const RegisteredScan& scan);
   void remove_seen_through(const RegisteredScan& scan);
+  bool count_seen_through(const Eigen::Isometry3f& T_lidar_local, const Eigen::Vector3f& centre_local,
+                          MapBlock& block) const;
   void fit_touched();
   void evict(const Eigen::Vector3d& p_map_base);
   void look_for_stored(const Eigen::Vector3d& p_map_base);

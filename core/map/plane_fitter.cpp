@@ -28,26 +28,22 @@ Moments PlaneFitter::neighbourhood(const MapTile& tile, const CellIndex& at, con
   // Same side only: a thin wall has two.
   const int side = centre.slot / kPlacesPerBlock;
   const Eigen::Vector3f toward = centre.toward_vector();
-  TileKey key = tile.key();
-  const MapTile* current = &tile;
+  const CellIndex first = at.array() - 1;
+  const CellIndex last = at.array() + 1;
   Moments sum;
-  for (int dz = -1; dz <= 1; ++dz) {
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) {
-        const CellIndex cell = at + CellIndex(dx, dy, dz);
-        if (const TileKey wanted = tile_of(cell); wanted != key) {
-          key = wanted;
-          current = find_tile_(key);
-        }
-        const MapBlock* block = current != nullptr ? current->block(block_of(cell)) : nullptr;
-        const MapCell* other =
-            block != nullptr ? block->find(side * kPlacesPerBlock + place_of(cell)) : nullptr;
-        if (other != nullptr && other->toward_vector().dot(toward) > 0.0F) {
-          sum.add(other->moments.in_metres(cell_m_), CellIndex(dx, dy, dz).cast<float>() * cell_m_);
-        }
+  for_each_block(first, last, [&](const CellIndex& block_first, const CellIndex& low, const CellIndex& high) {
+    const TileKey key = tile_of(block_first);
+    const MapTile* in = key == tile.key() ? &tile : find_tile_(key);
+    const MapBlock* block = in != nullptr ? in->block(block_of(block_first)) : nullptr;
+    if (block == nullptr) return;
+    for_each_in_window(block->mask(), side, low, high, [&](int slot) {
+      const MapCell& other = *block->find(slot);
+      if (other.toward_vector().dot(toward) > 0.0F) {
+        const CellIndex offset = block_first + offset_of(slot % kPlacesPerBlock) - at;
+        sum.add(other.moments.in_metres(cell_m_), offset.cast<float>() * cell_m_);
       }
-    }
-  }
+    });
+  });
   return sum;
 }
 

@@ -35,21 +35,15 @@ class PlaneFitter {
   FindTile find_tile_;
 };
 
-/// Cells of the cube of 4 x 4 x 4, aligned to its block, that holds place `place`, both sides: calls
-/// `visit(slot)` for the members of `mask`.
+/// Calls `visit(slot)` for the members of `mask`, both sides, in the cube of 4 x 4 x 4 cells, aligned to its
+/// block, that holds place `place`.
 template <typename Visit>
 void for_each_in_cube(const CellMask& mask, int place, Visit visit) {
   const CellIndex offset = offset_of(place);
   const CellIndex low(offset.x() & 4, offset.y() & 4, offset.z() & 4);
-  const std::uint64_t window = layer_window(low.x(), low.x() + 3, low.y(), low.y() + 3);
+  const CellIndex high = low.array() + 3;
   for (int side = 0; side < kSides; ++side) {
-    for (int z = low.z(); z < low.z() + 4; ++z) {
-      std::uint64_t members = mask.layer(side, z) & window;
-      while (members != 0) {
-        visit((side * kBlockCells + z) * 64 + std::countr_zero(members));
-        members &= members - 1;
-      }
-    }
+    for_each_in_window(mask, side, low, high, visit);
   }
 }
 

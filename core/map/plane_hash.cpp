@@ -51,14 +51,18 @@ class PlaneHash::Search {
     const CellIndex last = query_.frame.cell_of(p_local.array() + query_.max_distance_m);
     float squared_m2 = squared_limit_m2_;
     bool found = false;
-    for (int z = first.z() >> 3; z <= last.z() >> 3; ++z) {
-      for (int y = first.y() >> 3; y <= last.y() >> 3; ++y) {
-        for (int x = first.x() >> 3; x <= last.x() >> 3; ++x) {
-          found =
-              in_block(CellIndex(x, y, z) * kBlockCells, first, last, p_local, squared_m2, match) || found;
-        }
-      }
-    }
+    for_each_block(first, last,
+                   [&](const CellIndex& block_first, const CellIndex& low, const CellIndex& high) {
+                     const PlaneBlock* block = find_block(block_first);
+                     if (block == nullptr) return;
+                     const Eigen::Vector3f centre_local = block_centre_local(query_.frame, block_first);
+                     for (int side = 0; side < kSides; ++side) {
+                       for_each_in_window(block->mask, side, low, high, [&](int slot) {
+                         const PackedPlane& plane = block->planes[block->mask.rank(slot)];
+                         found = take_if_nearer(plane, centre_local, p_local, squared_m2, match) || found;
+                       });
+                     }
+                   });
     return found;
   }
 
@@ -71,33 +75,6 @@ class PlaneHash::Search {
       known_ = true;
     }
     return tile_ != nullptr ? tile_->blocks[block_of(cell)].get() : nullptr;
-  }
-
-  // Members of a block within the cells first … last.
-  bool in_block(const CellIndex& block_first, const CellIndex& first, const CellIndex& last,
-                const Eigen::Vector3f& p_local, float& squared_m2, PlaneMatch& match) {
-    const PlaneBlock* block = find_block(block_first);
-    if (block == nullptr) {
-      return false;
-    }
-    const CellIndex low = (first - block_first).cwiseMax(0);
-    const CellIndex high = (last - block_first).cwiseMin(kBlockCells - 1);
-    const std::uint64_t window = layer_window(low.x(), high.x(), low.y(), high.y());
-    const Eigen::Vector3f centre_local = block_centre_local(query_.frame, block_first);
-    bool found = false;
-    for (int side = 0; side < kSides; ++side) {
-      for (int z = low.z(); z <= high.z(); ++z) {
-        std::uint64_t members = block->mask.layer(side, z) & window;
-        while (members != 0) {
-          const int slot = (side * kBlockCells + z) * 64 + std::countr_zero(members);
-          members &= members - 1;
-          found = take_if_nearer(block->planes[block->mask.rank(slot)], centre_local, p_local, squared_m2,
-                                 match) ||
-                  found;
-        }
-      }
-    }
-    return found;
   }
 
   bool take_if_nearer(const PackedPlane& plane, const Eigen::Vector3f& centre_local,
