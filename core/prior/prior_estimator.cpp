@@ -13,6 +13,7 @@
 #include "core/prior/imu_noise.hpp"
 #include "core/prior/rotation.hpp"
 #include "core/prior/standstill.hpp"
+#include "core/squared.hpp"
 
 namespace isobar {
 namespace {
@@ -43,8 +44,6 @@ constexpr double kWrongS = 1.5;
 constexpr double kDeviceRateTolerance = 0.1;
 constexpr double kDeviceRateSigma = 0.01;
 constexpr double kQuaternionTolerance = 0.05;
-
-double squared(double x) { return x * x; }
 
 /// The sample as the calibrated sensor would have measured it; what is not as it was calibrated is counted.
 PressureSample compensated(PressureSample sample, SensorCompensation& compensation, std::uint64_t& outside,
