@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "core/altitude/calibration_pairs.hpp"
 #include "core/errors.hpp"
@@ -72,8 +73,7 @@ double median_pa(std::span<const PressureLog> logs) {
   for (const PressureLog& log : logs) {
     for (const PressureSample& sample : log.samples) values.push_back(sample.pressure_pa);
   }
-  std::sort(values.begin(), values.end());
-  return evaluation::quantile(values, 0.5);
+  return evaluation::median(std::move(values));
 }
 
 void require_one_place(std::span<const PressureLog> sensor, std::span<const PressureLog> reference) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/altitude/stamp.hpp"
+#include "core/squared.hpp"
 
 namespace isobar {
 namespace {
@@ -28,8 +29,6 @@ constexpr double kNewLevelS = 5.0;
 constexpr double kLevelSamples = 30.0;
 // Left out for longer: a fault rather than a gust.
 constexpr double kJumpFaultS = 1.0;
-
-double squared(double x) { return x * x; }
 
 }  // namespace
 

@@ -13,17 +13,12 @@ constexpr double kSpikeDeviations = 20.0;
 // Less than this no spike needs to be: temperature moves poor sensors as far.
 constexpr double kLeastSpikePa = 200.0;
 
-double median_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return evaluation::quantile(values, 0.5);
-}
-
 double median_interval_s(std::span<const PressureSample> samples) {
   std::vector<double> intervals_s;
   for (std::size_t k = 1; k < samples.size(); ++k) {
     intervals_s.push_back(1e-9 * static_cast<double>(samples[k].stamp_ns - samples[k - 1].stamp_ns));
   }
-  return intervals_s.empty() ? 0.0 : median_of(std::move(intervals_s));
+  return intervals_s.empty() ? 0.0 : evaluation::median(std::move(intervals_s));
 }
 
 }  // namespace
@@ -59,9 +54,9 @@ std::size_t drop_spikes(std::vector<CalibrationRecording>& recordings) {
     for (const CalibrationPair& pair : recording.pairs) values.push_back(difference(pair));
   }
   if (values.empty()) return 0;
-  const double middle = median_of(values);
+  const double middle = evaluation::median(values);
   for (double& value : values) value = std::abs(value - middle);
-  const double limit = std::max(kLeastSpikePa, kSpikeDeviations * median_of(std::move(values)));
+  const double limit = std::max(kLeastSpikePa, kSpikeDeviations * evaluation::median(std::move(values)));
   std::size_t dropped = 0;
   for (CalibrationRecording& recording : recordings) {
     dropped += std::erase_if(recording.pairs, [&](const CalibrationPair& pair) {

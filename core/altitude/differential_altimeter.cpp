@@ -6,6 +6,7 @@
 
 #include "core/altitude/hypsometry.hpp"
 #include "core/altitude/stamp.hpp"
+#include "core/squared.hpp"
 
 namespace isobar {
 namespace {
@@ -14,8 +15,6 @@ namespace {
 constexpr double kNoiseMemorySamples = 200.0;
 // Differences across a longer gap mean nothing.
 constexpr double kNoiseGapS = 1.0;
-
-double squared(double x) { return x * x; }
 
 }  // namespace
 

@@ -8,6 +8,7 @@
 
 #include "core/altitude/stamp.hpp"
 #include "core/altitude/still_period.hpp"
+#include "core/squared.hpp"
 
 namespace isobar {
 namespace {
@@ -27,8 +28,6 @@ struct Step {
   State predicted;
   State filtered;
 };
-
-double squared(double x) { return x * x; }
 
 /// The rate decays like a Gauss-Markov process, the level is its integral and a random walk.
 State predict(const State& state, double dt_s, const WeatherModel& model, Eigen::Matrix2d& F) {

@@ -14,6 +14,11 @@ double quantile(const std::vector<double>& ascending, double q) {
   return ascending[below] + (rank - static_cast<double>(below)) * (ascending[above] - ascending[below]);
 }
 
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return quantile(values, 0.5);
+}
+
 Distribution summarize(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   Distribution result;

@@ -25,6 +25,9 @@ struct Distribution {
 /// NaN if there are none.
 double quantile(const std::vector<double>& ascending, double q);
 
+/// Quantile 0.5 of numbers in any order.
+double median(std::vector<double> values);
+
 Distribution summarize(std::vector<double> values);
 
 }  // namespace isobar::evaluation

@@ -6,6 +6,7 @@
 
 #include "core/prior/rotation.hpp"
 #include "core/samples.hpp"
+#include "core/squared.hpp"
 
 namespace isobar {
 namespace {
@@ -23,8 +24,6 @@ constexpr double kGatedLimitS = 1.0;
 // Vibration and sensor noise are white only down to the time over which they were measured.
 constexpr double kNoiseCorrelationS = 0.005;
 constexpr double kVerticalLoosening = 100.0;
-
-double squared(double x) { return x * x; }
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/altitude/stamp.hpp"
+#include "core/squared.hpp"
 
 namespace isobar {
 namespace {
@@ -18,8 +19,6 @@ constexpr double kUnfeltSigmas = 4.0;
 // A pressure that ran away is believed to be back when it has been steady for this long: a broken sensor
 // passes by now and then, and so does the back swing of a door.
 constexpr double kBackS = 0.7;
-
-double squared(double x) { return x * x; }
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/altitude/stamp.hpp"
+#include "core/squared.hpp"
 
 namespace isobar {
 namespace {
@@ -47,8 +48,6 @@ constexpr double kAbsurdM = 20.0;
 constexpr double kAbsurdWaitS = 0.3;
 // Pressures after a fault of any size has been taken off stay positive.
 constexpr double kLeastRatio = 0.05;
-
-double squared(double x) { return x * x; }
 
 }  // namespace
 

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "core/squared.hpp"
+
 namespace isobar {
 namespace {
 
@@ -11,8 +13,6 @@ namespace {
 constexpr double kOffsetSigmaM = 10.0;
 // The height at the start is zero by definition.
 constexpr double kStartSigmaM = 1e-3;
-
-double squared(double x) { return x * x; }
 
 }  // namespace
 

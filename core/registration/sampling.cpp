@@ -33,17 +33,29 @@ void Sampler::start(RegisteredScan& out) {
 }
 
 void Sampler::add(std::span<const ScanPoint> points, RegisteredScan& out) {
-  for (const ScanPoint& point : points) {
-    const std::uint64_t voxel = map_grid_.voxel_of(point);
-    // Near the sensor one laser hits a voxel many times in a row: most points end here, before the table.
-    std::uint64_t& last = last_voxel_[point.ring];
-    if (voxel == last || voxel == VoxelGrid::kNowhere) {
-      continue;
-    }
+  while (!points.empty()) {
+    const std::size_t part = std::min(points.size(), kPart);
+    add_part(points.first(part), out);
+    points = points.subspan(part);
+  }
+}
+
+void Sampler::add_part(std::span<const ScanPoint> points, RegisteredScan& out) {
+  // Near the sensor one laser hits a voxel many times in a row: most points end here, before the table, and
+  // without a jump, since none could foresee which: && would be one.
+  std::size_t arrivals = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint64_t voxel = map_grid_.voxel_of(points[i]);
+    std::uint64_t& last = last_voxel_[points[i].ring];
+    arrivals_[arrivals] = {voxel, i};
+    arrivals += std::size_t{voxel != last} & std::size_t{voxel != VoxelGrid::kNowhere};
     last = voxel;
-    if (!map_filter_.first(voxel)) {
+  }
+  for (const Arrival& arrival : std::span(arrivals_).first(arrivals)) {
+    if (!map_filter_.first(arrival.voxel)) {
       continue;
     }
+    const ScanPoint point = points[arrival.index];
     out.points[out.point_count++] = point;
     if (sample_filter_.first(sample_grid_.voxel_of(point))) {
       candidates_.emplace_back(point.x_m, point.y_m, point.z_m);

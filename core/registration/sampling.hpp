@@ -39,6 +39,15 @@ class Sampler {
   [[nodiscard]] std::span<const Eigen::Vector3f> sample() const { return sample_; }
 
  private:
+  static constexpr std::size_t kPart = 512;
+  /// A point in another voxel than the one before it on its ring.
+  struct Arrival {
+    std::uint64_t voxel;
+    std::size_t index;  // in its part
+  };
+
+  void add_part(std::span<const ScanPoint> points, RegisteredScan& out);
+
   VoxelGrid map_grid_;
   std::size_t sample_points_;
   float finest_voxel_m_;
@@ -47,6 +56,7 @@ class Sampler {
   VoxelFilter map_filter_;
   VoxelFilter sample_filter_;
   std::array<std::uint64_t, 256> last_voxel_{};  // by ring
+  std::array<Arrival, kPart> arrivals_{};
   std::vector<Eigen::Vector3f> sample_;
   std::vector<Eigen::Vector3f> candidates_;
 };

@@ -56,6 +56,7 @@ class PcapPackets {
   [[nodiscard]] std::string place() const;
 
   std::string name_;
+  std::vector<char> buffer_;  // of the file behind handle_
   pcap* handle_ = nullptr;
   LinkType link_ = LinkType::kEthernet;
   std::uint64_t frames_ = 0;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/recording/pressure_log.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/errors.hpp"
+#include "core/evaluation/distribution.hpp"
 #include "core/plausibility.hpp"
 #include "drivers/recording/date_text.hpp"
 #include "drivers/recording/number_text.hpp"
@@ -164,9 +165,7 @@ double median_pressure(const std::vector<PressureSample>& rows) {
   for (const PressureSample& row : rows) {
     values.push_back(row.pressure_pa);
   }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return evaluation::median(std::move(values));
 }
 
 void keep_plausible(std::vector<PressureSample>& rows, PressureUnit unit, Tally& implausible) {

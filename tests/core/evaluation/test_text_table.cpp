@@ -62,6 +62,7 @@ TEST_CASE("quantiles of 0 … 100 are the percentages themselves") {
   CHECK(d.p95 == Approx(95.0));
   CHECK(d.p99 == Approx(99.0));
   CHECK(d.max == 100.0);
+  CHECK(median({5.0, 1.0, 2.0, 9.0}) == Approx(3.5));
   CHECK(quantile({1.0, 2.0}, 0.5) == Approx(1.5));
   CHECK(std::isnan(summarize({}).median));
 }
