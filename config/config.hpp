@@ -73,6 +73,12 @@ struct OutputSettings {
   double cloud_interval_s = 2.0;  ///< between map clouds for viewers, 0.2 … 3600
 };
 
+/// [map], what is about files
+struct MapFileSettings {
+  std::string directory;     ///< folder for the map of a live run; empty: map/ in [output], or none without
+  double max_disk_gb = 4.0;  ///< 0.001 … 1000; beyond it the file of tiles begun longest ago goes
+};
+
 /// [realtime]
 struct RealtimeSettings {
   bool enabled = false;        ///< SCHED_FIFO, and all memory locked
@@ -99,6 +105,7 @@ struct Config {
   PriorConfig prior;
   RegistrationConfig registration;
   MapConfig map;
+  MapFileSettings map_files;
 };
 
 }  // namespace isobar

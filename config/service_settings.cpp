@@ -116,4 +116,16 @@ void add_service_settings(Config& config, std::vector<Setting>& settings) {
   add_propagator(config.dds.propagator, settings);
 }
 
+void add_map_file_settings(MapFileSettings& files, std::vector<Setting>& settings) {
+  settings.push_back({.key = "map.directory",
+                      .target = &files.directory,
+                      .doc =
+                          "Folder in which isobard keeps the map that is too far for memory; a map that is "
+                          "there is replaced. Empty: the folder map in output.directory; without that one "
+                          "what is far is forgotten."});
+  settings.push_back({"map.max_disk_gb", &files.max_disk_gb, "GB", 0.001, 1'000.0,
+                      "Disk that the map may take; then the part that left memory longest ago goes. Ten "
+                      "million points take about half of one."});
+}
+
 }  // namespace isobar

@@ -66,6 +66,7 @@ std::vector<Setting> settings_of(Config& config) {
   add_prior_settings(config.prior, settings);
   add_registration_settings(config.registration, settings);
   add_map_settings(config.map, settings);
+  add_map_file_settings(config.map_files, settings);
   return settings;
 }
 

@@ -68,5 +68,6 @@ void add_service_settings(Config& config, std::vector<Setting>& settings);
 void add_prior_settings(PriorConfig& prior, std::vector<Setting>& settings);
 void add_registration_settings(RegistrationConfig& registration, std::vector<Setting>& settings);
 void add_map_settings(MapConfig& map, std::vector<Setting>& settings);
+void add_map_file_settings(MapFileSettings& files, std::vector<Setting>& settings);
 
 }  // namespace isobar

@@ -110,6 +110,21 @@ std::vector<RunCount> counts_of(const BarometerCounters& counters) {
   };
 }
 
+std::vector<RunCount> counts_of_map(FileTileStore& store, RunOutput& output) {
+  const std::uint64_t brought_back = store.counters().taken;
+  const MapExport exported = output.write_map(store, store.header());
+  const TileStoreCounters& counters = store.counters();
+  return {
+      {"map tiles stored", counters.put, ""},
+      {"map tiles brought back", brought_back, ""},
+      {"map tiles refused by the disk", counters.refused, counters.first_refusal},
+      {"map tiles damaged", counters.damaged, counters.first_damage},
+      {"map tiles forgotten at the limit", counters.forgotten, ""},
+      {"map tiles moved between files", counters.moved, ""},
+      {"map tiles missing in map.ply", exported.unreadable, exported.first_unreadable},
+  };
+}
+
 void append(std::vector<RunCount>& counts, std::vector<RunCount> more) {
   counts.insert(counts.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }

@@ -8,6 +8,7 @@
 #include "core/prior/prior_estimator.hpp"
 #include "core/time/base_station_stream.hpp"
 #include "daemon/run_output.hpp"
+#include "daemon/tile_store/file_tile_store.hpp"
 #include "drivers/barometer/barometer_device.hpp"
 #include "drivers/datagram/datagram.hpp"
 #include "drivers/velodyne/velodyne_decoder.hpp"
@@ -21,6 +22,9 @@ std::vector<RunCount> counts_of(const datagram::Counters& counters);
 /// Of the base station that sends datagrams.
 std::vector<RunCount> counts_of(const BaseStationStatus& base);
 std::vector<RunCount> counts_of(const BarometerCounters& counters);
+
+/// Writes map.ply and counts what became of the map on the disk, during the run and then.
+std::vector<RunCount> counts_of_map(FileTileStore& store, RunOutput& output);
 
 /// Appends `more` to `counts`.
 void append(std::vector<RunCount>& counts, std::vector<RunCount> more);

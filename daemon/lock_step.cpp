@@ -13,12 +13,12 @@ constexpr std::size_t kMaxWaitingScans = 4;
 
 }  // namespace
 
-LockStep::LockStep(const StageSettings& settings, EstimateSink& sink)
+LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileShelf* shelf)
     : sink_(sink),
       decoder_(settings.lidar),
       prior_estimator_(settings.prior),
       registration_(settings.registration, settings.method, settings.T_base_lidar),
-      map_(settings.map, settings.T_base_lidar),
+      map_(settings.map, settings.T_base_lidar, shelf),
       filling_(std::make_unique<Scan>()) {}
 
 void LockStep::handle(const recording::Event& event) {
@@ -44,9 +44,7 @@ void LockStep::handle(const recording::Event& event) {
 void LockStep::finish() {
   if (decoder_.flush(*filling_)) queue_scan();
   register_waiting(true);
-  evicted_.clear();
-  map_.append_points(evicted_);
-  sink_.on_evicted(evicted_);
+  map_.store_all();
 }
 
 void LockStep::take_packet(const recording::Event& event) {

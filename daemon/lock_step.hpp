@@ -39,16 +39,15 @@ class EstimateSink {
   virtual ~EstimateSink() = default;
   /// A pose, stamps ascending. `prior` is the newest prior when it was made.
   virtual void on_pose(const PoseEstimate& pose, const Prior& prior) = 0;
-  /// Points that left the local map for good.
-  virtual void on_evicted(const std::vector<MapPoint>& points) = 0;
 };
 
 class LockStep {
  public:
-  LockStep(const StageSettings& settings, EstimateSink& sink);
+  /// `shelf`: takes the tiles that leave memory; null: they are forgotten.
+  LockStep(const StageSettings& settings, EstimateSink& sink, TileShelf* shelf = nullptr);
 
   void handle(const recording::Event& event);
-  /// Registers what still waits and hands the rest of the map to the sink. Call once, at the end.
+  /// Registers what still waits and puts the rest of the map on the shelf. Call once, at the end.
   void finish();
 
   [[nodiscard]] const velodyne::VelodyneDecoder& decoder() const { return decoder_; }
@@ -75,7 +74,6 @@ class LockStep {
   std::deque<std::unique_ptr<Scan>> waiting_;
   std::vector<std::unique_ptr<Scan>> spare_;
   RegisteredScan registered_;
-  std::vector<MapPoint> evicted_;
   Prior newest_prior_;
   SilenceBridge silence_;
   std::uint64_t scans_ = 0;

@@ -66,6 +66,16 @@ std::vector<std::string> refusals_of(const Scheduling& scheduling, bool realtime
   return refusals;
 }
 
+/// Where tiles go that are too far from the robot for memory; null where nothing is written.
+std::unique_ptr<FileTileStore> map_store(const Config& config) {
+  std::filesystem::path directory = config.map_files.directory;
+  if (directory.empty() && !config.output.directory.empty()) {
+    directory = RunOutput::map_directory(config.output.directory);
+  }
+  if (directory.empty()) return nullptr;
+  return FileTileStore::create(directory, map_header(config), map_limits(config));
+}
+
 void run_robot(const Config& config, Service& service) {
   const StageSettings stages = stage_settings(config);
   const Scheduling scheduling = scheduling_of(config.realtime);
@@ -78,8 +88,8 @@ void run_robot(const Config& config, Service& service) {
     output->write_settings(show_config(config));
   }
 
-  MapThread map(stages.map, stages.T_base_lidar, config.output.cloud_interval_s, output ? &*output : nullptr,
-                scheduling.map);
+  const std::unique_ptr<FileTileStore> store = map_store(config);
+  MapThread map(stages.map, stages.T_base_lidar, config.output.cloud_interval_s, store.get(), scheduling.map);
   RegistrationThread registration(stages.registration, stages.method, stages.T_base_lidar, map.snapshots(),
                                   scheduling.registration);
   PriorThread prior(stages.prior, scheduling.prior);
@@ -140,6 +150,7 @@ void run_robot(const Config& config, Service& service) {
     if (last.barometer.present) append(counts, counts_of(last.barometer.device.counters));
     append(counts, {{"baro lines refused", last.inertial.refused_pressure, ""}});
     append(counts, counts_of(last.prior.counters));
+    append(counts, counts_of_map(*store, *output));  // with an output there always is a store
     output->close(counts);
     spdlog::info("{} poses and {} map points in {}", output->poses(), output->map_points(),
                  config.output.directory);
@@ -155,7 +166,7 @@ int main_with_errors(int argc, char** argv) {
   app.add_option("--config", config_file,
                  "TOML file; `isobar config show` prints every key with its default");
   app.add_option("--output", output_directory,
-                 "folder for trajectory.tum, map.ply, status.csv; overrides [output]");
+                 "folder for trajectory.tum, map.ply, map/, status.csv; overrides [output]");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

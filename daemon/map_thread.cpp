@@ -4,21 +4,20 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <exception>
 
 #include "daemon/cpu_time.hpp"
 
 namespace isobar {
 
 MapThread::MapThread(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, double cloud_interval_s,
-                     RunOutput* output, ThreadSettings settings)
+                     FileTileStore* store, ThreadSettings settings)
     : settings_(std::move(settings)),
-      map_(config, T_base_lidar),
+      map_(config, T_base_lidar, store),
       snapshots_(map_.snapshot()),
       scans_(ipc::topics::kRegisteredScan),
       clouds_(ipc::topics::kMapCloud),
       waiter_({&scans_.raw()}),
-      output_(output),
+      store_(store),
       cloud_interval_ns_(static_cast<std::int64_t>(cloud_interval_s * 1e9)) {}
 
 MapThread::~MapThread() { stop(); }
@@ -36,35 +35,38 @@ void MapThread::loop() noexcept {
   (void)apply_to_this_thread(settings_);
   while (waiter_.wait() != ipc::Waiter::Event::kStopped) drain();
   drain();
-  points_.clear();
-  map_.append_points(points_);
-  write_evicted();
+  map_.store_all();
+  say_what_is_lost();
 }
 
 void MapThread::drain() noexcept {
   while (const auto scan = scans_.take()) {
-    points_.clear();
     const CpuTimer timer;
     if (map_.update(*scan)) {
       snapshots_.publish(map_.snapshot());
       own_.update_ms = timer.elapsed_ms();
     }
-    write_evicted();
     publish_cloud(scan->pose.stamp_ns);
   }
+  say_what_is_lost();
   own_.dropped_scans = scans_.dropped();
   own_.cells = map_.cell_count();
   status_.put(own_);
 }
 
-void MapThread::write_evicted() noexcept {
-  if (output_ == nullptr || points_.empty()) return;
-  try {
-    output_->add_map_points(points_);
-  } catch (const std::exception& error) {
-    spdlog::error("map file: {}; the map is no longer written, the pose goes on", error.what());
-    output_ = nullptr;
+void MapThread::say_what_is_lost() noexcept {
+  if (store_ == nullptr) return;
+  // The first of each kind; how many it became is in counters.csv.
+  const TileStoreCounters& now = store_->counters();
+  if (now.refused > 0 && !said_.refused) {
+    spdlog::error("map: {}; tiles that leave memory are lost while that lasts, the pose goes on",
+                  now.first_refusal);
   }
+  if (now.damaged > 0 && !said_.damaged) spdlog::error("map: {}; that tile is lost", now.first_damage);
+  if (now.forgotten > 0 && !said_.forgotten) {
+    spdlog::warn("map: map.max_disk_gb is reached; what left memory longest ago is forgotten from now on");
+  }
+  said_ = {now.refused > 0, now.damaged > 0, now.forgotten > 0};
 }
 
 void MapThread::publish_cloud(std::int64_t stamp_ns) noexcept {

@@ -9,7 +9,7 @@
 #include "core/map/snapshot_exchange.hpp"
 #include "daemon/mailbox.hpp"
 #include "daemon/realtime.hpp"
-#include "daemon/run_output.hpp"
+#include "daemon/tile_store/file_tile_store.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar {
@@ -25,24 +25,31 @@ struct MapStatus {
 /// it allocates, and it is the one that frees old snapshots.
 class MapThread {
  public:
-  /// `output` may be null; else it gets the points that leave the local map, from this thread only.
+  /// `store` may be null; else it keeps the tiles that leave the local map, used by this thread only between
+  /// start() and stop().
   MapThread(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, double cloud_interval_s,
-            RunOutput* output, ThreadSettings settings);
+            FileTileStore* store, ThreadSettings settings);
   ~MapThread();
   MapThread(const MapThread&) = delete;
   MapThread& operator=(const MapThread&) = delete;
 
   void start();
-  /// Returns when the thread has ended; what is in the local map has gone to the output then.
+  /// Returns when the thread has ended; what is in the local map has gone to the store then.
   void stop() noexcept;
 
   [[nodiscard]] SnapshotExchange<MapSnapshot>& snapshots() noexcept { return snapshots_; }
   [[nodiscard]] MapStatus status() const noexcept { return status_.get(); }
 
  private:
+  /// What the log already has of the store.
+  struct Said {
+    bool refused = false;
+    bool damaged = false;
+    bool forgotten = false;
+  };
   void loop() noexcept;
   void drain() noexcept;
-  void write_evicted() noexcept;
+  void say_what_is_lost() noexcept;
   void publish_cloud(std::int64_t stamp_ns) noexcept;
 
   ThreadSettings settings_;
@@ -51,7 +58,8 @@ class MapThread {
   ipc::Subscriber<RegisteredScan> scans_;
   ipc::Publisher<ipc::MapCloud> clouds_;
   ipc::Waiter waiter_;
-  RunOutput* output_;
+  FileTileStore* store_;
+  Said said_;
   std::int64_t cloud_interval_ns_;
   std::int64_t last_cloud_ns_ = 0;
   std::uint32_t cloud_sequence_ = 0;

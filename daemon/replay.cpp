@@ -28,7 +28,6 @@ class OutputSink : public EstimateSink {
     without_imu_ += without_imu ? 1 : 0;
     without_height_ += without_imu ? 0 : 1;
   }
-  void on_evicted(const std::vector<MapPoint>& points) override { output_.add_map_points(points); }
 
   /// Scans that a method with less to go by registered.
   [[nodiscard]] std::uint64_t without_height() const { return without_height_; }
@@ -115,7 +114,8 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   RunOutput output(out);
   output.write_settings(show_config(used));
   OutputSink sink(output);
-  LockStep pipeline(stage_settings(used), sink);
+  const auto store = FileTileStore::create(RunOutput::map_directory(out), map_header(used), map_limits(used));
+  LockStep pipeline(stage_settings(used), sink, store.get());
   recording::Event event;
   std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
   std::int64_t last_ns = std::numeric_limits<std::int64_t>::min();
@@ -126,6 +126,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
     if (events % 512 == 0) progress(reader.progress());
   }
   pipeline.finish();
+  const std::vector<RunCount> map_counts = counts_of_map(*store, output);
 
   summary.scans = pipeline.scans();
   summary.poses = output.poses();
@@ -134,6 +135,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   summary.map_points = output.map_points();
   summary.recorded_s = last_ns > first_ns ? static_cast<double>(last_ns - first_ns) * 1e-9 : 0.0;
   summary.counts = collect_counts(reader, pipeline);
+  append(summary.counts, map_counts);
   if (sink.without_height() > 0 && reader.manifest().barometer) {
     summary.warnings.emplace_back("no height from pressure for " + std::to_string(sink.without_height()) +
                                   " scans: 3-DOF ran as 4-DOF there");

@@ -27,11 +27,8 @@ void RunOutput::add_pose(const PoseEstimate& pose, const Prior& prior) {
   from_prior_ += pose.mode == PoseMode::kPriorOnly ? 1 : 0;
 }
 
-void RunOutput::add_map_points(const std::vector<MapPoint>& points) {
-  for (const MapPoint& point : points) {
-    map_.add(static_cast<float>(point.p_map.x()), static_cast<float>(point.p_map.y()),
-             static_cast<float>(point.p_map.z()), point.intensity);
-  }
+MapExport RunOutput::write_map(TileStore& store, const MapHeader& header) {
+  return export_map(store, header, std::nullopt, map_);
 }
 
 void RunOutput::close(const std::vector<RunCount>& counts) {

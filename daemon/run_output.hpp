@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "core/estimates.hpp"
-#include "core/map/map_point.hpp"
+#include "daemon/map_export.hpp"
+#include "daemon/tile_store/file_tile_store.hpp"
 #include "tools/report/replay_output.hpp"
 
 namespace isobar {
@@ -25,9 +26,14 @@ struct RunCount {
 class RunOutput {
  public:
   explicit RunOutput(const std::filesystem::path& directory);
+  /// Where the tiles of the map belong.
+  [[nodiscard]] static std::filesystem::path map_directory(const std::filesystem::path& directory) {
+    return directory / "map";
+  }
 
   void add_pose(const PoseEstimate& pose, const Prior& prior);
-  void add_map_points(const std::vector<MapPoint>& points);
+  /// map.ply, at the end of the run, of all that is in the store of the run. Returns what was done.
+  MapExport write_map(TileStore& store, const MapHeader& header);
   void write_settings(std::string_view toml) const { poses_.write_settings(toml); }
   void close(const std::vector<RunCount>& counts);
 
@@ -39,7 +45,8 @@ class RunOutput {
  private:
   std::filesystem::path directory_;
   report::ReplayOutputWriter poses_;
-  report::PlyWriter map_;
+  report::PlyWriter
+      map_;  ///< without a point until the end, so that no earlier run's is taken for this one's
   std::uint64_t registered_ = 0;
   std::uint64_t from_prior_ = 0;
 };

@@ -2,6 +2,7 @@
 #include "daemon/stage_settings.hpp"
 
 #include "core/errors.hpp"
+#include "core/map/grid.hpp"
 
 namespace isobar {
 
@@ -29,6 +30,14 @@ StageSettings stage_settings(const Config& config) {
   settings.method = config.method;
   settings.T_base_lidar = config.lidar.mount.T_base_sensor();
   return settings;
+}
+
+MapHeader map_header(const Config& config) {
+  return {.tile_m = config.map.cell_m * kTileCells, .cell_m = config.map.cell_m};
+}
+
+TileStoreLimits map_limits(const Config& config) {
+  return {.max_bytes = static_cast<std::uint64_t>(config.map_files.max_disk_gb * 1e9)};
 }
 
 Config with_sensors_of(const recording::Manifest& manifest, Config config) {

@@ -20,6 +20,7 @@ void add_config_command(CLI::App& app);    ///< config.cpp: check, show
 void add_play_command(CLI::App& app);      ///< play.cpp: recording -> UDP in real time
 void add_altitude_command(CLI::App& app);  ///< altitude.cpp: pressures -> heights
 void add_noise_command(CLI::App& app);  ///< noise.cpp: pressures -> sigma, Allan deviation, filter settings
+void add_map_command(CLI::App& app);    ///< map_command.cpp: the map of a run: what is in it, as points
 void add_echo_command(CLI::App& app);   ///< echo.cpp: what a DDS subscriber receives
 
 }  // namespace isobar::tools

@@ -26,6 +26,7 @@ int run(int argc, char** argv) {
   isobar::tools::add_altitude_command(app);
   isobar::tools::add_calibrate_command(app);
   isobar::tools::add_play_command(app);
+  isobar::tools::add_map_command(app);
   isobar::tools::add_config_command(app);
 #if ISOBAR_WITH_DDS
   isobar::tools::add_echo_command(app);

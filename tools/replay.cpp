@@ -29,7 +29,9 @@ struct ReplayOptions {
 bool is_ordinary(const std::string& name) {
   return name == "lidar packets" || name == "lidar returns" || name == "lidar scans" ||
          name == "imu samples" || name == "barometer samples" || name == "base samples" ||
-         name == "wheel samples" || name == "lidar position packets" || name == "map cells seen through";
+         name == "wheel samples" || name == "lidar position packets" || name == "map cells seen through" ||
+         name == "map tiles stored" || name == "map tiles brought back" ||
+         name == "map tiles moved between files";
 }
 
 void print_summary(const ReplaySummary& summary, const std::filesystem::path& out) {
@@ -47,7 +49,7 @@ void print_summary(const ReplaySummary& summary, const std::filesystem::path& ou
               static_cast<unsigned long long>(summary.map_points));
   std::printf("%.1f s of recording in %.1f s, %.1f times real time\n", summary.recorded_s, summary.wall_s,
               summary.wall_s > 0.0 ? summary.recorded_s / summary.wall_s : 0.0);
-  std::printf("written: %s/trajectory.tum map.ply status.csv counters.csv settings.toml\n", out.c_str());
+  std::printf("written: %s/trajectory.tum map.ply map/ status.csv counters.csv settings.toml\n", out.c_str());
 }
 
 void run(const ReplayOptions& options) {
@@ -72,7 +74,9 @@ void add_replay_command(CLI::App& app) {
   command->add_option("RECORDING", options->recording, "recording folder")->required();
   command->add_option("--config", options->config, "TOML file; sensors and mounts come from the recording");
   command->add_option("--method", options->method, method_names() + " (default: the configuration's)");
-  command->add_option("--out", options->out, "folder for trajectory.tum, map.ply, status.csv, settings.toml")
+  command
+      ->add_option("--out", options->out,
+                   "folder for trajectory.tum, map.ply, map/, status.csv, settings.toml")
       ->required();
   command->callback([options] { run(*options); });
 }

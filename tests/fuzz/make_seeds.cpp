@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "config/config_io.hpp"
+#include "daemon/tile_store/file_tile_store.hpp"
 #include "drivers/recording/recording_writer.hpp"
 #include "tests/drivers/velodyne/packet_builder.hpp"
 
@@ -81,6 +82,24 @@ void recording_seeds() {
   save("fuzz_toml", "manifest", load(folder / "recording.toml"));
 }
 
+void tile_store_seeds() {
+  const auto folder = root / "map";
+  {
+    const auto store = FileTileStore::create(folder, {}, {});
+    for (int n = 0; n < 5; ++n)
+      store->put({n % 4, n, -n}, std::vector<std::byte>(static_cast<std::size_t>(20 + n)));
+  }
+  const std::string tiles = load(folder / "00000000.tiles");
+  const std::string index = load(folder / "00000000.index");
+  const auto length = [](const std::string& text) {
+    return std::string{static_cast<char>(text.size() & 255U), static_cast<char>(text.size() >> 8U)};
+  };
+  save("fuzz_tile_store", "whole", length(tiles) + length(index) + tiles + index);
+  save("fuzz_tile_store", "no_index", length(tiles) + length("") + tiles);
+  save("fuzz_tile_store", "header",
+       length(tiles) + length("") + tiles + "format = 1\ntile_m = 8.0\ncell_m = 0.25\n");
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -91,6 +110,7 @@ int main(int count, char** arguments) {
   root = arguments[1];
   velodyne_seeds();
   recording_seeds();
+  tile_store_seeds();
   save("fuzz_toml", "config", show_config(Config{}));
   save("fuzz_toml", "short",
        "method = \"4dof\"\n[lidar]\nmodel = \"HDL-32E\"\nxyz_m = [0.1, 0, 0.45]\n[map]\ncell_m = 0.3\n");

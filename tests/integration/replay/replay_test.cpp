@@ -4,6 +4,9 @@
 #include <algorithm>
 
 #include "config/config_io.hpp"
+#include "daemon/map_export.hpp"
+#include "daemon/stage_settings.hpp"
+#include "daemon/tile_store/file_tile_store.hpp"
 #include "drivers/recording/reference.hpp"
 #include "tests/integration/replay/recordings.hpp"
 
@@ -21,6 +24,37 @@ TEST_CASE("replaying the same recording twice gives the same trajectory and the 
   const std::string map = bytes_of(first / "map.ply");
   REQUIRE(map.size() > 10'000);
   CHECK(map == bytes_of(second / "map.ply"));
+}
+
+TEST_CASE("the map of a run lies in its folder, whole, and map.ply is what it holds") {
+  std::filesystem::path out;
+  const ReplaySummary summary = run(short_drive(), out);
+  const auto store = FileTileStore::open_to_read(out / "map");
+  CHECK(store->tile_count() >= 8);  // a room with stairs, tiles of 8 m
+  CHECK(store->header() == map_header(Config{}));
+  const std::filesystem::path exported = out / "again.ply";
+  report::PlyWriter ply(exported);
+  const MapExport done = export_map(*store, store->header(), std::nullopt, ply);
+  ply.close();
+  CHECK(done.points == summary.map_points);
+  CHECK(done.unreadable == 0);
+  CHECK(bytes_of(exported) == bytes_of(out / "map.ply"));
+}
+
+TEST_CASE("a map that may not get large forgets tiles and says how many; the poses stay as they are") {
+  std::filesystem::path whole;
+  run(short_drive(), whole);
+  Config config;
+  // Less than the configuration file may say, because the drive is short.
+  const std::uint64_t limit = FileTileStore::open_to_read(whole / "map")->disk_bytes() * 3 / 4;
+  config.map_files.max_disk_gb = static_cast<double>(limit) * 1e-9;
+  const std::filesystem::path out = fresh_folder("small-map");
+  const ReplaySummary summary = replay(short_drive(), config, out, [](double) {});
+  CHECK(summary.registered >= summary.scans - 8);
+  CHECK(count_of(summary, "map tiles forgotten at the limit") > 0);
+  CHECK(count_of(summary, "map tiles missing in map.ply") == 0);
+  CHECK(FileTileStore::open_to_read(out / "map")->disk_bytes() <= limit);
+  CHECK(bytes_of(out / "trajectory.tum") == bytes_of(whole / "trajectory.tum"));
 }
 
 TEST_CASE("every scan gets a pose, in order, and nearly all are registered") {
