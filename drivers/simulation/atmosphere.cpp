@@ -28,6 +28,14 @@ void add_pulse(std::vector<double>& pressure, double start_s, double duration_s,
   }
 }
 
+/// Of the wind of driving: half the density of air times the speed squared.
+double dynamic_pressure_pa(const std::vector<RawPose>& raw, std::size_t i) {
+  constexpr double kAirKgM3 = 1.2;
+  if (i == 0) return 0.0;
+  const double speed = std::hypot(raw[i].x_m - raw[i - 1].x_m, raw[i].y_m - raw[i - 1].y_m) / kStepS;
+  return 0.5 * kAirKgM3 * speed * speed;
+}
+
 /// A step at every change of zone, washed out over the second or two in which air follows a door.
 void add_zones(std::vector<double>& pressure, const std::vector<int>& zones, double sigma_pa,
                Random& random) {
@@ -76,6 +84,7 @@ Atmosphere::Atmosphere(const Scenario& scenario, const AirErrors& errors, Random
     base[i] = at_base.step(kStepS);
     const double climb_m_s = i == 0 ? 0.0 : (scenario.raw[i].z_m - scenario.raw[i - 1].z_m) / kStepS;
     robot[i] += scenario.air.piston_pa_s_m * (errors.pulse_pa > 0.0 ? climb_m_s : 0.0);
+    robot[i] += scenario.air.port_coefficient * dynamic_pressure_pa(scenario.raw, i);
   }
   add_zones(robot, scenario.air.zone, errors.zone_sigma_pa, random);
   if (scenario.air.door_pulses_1_s > 0.0 && errors.pulse_pa > 0.0) {

@@ -35,7 +35,7 @@ PathGeometry::PathGeometry(const std::vector<Waypoint>& waypoints, double start_
       turn = wrap(std::atan2(next.y(), next.x()) - yaw);
     }
     // Slight bends are driven in wide arcs, without slowing down.
-    const double radius = std::abs(turn) < 0.3 ? 6.0 : limits.corner_radius_m;
+    const double radius = std::abs(turn) < 0.3 ? limits.bend_radius_m : limits.corner_radius_m;
     const double tangent = radius * std::tan(0.5 * std::abs(turn));
     const double straight = way.norm() - tangent;
     if (straight < -1e-9) throw std::logic_error("waypoints are too close for the corner between them");

@@ -22,15 +22,19 @@ double span_m(const Corridor& corridor, std::size_t leg) {
 
 bool can_walk(const Corridor& corridor, std::size_t leg) { return span_m(corridor, leg) > 1.0; }
 
-MovingBody make_walker(const Corridor& corridor, std::size_t leg, double floor_z_m, std::size_t samples,
-                       Random& random) {
+Mesh make_person(Random& random) {
   const double height = random.uniform(1.55, 1.90);
   Mesh body;
   body.prism({-0.07, 0.10, 0.0}, 0.08, 0.48 * height, 6, Surface::kCloth);
   body.prism({0.07, -0.10, 0.0}, 0.08, 0.48 * height, 6, Surface::kCloth);
   body.prism({0.0, 0.0, 0.48 * height}, 0.20, 0.36 * height, 8, Surface::kCloth);
   body.prism({0.0, 0.0, 0.85 * height}, 0.10, 0.15 * height, 8, Surface::kCloth);
+  return body;
+}
 
+MovingBody make_walker(const Corridor& corridor, std::size_t leg, double floor_z_m, std::size_t samples,
+                       Random& random) {
+  const Mesh body = make_person(random);
   const Vector2d from = corridor.corners_m[leg];
   const Vector2d way = corridor.corners_m[leg + 1] - from;
   const Vector2d along = way.normalized();

@@ -101,10 +101,12 @@ void Route::drive(const std::vector<Waypoint>& waypoints) {
   }
 }
 
-void add_shaking(std::vector<RawPose>& samples, const std::vector<LabelledSpan>& labels, Random random) {
+void add_shaking(std::vector<RawPose>& samples, const std::vector<LabelledSpan>& labels, Random random,
+                 const ShakeSizes& on_flat) {
   // Sizes: tracked robots on hard floor roll and pitch by a few tenths of a degree, on steps by about a
   // degree at the frequency of the steps (attitude logs of the paper's platform; Okada et al. 2010).
   constexpr double kDegree = std::numbers::pi / 180.0;
+  constexpr ShakeSizes kOnStairs{0.8, 1.0, 0.8, 0.006};
   GaussMarkov roll(1.0, 0.25, Random(random.next()));
   GaussMarkov pitch(1.0, 0.25, Random(random.next()));
   GaussMarkov yaw(1.0, 0.6, Random(random.next()));
@@ -121,10 +123,11 @@ void add_shaking(std::vector<RawPose>& samples, const std::vector<LabelledSpan>&
     before = here;
     strength += 0.25 * (std::min(1.0, speed / 0.4) - strength);  // fades in and out over 0.2 s
     const bool stairs = labels[span].label == "stairs" && std::abs(pose.pitch_rad) > 0.1;
-    pose.roll_rad += strength * roll.step(kStepS) * (stairs ? 0.8 : 0.15) * kDegree;
-    pose.pitch_rad += strength * pitch.step(kStepS) * (stairs ? 1.0 : 0.15) * kDegree;
-    pose.yaw_rad += strength * yaw.step(kStepS) * (stairs ? 0.8 : 0.4) * kDegree;
-    pose.z_m += strength * heave.step(kStepS) * (stairs ? 0.006 : 0.001);
+    const ShakeSizes& sizes = stairs ? kOnStairs : on_flat;
+    pose.roll_rad += strength * roll.step(kStepS) * sizes.roll_deg * kDegree;
+    pose.pitch_rad += strength * pitch.step(kStepS) * sizes.pitch_deg * kDegree;
+    pose.yaw_rad += strength * yaw.step(kStepS) * sizes.yaw_deg * kDegree;
+    pose.z_m += strength * heave.step(kStepS) * sizes.heave_m;
   }
 }
 

@@ -31,6 +31,7 @@ struct PlatformLimits {
   double acceleration_m_s2 = 0.5;
   double turn_rate_rad_s = 0.6;
   double corner_radius_m = 0.65;
+  double bend_radius_m = 6.0;     ///< of bends too slight to slow down for
   double convex_blend_m = 0.20;   ///< half length over which it tips over an upper edge
   double concave_blend_m = 0.45;  ///< half length over which it rides out of a lower edge: half the tracks
 };
@@ -62,8 +63,17 @@ class Route {
   std::vector<LabelledSpan> labels_;
 };
 
+/// Rms of the small motions at full strength, from 0.4 m/s on. Defaults: tracks on hard floor.
+struct ShakeSizes {
+  double roll_deg = 0.15;
+  double pitch_deg = 0.15;
+  double yaw_deg = 0.4;
+  double heave_m = 0.001;
+};
+
 /// The small motions of tracks on a floor and of tracks rattling over step edges: adds band-limited roll,
 /// pitch, yaw and height to the raw poses, growing with speed and larger on stairs.
-void add_shaking(std::vector<RawPose>& samples, const std::vector<LabelledSpan>& labels, Random random);
+void add_shaking(std::vector<RawPose>& samples, const std::vector<LabelledSpan>& labels, Random random,
+                 const ShakeSizes& on_flat = {});
 
 }  // namespace isobar::simulation

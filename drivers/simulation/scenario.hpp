@@ -23,9 +23,10 @@ struct SensorMounts {
 
 /// Air between doors: which ventilated zone the robot is in, on the time grid.
 struct AirZones {
-  std::vector<int> zone;         ///< a raw sample
-  double door_pulses_1_s = 0.0;  ///< mean rate of doors moving somewhere near
-  double piston_pa_s_m = 0.0;    ///< pressure in an elevator's cabin a m/s of climb
+  std::vector<int> zone;          ///< a raw sample
+  double door_pulses_1_s = 0.0;   ///< mean rate of doors moving somewhere near
+  double piston_pa_s_m = 0.0;     ///< pressure in an elevator's cabin a m/s of climb
+  double port_coefficient = 0.0;  ///< share of the dynamic pressure of driving that the port feels
 };
 
 struct Scenario {
@@ -37,6 +38,7 @@ struct Scenario {
   AirZones air;
   SensorMounts mounts;
   bool has_wheels = true;
+  bool tracked = true;                   ///< its wheels are tracks, with their slip
   double air_temperature_c = 20.0;       ///< of the column of air between base station and robot
   double base_height_m = 1.0;            ///< of the base station's port in the world frame
   double start_pressure_pa = 101'325.0;  ///< at height 0 and time 0
@@ -46,5 +48,7 @@ struct Scenario {
 [[nodiscard]] Scenario make_elevator(std::uint64_t seed, bool short_form);
 [[nodiscard]] Scenario make_moulin(std::uint64_t seed, bool short_form);
 [[nodiscard]] Scenario make_stairs_demo(std::uint64_t seed, bool short_form);
+[[nodiscard]] Scenario make_city(std::uint64_t seed, bool short_form);
+[[nodiscard]] Scenario make_city_10km(std::uint64_t seed, bool short_form);
 
 }  // namespace isobar::simulation

@@ -36,6 +36,9 @@ constexpr std::array kEntries{
     Entry{"moulin", "hanging sphere, lowered into a shaft of ice and pulled up again", make_moulin},
     Entry{"stairs-demo", "tracked robot, a corridor, down a staircase to the next floor and on",
           make_stairs_demo},
+    Entry{"city", "wheeled robot, 2 km of hilly streets with traffic at 6 to 10 m/s", make_city},
+    Entry{"city-10km", "the same over 10 km, nearly all of it through streets never seen before",
+          make_city_10km},
 };
 
 const Entry& find_entry(const std::string& name) {
@@ -93,7 +96,8 @@ void write_imu(const Run& run) {
 }
 
 void write_wheels(const Run& run) {
-  WheelModel wheels(run.scenario.trajectory, WheelErrors::draw(run.random("wheel errors")),
+  WheelModel wheels(run.scenario.trajectory,
+                    WheelErrors::draw(run.random("wheel errors"), run.scenario.tracked),
                     run.random("wheel noise"));
   Random jitter = run.random("wheel stamps");
   for (double t = 0.003; t <= run.duration_s; t += 1.0 / WheelModel::kRateHz) {

@@ -6,11 +6,22 @@
 
 namespace isobar::simulation {
 
-WheelErrors WheelErrors::draw(Random random) {
+WheelErrors WheelErrors::draw(Random random, bool tracked) {
   // Skid steering: Martinez et al. 2005, "Approximating kinematics for tracked mobile robots", find an
   // effective track width 1.3 to 1.7 times the real one, known to some per cent after calibration, and a few
   // per cent of slip. Tracks that climb steps lose up to a tenth of their motion.
   WheelErrors errors;
+  if (!tracked) {
+    // Tyres: Borenstein and Feng 1996, "Measurement and correction of systematic odometry errors": fractions
+    // of a per cent to a per cent, wheelbase and steering known a little worse, hardly any slip on asphalt.
+    errors.scale = random.normal(0.005);
+    errors.turn_scale = random.normal(0.015);
+    errors.slip_sigma = random.uniform(0.002, 0.005);
+    errors.turn_slip_sigma = random.uniform(0.01, 0.03);
+    errors.noise_m_s = random.uniform(0.01, 0.03);
+    errors.noise_rad_s = random.uniform(0.003, 0.01);
+    return errors;
+  }
   errors.scale = random.normal(0.01);
   errors.turn_scale = random.normal(0.06);
   errors.slip_sigma = random.uniform(0.01, 0.02);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Odometry of a tracked robot: track speeds turned into a twist by somebody's nominal geometry.
+// Odometry of a robot: speeds of tracks or wheels turned into a twist by somebody's nominal geometry.
 #pragma once
 
 #include "core/samples.hpp"
@@ -18,7 +18,8 @@ struct WheelErrors {
   double noise_m_s = 0.0;
   double noise_rad_s = 0.0;
 
-  [[nodiscard]] static WheelErrors draw(Random random);
+  /// Of tracks, or of a vehicle that steers and rolls on tyres.
+  [[nodiscard]] static WheelErrors draw(Random random, bool tracked = true);
 };
 
 /// Samples must be taken in time order.

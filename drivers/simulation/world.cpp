@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/simulation/world.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace isobar::simulation {
@@ -9,13 +10,18 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 World::World(const Mesh& standing, std::vector<MovingBody> moving)
-    : standing_(standing), moving_(std::move(moving)) {}
+    : standing_(standing), moving_(std::move(moving)) {
+  for (const MovingBody& body : moving_) samples_ = std::max(samples_, body.first + body.x_m.size());
+}
 
 void World::look(double time_s, const Vector3d& eye, double range_m, Moment& moment) const {
   moment.bodies.clear();
   if (moving_.empty()) return;
-  const SplineWeights weights = SplineGrid::weights(time_s, moving_.front().x_m.size());
+  const SplineWeights now = SplineGrid::weights(time_s, samples_);
   for (const MovingBody& body : moving_) {
+    if (now.first < body.first || now.first + now.value.size() > body.first + body.x_m.size()) continue;
+    SplineWeights weights = now;
+    weights.first -= body.first;
     const Vector3d origin(body.x_m.value(weights), body.y_m.value(weights), body.z_m.value(weights));
     const Vector3f half = 0.5F * (body.shape.high() - body.shape.low());
     const Vector3f centre = origin.cast<float>() + body.shape.low() + half;

@@ -16,6 +16,8 @@ struct MovingBody {
   Channel x_m;      ///< where its frame is, on the time grid of the scenario
   Channel y_m;
   Channel z_m;
+  std::size_t first = 0;  ///< raw sample of the scenario that its channels begin with: it is there from then
+                          ///< until they end
 };
 
 /// Immutable; any number of threads may cast at any times.
@@ -44,6 +46,7 @@ class World {
  private:
   RayCaster standing_;
   std::vector<MovingBody> moving_;
+  std::size_t samples_ = 0;  ///< of the scenario, as far as bodies are there
 };
 
 }  // namespace isobar::simulation

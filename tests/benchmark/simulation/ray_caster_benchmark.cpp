@@ -49,9 +49,12 @@ void rays(benchmark::State& state, Scenario (*make)(std::uint64_t, bool)) {
 
 BENCHMARK_CAPTURE(rays, three_floors, make_three_floors);
 BENCHMARK_CAPTURE(rays, moulin, make_moulin);
+BENCHMARK_CAPTURE(rays, city, make_city);
+BENCHMARK_CAPTURE(rays, city_10km, make_city_10km);
 BENCHMARK_CAPTURE(packets, three_floors, make_three_floors);
 BENCHMARK_CAPTURE(packets, elevator, make_elevator);
 BENCHMARK_CAPTURE(packets, moulin, make_moulin);
+BENCHMARK_CAPTURE(packets, city, make_city);
 
 }  // namespace
 

@@ -106,7 +106,7 @@ TEST_CASE("three-floors is the paper's run: 311 m of corridors, 12 m of height, 
 }
 
 TEST_CASE("short forms last 30 to 90 s, whole runs start with 3 to 8 s of rest") {
-  for (const auto make : {make_three_floors, make_elevator, make_moulin, make_stairs_demo}) {
+  for (const auto make : {make_three_floors, make_elevator, make_moulin, make_stairs_demo, make_city}) {
     const Scenario brief = make(4, true);
     CHECK(brief.trajectory.duration_s() > 30.0);
     CHECK(brief.trajectory.duration_s() < 90.0);
