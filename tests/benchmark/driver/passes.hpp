@@ -15,7 +15,7 @@ namespace isobar::bench {
 
 /// CPU time and more of one scan.
 struct ScanCosts {
-  double decode_ms = 0.0;
+  double decode_ms = 0.0;        ///< 0 where there are no packets
   double registration_ms = 0.0;  ///< deskew to solve
   double map_ms = 0.0;           ///< 0 where the map did not want the scan, but for asking
   double hand_over_ms = 0.0;     ///< where map_changed

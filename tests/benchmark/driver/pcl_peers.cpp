@@ -29,7 +29,6 @@ PeerCloud::Ptr thinned(std::span<const ScanPoint> cloud) {
     all->push_back(point);
   }
   pcl::ApproximateVoxelGrid<pcl::PointNormal> filter;
-  filter.setDownsampleAllData(false);
   filter.setLeafSize(kScanVoxelM, kScanVoxelM, kScanVoxelM);
   filter.setInputCloud(all);
   PeerCloud::Ptr thin(new PeerCloud);

@@ -141,7 +141,8 @@ Json stages_json(const std::vector<Pass>& passes, const std::vector<StageCosts>&
     updates.push_back(map_ms[i]);
     hand_overs.push_back(hand_over_ms[i]);
   }
-  return {{"decode", of([](const ScanCosts& scan) { return scan.decode_ms; })},
+  const bool decodes = passes.front().scans.front().decode_ms > 0.0;
+  return {{"decode", decodes ? of([](const ScanCosts& scan) { return scan.decode_ms; }) : Json()},
           {"deskew", stage(&StageCosts::deskew_ms)},
           {"sample", stage(&StageCosts::sample_ms)},
           {"match", stage(&StageCosts::match_ms)},
