@@ -23,10 +23,10 @@ Json peers_json(DataSet& data, std::size_t scans) {
   return peer_figures(data, measure_peers(data, std::move(peers), scans));
 }
 
-Json run_on(DataSet& data, const DriverOptions& options, bool first) {
+Json run_on(DataSet& data, const DriverOptions& options) {
   std::vector<Pass> passes;
   for (int i = 0; i < options.repeat; ++i) {
-    passes.push_back(measure_pass(data, first && i == 0));
+    passes.push_back(measure_pass(data, i == 0));
     if (passes.back().scans.empty()) throw DataError(data.name() + ": not one scan could be decoded");
   }
   Json result =
@@ -41,8 +41,7 @@ Json run_benchmark(const DriverOptions& options) {
   Json result{{"machine", machine_json()}, {"data", Json::array()}};
   for (const std::string& what : options.data) {
     const auto data = open_data_set(what, options.data_options);
-    // Memory that one data set left behind would hide how the next one grows: only the first tells.
-    result["data"].push_back(run_on(*data, options, result["data"].empty()));
+    result["data"].push_back(run_on(*data, options));
   }
   return result;
 }

@@ -46,8 +46,8 @@ struct Pass {
 };
 
 /// Runs decoder, registration and map over all scans and measures each on its own. `look_at_memory`: see how
-/// the process grows, which only the first pass of a process can tell, and which disturbs a scan in a
-/// hundred.
+/// the process grows. Only the first pass over a data set can tell (what it frees goes back to the system but
+/// for pages that are still in part used), and each look disturbs the next scan.
 Pass measure_pass(DataSet& data, bool look_at_memory);
 
 /// Runs them once more and splits the time of each registration by stage, for scans that were registered.
