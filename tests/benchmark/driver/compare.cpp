@@ -21,7 +21,8 @@ void collect(const Json& data, std::vector<std::pair<std::string, double>>& figu
   const auto add_rows = [&](const Json& rows, const std::string& unit) {
     for (const auto& [key, row] : rows.items()) {
       if (!row.is_object()) continue;
-      for (const char* figure : {"median", "p99", "mean"}) add(key + ", " + figure + unit, row[figure]);
+      for (const char* figure : {"median", "p99", "mean"})
+        add(std::string(key).append(", ").append(figure).append(unit), row[figure]);
     }
   };
   add_rows(data["ms"], " ms");
@@ -58,6 +59,7 @@ Json figure_json(const std::string& name, const std::vector<double>& a, const st
 
 std::vector<Json> read_all(const std::vector<std::string>& files) {
   std::vector<Json> results;
+  results.reserve(files.size());
   for (const std::string& file : files) results.push_back(read_json(file));
   return results;
 }

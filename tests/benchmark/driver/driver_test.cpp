@@ -2,6 +2,7 @@
 #include "tests/benchmark/driver/driver.hpp"
 
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 #include <cstring>
 #include <fstream>
@@ -96,7 +97,9 @@ TEST_CASE("a run on a simulated recording gives every figure, and registration a
   CHECK(data.at("memory").at("end_bytes") > 1e6);
   CHECK(data.at("memory").at("cells") > 100);
   CHECK(data.at("growth").at("mean_ratio") > 0.0);
-  for (const auto& [key, row] : data.at("counters").items()) {
+  for (const auto& item : data.at("counters").items()) {
+    const std::string& key = item.key();
+    const Json& row = item.value();
     CAPTURE(key);
     CHECK((row.is_string() || row.at("max") > 1e3));  // or why there are none
   }

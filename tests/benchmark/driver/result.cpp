@@ -129,6 +129,7 @@ Json stages_json(const std::vector<Pass>& passes, const std::vector<StageCosts>&
   const auto of = [&](auto figure) { return quantiles_json(over_passes(passes, figure)); };
   const auto stage = [&](double StageCosts::*member) {
     std::vector<double> values;
+    values.reserve(stages.size());
     for (const StageCosts& costs : stages) values.push_back(costs.*member);
     return quantiles_json(values);
   };
