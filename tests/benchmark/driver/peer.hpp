@@ -30,9 +30,10 @@ class Peer {
   virtual void update_map(std::span<const ScanPoint> cloud, const Eigen::Isometry3d& T_map_base) = 0;
 };
 
-/// Settings that all share with ours.
+/// Settings that they share with ours.
 struct PeerSettings {
-  double max_distance_m = 0.8;  ///< between a point and its partner
+  double first_distance_m = 0.8;  ///< largest between a point and its partner, of our first iteration …
+  double last_distance_m = 0.35;  ///< … and of our last: a peer has one, and takes what suits it
   int max_iterations = 12;
   double convergence_m = 0.0008;
   double map_radius_m = 70.0;
