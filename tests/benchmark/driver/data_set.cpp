@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/benchmark/driver/data_set.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "drivers/recording/manifest.hpp"
+#include "drivers/simulation/simulate.hpp"
+
+namespace isobar::bench {
+
+namespace {
+
+/// Folder of the scenario's recording, made now if it was not yet. A run cut short has a folder of its own.
+std::filesystem::path simulated(const std::string& scenario, const DataSetOptions& options) {
+  std::string name = scenario + "-" + std::to_string(options.seed);
+  if (std::isfinite(options.stop_after_s))
+    name += "-" + std::to_string(std::lround(options.stop_after_s)) + "s";
+  const std::filesystem::path folder = options.cache / name;
+  if (std::filesystem::exists(folder)) return folder;
+  std::fprintf(stderr, "simulating %s\n", name.c_str());
+  // Under another name until it is complete, so that a run that was stopped leaves no half recording.
+  const std::filesystem::path unfinished = options.cache / (name + ".unfinished");
+  std::filesystem::remove_all(unfinished);
+  std::filesystem::create_directories(options.cache);
+  simulation::ScenarioRequest request;
+  request.name = scenario;
+  request.seed = options.seed;
+  request.stop_after_s = options.stop_after_s;
+  simulation::simulate(request, unfinished, {});
+  std::filesystem::rename(unfinished, folder);
+  return folder;
+}
+
+}  // namespace
+
+std::unique_ptr<DataSet> open_data_set(const std::string& what, const DataSetOptions& options) {
+  std::filesystem::path path = std::filesystem::path(what).lexically_normal();
+  if (path.filename().empty()) path = path.parent_path();  // "folder/"
+  if (std::filesystem::is_directory(path)) {
+    return std::filesystem::exists(path / recording::kManifestFile)
+               ? open_recording(path, options.stop_after_s)
+               : open_clouds(path, options.stop_after_s);
+  }
+  return open_recording(simulated(what, options), options.stop_after_s);
+}
+
+}  // namespace isobar::bench
