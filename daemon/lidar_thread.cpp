@@ -10,7 +10,8 @@ LidarThread::LidarThread(const velodyne::VelodyneConfig& config, const std::stri
     : settings_(std::move(settings)),
       receiver_(address, port),
       decoder_(config),
-      publisher_(ipc::topics::kLidarScan) {}
+      publisher_(ipc::topics::kLidarScan),
+      deadline_(settings_.deadline_ms) {}
 
 LidarThread::~LidarThread() {
   stop();
@@ -30,7 +31,8 @@ void LidarThread::loop() noexcept {
   (void)apply_to_this_thread(settings_);
   loaned_ = publisher_.loan();
   receive_until_stopped(
-      receiver_, [this](const ReceivedDatagram& datagram) { take_packet(datagram); }, [this] { report(); });
+      receiver_, heartbeat_, [this](const ReceivedDatagram& datagram) { take_packet(datagram); },
+      [this] { report(); });
 }
 
 void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
@@ -41,7 +43,9 @@ void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
 
 void LidarThread::hand_over() noexcept {
   if (loaned_ != nullptr) {
+    const std::int64_t end_ns = loaned_->end_stamp_ns;
     publisher_.publish(loaned_);
+    deadline_.note(end_ns, RobotClock::now_ns());
   } else {
     ++own_.scans_without_memory;
   }
@@ -53,6 +57,7 @@ void LidarThread::report() noexcept {
     decoder_.wrong_model_message().copy(own_.wrong_model_message.data(), own_.wrong_model_message.size() - 1);
   }
   own_.counters = decoder_.counters();
+  own_.punctuality = deadline_.status();
   own_.dropped_by_kernel = receiver_.dropped_by_kernel();
   status_.put(own_);
 }

@@ -7,6 +7,8 @@
 #include <exception>
 
 #include "daemon/cpu_time.hpp"
+#include "daemon/message_loop.hpp"
+#include "drivers/datagram/udp.hpp"
 
 namespace isobar {
 
@@ -19,7 +21,8 @@ MapThread::MapThread(const MapConfig& config, const Eigen::Isometry3d& T_base_li
       clouds_(ipc::topics::kMapCloud),
       waiter_({&scans_.raw()}),
       output_(output),
-      cloud_interval_ns_(static_cast<std::int64_t>(cloud_interval_s * 1e9)) {}
+      cloud_interval_ns_(static_cast<std::int64_t>(cloud_interval_s * 1e9)),
+      deadline_(settings_.deadline_ms) {}
 
 MapThread::~MapThread() { stop(); }
 
@@ -34,27 +37,37 @@ void MapThread::stop() noexcept {
 
 void MapThread::loop() noexcept {
   (void)apply_to_this_thread(settings_);
-  while (waiter_.wait() != ipc::Waiter::Event::kStopped) drain();
-  drain();
+  drain_until_stopped(waiter_, heartbeat_, [this] { drain(); });
   points_.clear();
   map_.append_points(points_);
   write_evicted();
 }
 
+// Freshness wins: of several scans that wait only the newest goes into the map, the registration needs it
+// now.
 void MapThread::drain() noexcept {
-  while (const auto scan = scans_.take()) {
-    points_.clear();
-    const CpuTimer timer;
-    if (map_.update(*scan, points_)) {
-      snapshots_.publish(map_.snapshot());
-      own_.update_ms = timer.elapsed_ms();
-    }
-    write_evicted();
-    publish_cloud(scan->pose.stamp_ns);
+  auto newest = scans_.take();
+  while (auto newer = scans_.take()) {
+    newest = std::move(newer);
+    ++overtaken_;
   }
-  own_.dropped_scans = scans_.dropped();
+  if (newest) add(*newest);
+  own_.dropped_scans = scans_.dropped() + overtaken_;
+  own_.punctuality = deadline_.status();
   own_.cells = map_.cell_count();
   status_.put(own_);
+}
+
+void MapThread::add(const RegisteredScan& scan) noexcept {
+  points_.clear();
+  const CpuTimer timer;
+  if (map_.update(scan, points_)) {
+    snapshots_.publish(map_.snapshot());
+    own_.update_ms = timer.elapsed_ms();
+  }
+  deadline_.note(scan.handed_over_ns, RobotClock::now_ns());
+  write_evicted();
+  publish_cloud(scan.pose.stamp_ns);
 }
 
 void MapThread::write_evicted() noexcept {

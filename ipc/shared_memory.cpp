@@ -326,7 +326,7 @@ bool RawSubscriber::has_data() const noexcept { return impl_->subscriber.hasData
 // ---------------------------------------------------------------------------------------------- Waiter
 
 struct Waiter::Impl {
-  iox::popo::UserTrigger stop_trigger;
+  iox::popo::UserTrigger trigger;
   iox::popo::WaitSet<Waiter::kMaxSubscribers + 1> set;
   std::atomic<bool> stopped{false};
 
@@ -345,7 +345,7 @@ struct Waiter::Impl {
 
 Waiter::Waiter(std::initializer_list<detail::RawSubscriber*> subscribers) : impl_(std::make_unique<Impl>()) {
   bool attached = subscribers.size() <= kMaxSubscribers;
-  attached = attached && !impl_->set.attachEvent(impl_->stop_trigger).has_error();
+  attached = attached && !impl_->set.attachEvent(impl_->trigger).has_error();
   for (detail::RawSubscriber* subscriber : subscribers) {
     attached = attached &&
                !impl_->set.attachState(subscriber->impl_->subscriber, iox::popo::SubscriberState::HAS_DATA)
@@ -370,7 +370,9 @@ Waiter::Event Waiter::wait_for(std::chrono::nanoseconds timeout) noexcept {
 
 void Waiter::stop() noexcept {
   impl_->stopped.store(true, std::memory_order_release);
-  impl_->stop_trigger.trigger();
+  impl_->trigger.trigger();
 }
+
+void Waiter::wake() noexcept { impl_->trigger.trigger(); }
 
 }  // namespace isobar::ipc
