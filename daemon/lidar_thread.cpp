@@ -32,7 +32,10 @@ void LidarThread::loop() noexcept {
   loaned_ = publisher_.loan();
   receive_until_stopped(
       receiver_, heartbeat_, [this](const ReceivedDatagram& datagram) { take_packet(datagram); },
-      [this] { report(); });
+      [this] {
+        report();
+        pause();
+      });
 }
 
 void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
@@ -42,6 +45,7 @@ void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
 }
 
 void LidarThread::hand_over() noexcept {
+  pacing_.scan_ended((loaned_ != nullptr ? *loaned_ : unpublished_).end_stamp_ns);
   if (loaned_ != nullptr) {
     const std::int64_t end_ns = loaned_->end_stamp_ns;
     publisher_.publish(loaned_);
@@ -50,6 +54,17 @@ void LidarThread::hand_over() noexcept {
     ++own_.scans_without_memory;
   }
   loaned_ = publisher_.loan();
+}
+
+// Only after a packet that is of now: what has gathered in the socket is fetched first.
+void LidarThread::pause() noexcept {
+  constexpr std::int64_t kOfNowNs = 1'000'000;
+  constexpr std::int64_t kNsPerMs = 1'000'000;
+  const std::int64_t now_ns = RobotClock::now_ns();
+  if (now_ns - own_.last_packet_ns > kOfNowNs) return;
+  if (const std::int64_t pause_ns = pacing_.pause_ns(now_ns); pause_ns > 0) {
+    receiver_.pause(static_cast<int>(pause_ns / kNsPerMs));
+  }
 }
 
 void LidarThread::report() noexcept {

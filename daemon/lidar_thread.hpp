@@ -7,6 +7,7 @@
 
 #include "daemon/deadline.hpp"
 #include "daemon/mailbox.hpp"
+#include "daemon/packet_pacing.hpp"
 #include "daemon/realtime.hpp"
 #include "daemon/worker_watch.hpp"
 #include "drivers/datagram/udp.hpp"
@@ -48,6 +49,7 @@ class LidarThread {
   void take_packet(const ReceivedDatagram& datagram) noexcept;
   void hand_over() noexcept;
   void report() noexcept;
+  void pause() noexcept;
 
   ThreadSettings settings_;
   UdpReceiver receiver_;
@@ -55,6 +57,7 @@ class LidarThread {
   ipc::Publisher<Scan> publisher_;
   Scan* loaned_ = nullptr;
   Scan unpublished_;  ///< decoded into while no chunk is free, so that the revolution stays in step
+  PacketPacing pacing_;
   Deadline deadline_;
   LidarStatus own_;
   Mailbox<LidarStatus> status_;

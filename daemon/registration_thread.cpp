@@ -20,7 +20,7 @@ RegistrationThread::RegistrationThread(const RegistrationConfig& config, Method 
       scans_(ipc::topics::kLidarScan),
       poses_(ipc::topics::kPose),
       registered_scans_(ipc::topics::kRegisteredScan),
-      waiter_({&priors_.raw(), &scans_.raw()}),
+      waiter_({&scans_.raw()}),
       queue_(queue),
       unpublished_(std::make_unique<RegisteredScan>()),
       without_points_(std::make_unique<Scan>()),
@@ -46,12 +46,13 @@ void RegistrationThread::loop() noexcept {
   drain();
 }
 
-// Without a limit, unless a scan waits for priors that may never come.
+// A scan wakes this thread, a prior does not: to wake for hundreds of them a second would cost as much as
+// half of the registrations. They are looked at now and then, for the time without scans, and closely while a
+// scan waits.
 ipc::Waiter::Event RegistrationThread::wait() noexcept {
-  if (queue_.empty()) return waiter_.wait();
-  constexpr std::int64_t kShortestNs = 100'000;
-  return waiter_.wait_for(
-      std::chrono::nanoseconds(std::max(queue_.due_ns() - RobotClock::now_ns(), kShortestNs)));
+  constexpr std::chrono::milliseconds kWithoutScan(50);
+  constexpr std::chrono::milliseconds kWithScan(1);
+  return waiter_.wait_for(queue_.empty() ? kWithoutScan : kWithScan);
 }
 
 void RegistrationThread::drain() noexcept {
@@ -59,12 +60,20 @@ void RegistrationThread::drain() noexcept {
     registration_.add_prior(*prior);
     newest_prior_ns_ = std::max(newest_prior_ns_, prior->stamp_ns);
   }
-  while (auto scan = scans_.take()) queue_.push(std::move(scan));
-  const auto scan = queue_.take(RobotClock::now_ns(), newest_prior_ns_);
+  const std::int64_t now_ns = RobotClock::now_ns();
+  bool came = false;
+  while (auto scan = scans_.take()) {
+    queue_.push(std::move(scan), now_ns);
+    came = true;
+  }
+  const auto scan = queue_.take(now_ns, newest_prior_ns_);
   emit_dropped();
   if (scan) register_scan(*scan);
-  // After the scans, which are older: a pose from the newest prior would make theirs come too late.
-  if (queue_.empty()) bridge_silence();
+  // After the scans, which are older: a pose from the newest prior would make theirs come too late. For the
+  // same reason never just after this thread, or the whole machine, stood still: scans may be on their way.
+  if (came || now_ns - last_look_ns_ > kStoodStillNs) quiet_since_ns_ = now_ns;
+  last_look_ns_ = now_ns;
+  if (queue_.empty() && now_ns - quiet_since_ns_ >= kQuietNs) bridge_silence();
   report();
 }
 

@@ -56,6 +56,10 @@ class RegistrationThread {
  private:
   /// Scans after which everything that is used has been touched once.
   static constexpr std::uint64_t kScansToFindPace = 20;
+  /// A thread that looks every 50 ms and has not for so long was held up.
+  static constexpr std::int64_t kStoodStillNs = 200'000'000;
+  /// Without a scan for so long nothing is on its way.
+  static constexpr std::int64_t kQuietNs = 90'000'000;
 
   void loop() noexcept;
   ipc::Waiter::Event wait() noexcept;
@@ -76,6 +80,8 @@ class RegistrationThread {
   ipc::Waiter waiter_;
   ScanQueue<ipc::Received<Scan>> queue_;
   std::int64_t newest_prior_ns_ = 0;
+  std::int64_t last_look_ns_ = 0;                // robot clock
+  std::int64_t quiet_since_ns_ = 0;              // robot clock
   std::unique_ptr<RegisteredScan> unpublished_;  ///< used while no chunk is free: the pose still goes out
   std::unique_ptr<Scan> without_points_;         ///< in place of a scan that was dropped
   SilenceBridge silence_;

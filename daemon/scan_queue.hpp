@@ -6,7 +6,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <utility>
 
@@ -15,7 +14,7 @@ namespace isobar {
 /// When a scan may be registered. It asks for the priors up to its end.
 struct ScanQueueConfig {
   std::int64_t reach_ns = 6'000'000;  ///< the newest prior may be so much older than the end of the scan
-  std::int64_t wait_ns = 50'000'000;  ///< so long after its end a scan goes on with the priors that there are
+  std::int64_t wait_ns = 50'000'000;  ///< so long after it came a scan goes on with the priors that there are
 };
 
 /// A scan that is not registered: it came too late, or it never reached this thread.
@@ -37,12 +36,13 @@ class ScanQueue {
 
   explicit ScanQueue(const ScanQueueConfig& config) : config_(config) {}
 
-  /// Takes a scan; they come in order. When too many wait the oldest is dropped.
-  void push(Handle scan) noexcept {
+  /// Takes a scan that came now; they come in order. When too many wait the oldest is dropped.
+  void push(Handle scan, std::int64_t now_ns) noexcept {
     if (count_ == kMaxWaiting) drop_oldest();
     Waiting& place = waiting_[count_++];
     const std::uint32_t step = scan->sequence - last_.sequence;
     place.before = last_;
+    place.came_ns = now_ns;
     place.missing = started_ && step > 1 && step < kMostMissing ? step - 1 : 0;
     last_ = {scan->end_stamp_ns, scan->sequence};
     started_ = true;
@@ -54,18 +54,17 @@ class ScanQueue {
   [[nodiscard]] Handle take(std::int64_t now_ns, std::int64_t newest_prior_ns) noexcept {
     for (std::size_t newest = count_; newest-- > 0;) {
       const std::int64_t end_ns = waiting_[newest].scan->end_stamp_ns;
-      if (newest_prior_ns < end_ns - config_.reach_ns && now_ns < end_ns + config_.wait_ns) continue;
+      if (newest_prior_ns < end_ns - config_.reach_ns &&
+          now_ns < waiting_[newest].came_ns + config_.wait_ns) {
+        continue;
+      }
       for (std::size_t older = 0; older < newest; ++older) drop_oldest();
       return pop_oldest();
     }
     return {};
   }
 
-  /// When take() should be asked again even if nothing comes; the largest value where no scan waits.
-  [[nodiscard]] std::int64_t due_ns() const noexcept {
-    return empty() ? std::numeric_limits<std::int64_t>::max()
-                   : waiting_[0].scan->end_stamp_ns + config_.wait_ns;
-  }
+  /// No scan waits.
   [[nodiscard]] bool empty() const noexcept { return count_ == 0; }
 
   /// What was dropped since forget_dropped(), in order of time, all of it older than what take() gave last.
@@ -80,6 +79,7 @@ class ScanQueue {
 
   struct Waiting {
     Handle scan{};
+    std::int64_t came_ns = 0;
     DroppedScan before{};       // the scan that came before it
     std::uint32_t missing = 0;  // between the two
   };

@@ -35,32 +35,39 @@ std::vector<Event> PoseListener::poses() const {
   return poses_;
 }
 
-MemoryListener::MemoryListener()
-    : attachment_("live-benchmark", std::chrono::seconds(10)),
-      scans_(ipc::topics::kLidarScan),
-      priors_(ipc::topics::kPrior),
-      poses_(ipc::topics::kPose),
-      registered_(ipc::topics::kRegisteredScan),
-      health_(ipc::topics::kHealth),
-      waiter_({&scans_.raw(), &priors_.raw(), &poses_.raw(), &registered_.raw(), &health_.raw()}),
-      thread_([this] { listen(); }) {}
+MemoryListener::MemoryListener(bool queues)
+    : attachment_("live-benchmark", std::chrono::seconds(10)), health_(ipc::topics::kHealth) {
+  if (queues) {
+    queues_.emplace();
+    waiter_.emplace(std::initializer_list<ipc::detail::RawSubscriber*>{
+        &queues_->scans.raw(), &queues_->priors.raw(), &queues_->poses.raw(), &queues_->registered.raw(),
+        &health_.raw()});
+  } else {
+    waiter_.emplace(std::initializer_list<ipc::detail::RawSubscriber*>{&health_.raw()});
+  }
+  thread_ = std::thread([this] { listen(); });
+}
 
 MemoryListener::~MemoryListener() {
-  waiter_.stop();
+  waiter_->stop();
   thread_.join();
 }
 
 void MemoryListener::listen() {
-  while (waiter_.wait() != ipc::Waiter::Event::kStopped) drain();
+  while (waiter_->wait() != ipc::Waiter::Event::kStopped) drain();
 }
 
 void MemoryListener::drain() {
   const std::int64_t now_ns = RobotClock::now_ns();
   const std::lock_guard lock(mutex_);
-  while (const auto scan = scans_.take()) events_.scans.push_back({scan->end_stamp_ns, now_ns});
-  while (const auto prior = priors_.take()) events_.priors.push_back({prior->stamp_ns, now_ns});
-  while (const auto pose = poses_.take()) events_.poses.push_back({pose->stamp_ns, now_ns});
-  while (const auto scan = registered_.take()) events_.wake_ups.push_back({scan->handed_over_ns, now_ns});
+  if (queues_) {
+    while (const auto scan = queues_->scans.take()) events_.scans.push_back({scan->end_stamp_ns, now_ns});
+    while (const auto prior = queues_->priors.take()) events_.priors.push_back({prior->stamp_ns, now_ns});
+    while (const auto pose = queues_->poses.take()) events_.poses.push_back({pose->stamp_ns, now_ns});
+    while (const auto scan = queues_->registered.take()) {
+      events_.wake_ups.push_back({scan->handed_over_ns, now_ns});
+    }
+  }
   if (const auto report = health_.take_latest()) {
     events_.health.clear();
     for (std::uint32_t i = 0; i < report->entry_count; ++i) {

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -47,7 +48,10 @@ struct MemoryEvents {
 /// The queues of shared memory, from outside of isobard. One in a process.
 class MemoryListener {
  public:
-  MemoryListener();
+  /// @param queues listens to the queues of every sample, scan and pose, which isobard then has to wake it
+  /// for;
+  ///        else to the health report only
+  explicit MemoryListener(bool queues);
   ~MemoryListener();
   MemoryListener(const MemoryListener&) = delete;
   MemoryListener& operator=(const MemoryListener&) = delete;
@@ -58,12 +62,15 @@ class MemoryListener {
   void drain();
 
   ipc::Attachment attachment_;
-  ipc::Subscriber<Scan> scans_;
-  ipc::Subscriber<Prior> priors_;
-  ipc::Subscriber<PoseEstimate> poses_;
-  ipc::Subscriber<RegisteredScan> registered_;
+  struct Queues {
+    ipc::Subscriber<Scan> scans{ipc::topics::kLidarScan};
+    ipc::Subscriber<Prior> priors{ipc::topics::kPrior};
+    ipc::Subscriber<PoseEstimate> poses{ipc::topics::kPose};
+    ipc::Subscriber<RegisteredScan> registered{ipc::topics::kRegisteredScan};
+  };
+  std::optional<Queues> queues_;
   ipc::Subscriber<ipc::HealthReport> health_;
-  ipc::Waiter waiter_;
+  std::optional<ipc::Waiter> waiter_;
   mutable std::mutex mutex_;
   MemoryEvents events_;
   std::thread thread_;

@@ -36,6 +36,7 @@ struct Options {
   bool ordinary_scheduling = false;
   bool stress = false;
   bool check = false;
+  bool queues = false;
 };
 
 /// The configuration of this measurement, written for both programs.
@@ -66,7 +67,7 @@ int run(const Options& options) {
   if (!bridge.read_until("attached", 20s))
     throw ServiceError("isobar-dds does not attach: " + bridge.output());
   PoseListener poses;
-  MemoryListener memory;
+  MemoryListener memory(options.queues);
   Sender sender(options.recording, static_cast<std::uint16_t>(reader.manifest().lidar->port));
   std::this_thread::sleep_for(std::chrono::duration<double>(options.warm_up_s));
 
@@ -98,6 +99,8 @@ int main_with_errors(int argc, char** argv) {
   app.add_option("--json", options.json, "file for all figures");
   app.add_flag("--ordinary-scheduling", options.ordinary_scheduling, "realtime.enabled = false");
   app.add_flag("--stress", options.stress, "a second phase beside `stress-ng --cpu 4`");
+  app.add_flag("--queues", options.queues,
+               "latency of the queues in shared memory too; isobard then has one more reader to wake");
   app.add_flag("--check", options.check, "exit code 1 where a target is missed");
   CLI11_PARSE(app, argc, argv);
   return run(options);

@@ -87,6 +87,7 @@ std::vector<Target> targets_of(const PhaseResult& result) {
 }
 
 std::string latency_row(const char* what, const Summary& summary) {
+  if (summary.count == 0) return {};  // nobody listened
   return fmt::format("  {:<44} {:>8.2f} {:>8.2f} {:>8.2f}  of {}\n", what, summary.median_ms, summary.p99_ms,
                      summary.max_ms, summary.count);
 }
