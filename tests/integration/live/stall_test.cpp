@@ -194,8 +194,7 @@ void held_registration(const ChildProcess& isobard, Tap& tap) {
 void held_process(const ChildProcess& isobard, Tap& tap) {
   tap.forget();
   isobard.signal(SIGSTOP);
-  std::this_thread::sleep_for(
-      1s);  // iceoryx gives up who attached after 1.5 s; live_test.sh stops for longer
+  std::this_thread::sleep_for(2s);
   isobard.signal(SIGCONT);
   const std::int64_t resumed_ns = RobotClock::now_ns();
   tap.gather(2s);
