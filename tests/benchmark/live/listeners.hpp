@@ -45,6 +45,13 @@ struct MemoryEvents {
   std::map<std::string, double> health;  ///< value of each entry of the newest report
 };
 
+struct Queues {
+  ipc::Subscriber<Scan> scans{ipc::topics::kLidarScan};
+  ipc::Subscriber<Prior> priors{ipc::topics::kPrior};
+  ipc::Subscriber<PoseEstimate> poses{ipc::topics::kPose};
+  ipc::Subscriber<RegisteredScan> registered{ipc::topics::kRegisteredScan};
+};
+
 /// The queues of shared memory, from outside of isobard. One in a process.
 class MemoryListener {
  public:
@@ -62,12 +69,6 @@ class MemoryListener {
   void drain();
 
   ipc::Attachment attachment_;
-  struct Queues {
-    ipc::Subscriber<Scan> scans{ipc::topics::kLidarScan};
-    ipc::Subscriber<Prior> priors{ipc::topics::kPrior};
-    ipc::Subscriber<PoseEstimate> poses{ipc::topics::kPose};
-    ipc::Subscriber<RegisteredScan> registered{ipc::topics::kRegisteredScan};
-  };
   std::optional<Queues> queues_;
   ipc::Subscriber<ipc::HealthReport> health_;
   std::optional<ipc::Waiter> waiter_;
