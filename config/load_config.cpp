@@ -92,6 +92,7 @@ class Assign {
   }
   void operator()(Role* target) const { *target = static_cast<Role>(choice()); }
   void operator()(Method* target) const { *target = static_cast<Method>(choice()); }
+  void operator()(Matcher* target) const { *target = static_cast<Matcher>(choice()); }
   void operator()(AirTemperatureMode* target) const { *target = static_cast<AirTemperatureMode>(choice()); }
   void operator()(CompensationModel* target) const { *target = static_cast<CompensationModel>(choice()); }
 

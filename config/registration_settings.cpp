@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "config/setting.hpp"
+#include "core/map/cell_moments.hpp"
 
 namespace isobar {
 namespace {
@@ -83,6 +84,12 @@ void add_registration_settings(RegistrationConfig& registration, std::vector<Set
 
 void add_map_settings(MapConfig& map, std::vector<Setting>& settings) {
   Section s("map", settings);
+  settings.push_back({.key = "map.matcher",
+                      .target = &map.matcher,
+                      .doc =
+                          "How a point finds its plane of the map. plane-hash: that of the cell it is in, "
+                          "else the nearest one. nearest: always the nearest one, by k-d trees; the paper's.",
+                      .choices = matcher_choices()});
   s.add("cell_m", &map.cell_m, "m", 0.1, 1.0,
         "Edge of a plane cell. Smaller follows finer indoor detail, larger needs fewer cells outdoors.");
   s.add("radius_m", &map.radius_m, "m", 20.0, 200.0, "Tiles farther from the robot leave memory.");
@@ -93,7 +100,7 @@ void add_map_settings(MapConfig& map, std::vector<Setting>& settings) {
         "… or this long ago: things move while the robot stands …");
   s.add("update_overlap", &map.update_overlap, "", 0.0, 1.0,
         "… or when less than this share of the scan found the map: the place is new.");
-  s.add("freeze_observations", &map.freeze_observations, "", 8, 1'000,
+  s.add("freeze_observations", &map.freeze_observations, "", 8, CellMoments::kMostPoints,
         "Observations after which a cell's plane no longer changes: the oldest pose counts, which keeps "
         "drift out.");
   s.add("max_thickness_m", &map.max_thickness_m, "m", 0.01, 0.2,

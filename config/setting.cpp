@@ -42,6 +42,11 @@ const std::vector<std::string>& compensation_choices() {
   return names;
 }
 
+const std::vector<std::string>& matcher_choices() {
+  static const std::vector<std::string> names{"plane-hash", "nearest"};
+  return names;
+}
+
 std::vector<Setting> settings_of(Config& config) {
   std::vector<Setting> settings;
   settings.push_back({.key = "role",

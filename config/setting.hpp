@@ -29,7 +29,7 @@ enum class TextRule : std::uint8_t {
 struct Setting {
   using Target = std::variant<double*, int*, std::uint16_t*, std::uint32_t*, std::size_t*, bool*,
                               std::string*, Eigen::Vector3d*, std::vector<int>*, std::vector<double>*, Role*,
-                              Method*, AirTemperatureMode*, CompensationModel*>;
+                              Method*, AirTemperatureMode*, CompensationModel*, Matcher*>;
 
   std::string key;  ///< with its section, "registration.max_range_m"
   Target target;
@@ -49,6 +49,7 @@ const std::vector<std::string>& role_choices();
 const std::vector<std::string>& method_choices();
 const std::vector<std::string>& air_temperature_choices();
 const std::vector<std::string>& compensation_choices();
+const std::vector<std::string>& matcher_choices();
 
 /// All settings of `config`, in the order in which they are shown.
 std::vector<Setting> settings_of(Config& config);

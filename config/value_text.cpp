@@ -53,6 +53,9 @@ struct ValueText {
   std::string operator()(const Method* value) const {
     return quoted_toml(setting.choices.at(static_cast<std::size_t>(*value)));
   }
+  std::string operator()(const Matcher* value) const {
+    return quoted_toml(setting.choices.at(static_cast<std::size_t>(*value)));
+  }
   std::string operator()(const AirTemperatureMode* value) const {
     return quoted_toml(setting.choices.at(static_cast<std::size_t>(*value)));
   }

@@ -92,9 +92,7 @@ void LockStep::register_oldest() {
   ++scans_;
   emit(registered_.pose, true);
 
-  evicted_.clear();
-  map_.update(registered_, evicted_);
-  if (!evicted_.empty()) sink_.on_evicted(evicted_);
+  map_.update(registered_);
 }
 
 void LockStep::bridge_silence() {

@@ -61,7 +61,7 @@ void MapThread::drain() noexcept {
 void MapThread::add(const RegisteredScan& scan) noexcept {
   points_.clear();
   const CpuTimer timer;
-  if (map_.update(scan, points_)) {
+  if (map_.update(scan)) {
     snapshots_.publish(map_.snapshot());
     own_.update_ms = timer.elapsed_ms();
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace isobar {
@@ -14,17 +15,33 @@ constexpr float kLeastCosine = 0.2F;
 // What has no normal must be passed by more, since it may be grazed.
 constexpr float kMarginWithoutNormal = 2.0F;
 constexpr float kNearestM = 0.3F;
+constexpr float kHalfPi = std::numbers::pi_v<float> / 2;
+
+// Arc tangent of y / x for x, y >= 0, right to 1e-5 rad: a polynomial of Abramowitz and Stegun (4.4.49). A
+// pixel is 3500 times wider, and a call of libm for each cell of the map was 13 % of a replay.
+float angle_in_quadrant(float y, float x) {
+  const float larger = std::max(x, y);
+  const float ratio = larger > 0.0F ? std::min(x, y) / larger : 0.0F;
+  const float r2 = ratio * ratio;
+  const float angle =
+      ratio * (0.9998660F + r2 * (-0.3302995F + r2 * (0.1801410F + r2 * (-0.0851330F + r2 * 0.0208351F))));
+  return y > x ? kHalfPi - angle : angle;
+}
 }  // namespace
 
 void FreeSpace::pixel_of(const Eigen::Vector3f& p_lidar, int& column, int& row) {
-  const float azimuth = std::atan2(p_lidar.y(), p_lidar.x()) + std::numbers::pi_v<float>;
-  const float elevation = std::atan2(p_lidar.z(), std::hypot(p_lidar.x(), p_lidar.y()));
+  const float quadrant = angle_in_quadrant(std::abs(p_lidar.y()), std::abs(p_lidar.x()));
+  const float from_front = p_lidar.x() < 0.0F ? 2.0F * kHalfPi - quadrant : quadrant;
+  const float azimuth = 2.0F * kHalfPi + (p_lidar.y() < 0.0F ? -from_front : from_front);
+  const float across = std::sqrt(p_lidar.x() * p_lidar.x() + p_lidar.y() * p_lidar.y());
+  const float steepness = angle_in_quadrant(std::abs(p_lidar.z()), across);
+  const float elevation = p_lidar.z() < 0.0F ? -steepness : steepness;
   column = std::clamp(static_cast<int>(azimuth / kPixelRad), 0, kColumns - 1);
-  row = std::clamp(static_cast<int>((elevation + std::numbers::pi_v<float> / 2) / kPixelRad), 0, kRows - 1);
+  row = std::clamp(static_cast<int>((elevation + kHalfPi) / kPixelRad), 0, kRows - 1);
 }
 
 void FreeSpace::set_scan(const RegisteredScan& scan, const Eigen::Isometry3d& T_lidar_base) {
-  shortest_m_.fill(0.0F);
+  shortest_m_.fill(std::numeric_limits<float>::infinity());
   const Eigen::Isometry3f T = T_lidar_base.cast<float>();
   for (std::uint32_t i = 0; i < scan.point_count; ++i) {
     const ScanPoint& point = scan.points[i];
@@ -33,8 +50,29 @@ void FreeSpace::set_scan(const RegisteredScan& scan, const Eigen::Isometry3d& T_
     int row = 0;
     pixel_of(p_lidar, column, row);
     float& shortest = shortest_m_[index_of(column, row)];
-    const float range = p_lidar.norm();
-    shortest = shortest == 0.0F ? range : std::min(shortest, range);
+    shortest = std::min(shortest, p_lidar.norm());
+  }
+  spread_to_neighbours();
+}
+
+void FreeSpace::spread_to_neighbours() {
+  Image beside;  // shortest of each pixel and the ones left and right of it; columns go round
+  for (int row = 0; row < kRows; ++row) {
+    for (int column = 0; column < kColumns; ++column) {
+      const float left = shortest_m_[index_of(column > 0 ? column - 1 : kColumns - 1, row)];
+      const float right = shortest_m_[index_of(column < kColumns - 1 ? column + 1 : 0, row)];
+      beside[index_of(column, row)] = std::min({left, shortest_m_[index_of(column, row)], right});
+    }
+  }
+  for (int row = 0; row < kRows; ++row) {
+    const int below = std::max(row - 1, 0);
+    const int above = std::min(row + 1, kRows - 1);
+    for (int column = 0; column < kColumns; ++column) {
+      const std::size_t at = index_of(column, row);
+      const float shortest =
+          std::min({beside[index_of(column, below)], beside[at], beside[index_of(column, above)]});
+      around_m_[at] = std::isinf(shortest_m_[at]) ? 0.0F : shortest;
+    }
   }
 }
 
@@ -55,19 +93,7 @@ bool FreeSpace::passes_through(const Eigen::Vector3f& p_lidar, const Eigen::Vect
   int column = 0;
   int row = 0;
   pixel_of(p_lidar, column, row);
-  if (shortest_m_[index_of(column, row)] == 0.0F) {
-    return false;
-  }
-  for (int r = std::max(row - 1, 0); r <= std::min(row + 1, kRows - 1); ++r) {
-    for (int c = column - 1; c <= column + 1; ++c) {
-      const int wrapped = (c + kColumns) % kColumns;
-      const float shortest = shortest_m_[index_of(wrapped, r)];
-      if (shortest != 0.0F && shortest < needed) {
-        return false;
-      }
-    }
-  }
-  return true;
+  return around_m_[index_of(column, row)] >= needed;
 }
 
 }  // namespace isobar

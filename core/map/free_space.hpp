@@ -11,7 +11,7 @@
 
 namespace isobar {
 
-/// Shortest range in each direction of one scan, 2 degrees a pixel.
+/// Shortest range in and around each direction of one scan, 2 degrees a pixel.
 class FreeSpace {
  public:
   static constexpr int kColumns = 180;
@@ -32,7 +32,11 @@ class FreeSpace {
   }
   static void pixel_of(const Eigen::Vector3f& p_lidar, int& column, int& row);
 
-  std::array<float, static_cast<std::size_t>(kColumns) * kRows> shortest_m_{};  // 0 is unknown
+  void spread_to_neighbours();
+
+  using Image = std::array<float, static_cast<std::size_t>(kColumns) * kRows>;
+  Image shortest_m_{};  // infinite where no ray went
+  Image around_m_{};    // shortest of the pixel and its eight neighbours; 0 where no ray went
 };
 
 }  // namespace isobar

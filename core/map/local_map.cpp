@@ -3,29 +3,35 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <limits>
 
 #include "core/geometry.hpp"
+#include "core/map/plane_hash.hpp"
 
 namespace isobar {
 
 namespace {
 
-PlaneCriteria criteria_of(const MapConfig& config) {
-  PlaneCriteria criteria;
-  criteria.max_thickness_m = static_cast<float>(config.max_thickness_m);
-  criteria.max_normal_deviation_rad = static_cast<float>(config.max_normal_deviation_deg * kRadPerDeg);
-  return criteria;
+// Tiles that come back from the shelf with one update: so many are read in a few milliseconds.
+constexpr std::size_t kTilesPerUpdate = 8;
+
+// True if a plane is known in the cube of 4 x 4 x 4 cells around `place`.
+bool plane_in_cube(const MapBlock* block, int place) {
+  bool any = false;
+  if (block != nullptr && block->planes() != nullptr) {
+    for_each_in_cube(block->planes()->mask, place, [&](int /*slot*/) { any = true; });
+  }
+  return any;
 }
 
 }  // namespace
 
-LocalMap::LocalMap(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar)
+LocalMap::LocalMap(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, TileShelf* shelf)
     : config_(config),
-      criteria_(criteria_of(config)),
+      cell_m_(static_cast<float>(config.cell_m)),
       T_base_lidar_(T_base_lidar),
-      cells_per_edge_(std::clamp(static_cast<int>(std::lround(kTileSizeM / config.cell_m)), 8, 80)),
-      snapshot_(std::make_shared<const MapSnapshot>()) {}
+      shelf_(shelf),
+      fitter_(config, [this](const TileKey& key) { return find_tile(key); }) {}
 
 bool LocalMap::wants(const PoseEstimate& pose) const {
   if (!started_) {
@@ -38,68 +44,101 @@ bool LocalMap::wants(const PoseEstimate& pose) const {
          elapsed_s >= config_.update_interval_s || elapsed_s < 0.0 || pose.overlap < config_.update_overlap;
 }
 
-bool LocalMap::update(const RegisteredScan& scan, std::vector<MapPoint>& evicted) {
-  constexpr double kFarthestM = 1e8;  // beyond it a tile's key would not fit, nor would any robot
+bool LocalMap::update(const RegisteredScan& scan) {
+  constexpr double kFarthestM = 1e8;  // beyond it a cell's number would not fit, nor would any robot
   const auto& pose = scan.pose.T_map_base.matrix();
   if (scan.point_count == 0 || !pose.allFinite() || pose.cwiseAbs().maxCoeff() > kFarthestM ||
       !wants(scan.pose)) {
     return false;
   }
-  const bool moved = !started_ || tile_of(last_pose_.T_map_base.translation()) !=
-                                      tile_of(scan.pose.T_map_base.translation());
+  const Eigen::Vector3d p_map_base = scan.pose.T_map_base.translation();
+  const bool new_tile = !started_ || LocalFrame(p_map_base, cell_m_).origin_cell !=
+                                         LocalFrame(last_pose_.T_map_base.translation(), cell_m_).origin_cell;
   last_pose_ = scan.pose;
   started_ = true;
+  if (new_tile) {
+    evict(p_map_base);
+    look_for_stored(p_map_base);
+  }
+  bring_back_stored();
   insert(scan);
   if (config_.see_through_limit > 0 && scan.pose.mode == PoseMode::kRegistered) {
     remove_seen_through(scan);
   }
   fit_touched();
-  if (moved) {
-    evict(scan.pose.T_map_base.translation(), evicted);
-  }
   publish();
   return true;
 }
 
-MapTile* LocalMap::find_tile(const TileKey& key) const {
+const MapTile* LocalMap::find_tile(const TileKey& key) const {
   const auto found = tiles_.find(key);
-  return found == tiles_.end() ? nullptr : found->second.get();
+  return found == tiles_.end() ? nullptr : &found->second->cells;
 }
 
-MapTile& LocalMap::tile(const TileKey& key) {
-  std::unique_ptr<MapTile>& found = tiles_[key];
-  if (found == nullptr) {
-    found = std::make_unique<MapTile>(key, cells_per_edge_);
+// The tile that points go to, back from the shelf if it is there. Null where this update has brought back
+// enough: the next scan sees the place too, and a tile made anew would hide the old one.
+LocalMap::Tile* LocalMap::tile_for_points(const TileKey& key) {
+  if (const auto found = tiles_.find(key); found != tiles_.end()) {
+    return found->second.get();
   }
-  return *found;
+  if (shelf_ != nullptr && shelf_->contains(key)) {
+    if (restored_ >= kTilesPerUpdate) {
+      return nullptr;
+    }
+    return restore(key);
+  }
+  return tiles_.emplace(key, std::make_unique<Tile>(key)).first->second.get();
+}
+
+// Takes a tile from the shelf; an empty one where it is damaged.
+LocalMap::Tile* LocalMap::restore(const TileKey& key) {
+  ++restored_;
+  Tile* tile = tiles_.emplace(key, std::make_unique<Tile>(key)).first->second.get();
+  const bool good = shelf_->take(key, bytes_) && tile->cells.restore(bytes_, cell_m_);
+  lost_tile_count_ += good ? 0 : 1;
+  return tile;
+}
+
+Eigen::Vector3d LocalMap::centre_map(const TileKey& key) const {
+  return (Eigen::Vector3d(key.x, key.y, key.z).array() + 0.5) * tile_m();
 }
 
 void LocalMap::insert(const RegisteredScan& scan) {
-  const Eigen::Isometry3d& T_map_base = scan.pose.T_map_base;
-  const Eigen::Vector3d p_map_lidar = T_map_base * T_base_lidar_.translation();
+  const LocalFrame frame(scan.pose.T_map_base.translation(), cell_m_);
+  Eigen::Isometry3f T_local_base = scan.pose.T_map_base.cast<float>();
+  T_local_base.translation() = frame.to_local(scan.pose.T_map_base.translation());
+  const Eigen::Vector3f p_local_lidar = T_local_base * T_base_lidar_.translation().cast<float>();
   const bool only_unknown = scan.pose.mode == PoseMode::kPriorOnly;
-  const auto freeze = static_cast<float>(config_.freeze_observations);
-  MapTile* last = nullptr;
+  const auto radius = static_cast<float>(config_.radius_m);
+  MapBlock::Observation observation;
+  observation.freeze = config_.freeze_observations;
+  Tile* last = nullptr;
   touched_.clear();
   for (std::uint32_t i = 0; i < scan.point_count; ++i) {
     const ScanPoint& point = scan.points[i];
-    const Eigen::Vector3d p_map = T_map_base * Eigen::Vector3d(point.x_m, point.y_m, point.z_m);
-    const Eigen::Vector3d ray = p_map_lidar - p_map;
-    const double range = ray.norm();
-    if (!(range < config_.radius_m) || range < 1e-3) {
+    const Eigen::Vector3f p_local = T_local_base * Eigen::Vector3f(point.x_m, point.y_m, point.z_m);
+    const Eigen::Vector3f ray = p_local_lidar - p_local;
+    const float range = ray.norm();
+    if (!(range < radius) || range < 1e-3F) {
       continue;
     }
-    const TileKey key = tile_of(p_map);
-    if (last == nullptr || last->key() != key) {
-      last = &tile(key);
+    const CellIndex cell = frame.cell_of(p_local);
+    if (const TileKey key = tile_of(cell); last == nullptr || last->cells.key() != key) {
+      last = tile_for_points(key);
     }
-    const Eigen::Vector3f p_tile = (p_map - key.origin_map()).cast<float>();
-    if (only_unknown && !last->unknown_at(p_tile)) {
+    if (last == nullptr) {
       continue;
     }
-    const std::ptrdiff_t cell = last->observe(p_tile, (ray / range).cast<float>(), point.intensity, freeze);
-    if (cell >= 0) {
-      touched_.push_back({last, static_cast<std::uint32_t>(cell)});
+    const std::size_t block = block_of(cell);
+    if (only_unknown && plane_in_cube(last->cells.block(block), place_of(cell))) {
+      continue;
+    }
+    observation.fraction = (p_local - frame.corner_local(cell)) / cell_m_;
+    observation.toward = ray / range;
+    observation.intensity = point.intensity;
+    const int slot = last->cells.block_or_add(block).observe(place_of(cell), observation);
+    if (slot >= 0) {
+      touched_.push_back({last, static_cast<std::uint16_t>(block), static_cast<std::uint16_t>(slot)});
     }
   }
 }
@@ -107,160 +146,186 @@ void LocalMap::insert(const RegisteredScan& scan) {
 void LocalMap::remove_seen_through(const RegisteredScan& scan) {
   const Eigen::Isometry3d T_lidar_base = T_base_lidar_.inverse();
   free_space_.set_scan(scan, T_lidar_base);
+  const LocalFrame frame(scan.pose.T_map_base.translation(), cell_m_);
   const Eigen::Isometry3d T_lidar_map = T_lidar_base * scan.pose.T_map_base.inverse();
-  const Eigen::Vector3d p_map_base = scan.pose.T_map_base.translation();
-  const double reach = config_.see_through_range_m + kTileSizeM;
+  const Eigen::Isometry3f T_lidar_local =
+      (T_lidar_map * Eigen::Translation3d(frame.origin_map)).cast<float>();
+  const Eigen::Vector3f p_local_lidar = T_lidar_local.inverse().translation();
+  const auto reach = static_cast<float>(config_.see_through_range_m);
   const auto margin = static_cast<float>(config_.see_through_margin_m);
-  const auto limit = static_cast<std::uint16_t>(config_.see_through_limit);
+  const auto limit = static_cast<std::uint8_t>(config_.see_through_limit);
+  constexpr std::uint8_t kMost = std::numeric_limits<std::uint8_t>::max();
+  const float block_reach = reach + 0.87F * kBlockCells * cell_m_;  // half a block's diagonal
   for (auto& [key, tile] : tiles_) {
-    const Eigen::Vector3d centre = key.origin_map().array() + kTileSizeM / 2;
-    if ((centre - p_map_base).norm() > reach) {
+    if ((centre_map(key) - scan.pose.T_map_base.translation()).norm() > reach + tile_m()) {
       continue;
     }
-    const Eigen::Isometry3f T_lidar_tile =
-        (T_lidar_map * Eigen::Translation3d(key.origin_map())).cast<float>();
-    bool any = false;
-    for (MapCell& cell : tile->cells()) {
-      if (cell.moments.count == 0.0F) {
-        continue;
-      }
-      const Eigen::Vector3f q_tile = tile->cell_centre_tile(cell.key) + cell.moments.mean();
-      const Eigen::Vector3f normal =
-          cell.has_plane ? (T_lidar_tile.linear() * cell.normal).eval() : Eigen::Vector3f::Zero().eval();
-      if (free_space_.passes_through(T_lidar_tile * q_tile, normal, margin)) {
-        any = ++cell.seen_through > limit || any;
-      }
-    }
-    if (any) {
-      seen_through_count_ += tile->remove_seen_through(limit);
-    }
-  }
-}
-
-Moments LocalMap::neighbourhood(const MapTile& centre_tile, const MapCell& centre) const {
-  // Cells of the same and of neighbouring tiles, same side only: a thin wall has two.
-  const Eigen::Vector3i at = centre_tile.cell_coordinates(centre.key);
-  const int side = static_cast<int>(centre.key & 1U);
-  const auto cell_m = static_cast<float>(kTileSizeM) / static_cast<float>(cells_per_edge_);
-  const int n = cells_per_edge_;
-  Moments sum;
-  for (int dx = -1; dx <= 1; ++dx) {
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dz = -1; dz <= 1; ++dz) {
-        const Eigen::Vector3i cell = at + Eigen::Vector3i(dx, dy, dz);
-        const auto step = [n](int c) { return c < 0 ? -1 : (c >= n ? 1 : 0); };
-        const Eigen::Vector3i shift(step(cell.x()), step(cell.y()), step(cell.z()));
-        const TileKey& key = centre_tile.key();
-        const MapTile* tile = shift.isZero()
-                                  ? &centre_tile
-                                  : find_tile({key.x + shift.x(), key.y + shift.y(), key.z + shift.z()});
-        if (tile == nullptr) {
-          continue;
-        }
-        const Eigen::Vector3i local = cell - shift * n;
-        const MapCell* other = tile->cell_at(local.x(), local.y(), local.z(), side);
-        if (other != nullptr && other->moments.count > 0.0F && other->toward.dot(centre.toward) > 0.0F) {
-          sum.add(other->moments,
-                  Eigen::Vector3f(static_cast<float>(dx), static_cast<float>(dy), static_cast<float>(dz)) *
-                      cell_m);
+    for (std::size_t b = 0; b < kBlocksPerTile; ++b) {
+      MapBlock* block = tile->cells.block(b);
+      if (block == nullptr) continue;
+      const Eigen::Vector3f centre_local = block_centre_local(frame, first_cell(key, b));
+      if ((centre_local - p_local_lidar).norm() > block_reach) continue;
+      const Eigen::Vector3f first_centre = centre_local.array() + 0.5F * (1 - kBlockCells) * cell_m_;
+      bool any = false;
+      for (MapCell& cell : block->cells()) {
+        const PackedPlane* plane = block->plane_at(cell.slot);
+        const Eigen::Vector3f normal = plane != nullptr
+                                           ? (T_lidar_local.linear() * plane->unit_normal()).eval()
+                                           : Eigen::Vector3f(0.0F, 0.0F, 0.0F);
+        const Eigen::Vector3f mean_local = first_centre +
+                                           offset_of(cell.slot % kPlacesPerBlock).cast<float>() * cell_m_ +
+                                           cell.moments.mean_m(cell_m_);
+        if (cell.seen_through < kMost &&
+            free_space_.passes_through(T_lidar_local * mean_local, normal, margin)) {
+          any = ++cell.seen_through > limit || any;
         }
       }
+      if (any) {
+        seen_through_count_ += block->remove_seen_through(limit);
+        tile->changed = true;
+      }
     }
   }
-  return sum;
-}
-
-bool LocalMap::fit_cell(const MapTile& tile, const MapCell& cell, Plane& plane_tile) const {
-  // From the smallest surface that is enough to the largest: the cell, its neighbours, a coarse cell.
-  const Eigen::Vector3f centre = tile.cell_centre_tile(cell.key);
-  PlaneCriteria own = criteria_;
-  own.max_normal_deviation_rad *= kOwnCellShare;
-  if (fit_plane(cell.moments, own, plane_tile) ||
-      fit_plane(neighbourhood(tile, cell), criteria_, plane_tile)) {
-    plane_tile.mean += centre;
-  } else {
-    Eigen::Vector3f coarse_centre;
-    const Moments& coarse = tile.coarse_at(centre, coarse_centre);
-    if (!fit_plane(coarse, criteria_, plane_tile)) {
-      return false;
-    }
-    plane_tile.mean += coarse_centre;
-  }
-  // The plane's point nearest to the cell's own mean.
-  const Eigen::Vector3f mean = centre + cell.moments.mean();
-  const float off_plane = plane_tile.normal.dot(mean - plane_tile.mean);
-  if (std::abs(off_plane) > 2.0F * criteria_.max_thickness_m) {
-    return false;
-  }
-  plane_tile.mean = mean - off_plane * plane_tile.normal;
-  return true;
 }
 
 void LocalMap::fit_touched() {
   for (const Touched& touched : touched_) {
-    MapCell& cell = touched.tile->cells()[touched.cell];
-    cell.touched = false;
-    if (cell.moments.count == 0.0F) {
-      continue;
+    MapBlock& block = *touched.tile->cells.block(touched.block);
+    if (block.find(touched.slot) == nullptr) {
+      continue;  // seen through meanwhile
     }
-    Plane plane;
-    if (fit_cell(*touched.tile, cell, plane)) {
-      touched.tile->set_plane(cell, plane);
-    } else {
-      touched.tile->clear_plane(cell);
-    }
+    PackedPlane plane;
+    const bool fits = fitter_.fit(touched.tile->cells, touched.block, touched.slot, plane);
+    block.set_plane(touched.slot, fits ? &plane : nullptr);
+    touched.tile->changed = true;
   }
   touched_.clear();
 }
 
-void LocalMap::evict(const Eigen::Vector3d& p_map_base, std::vector<MapPoint>& evicted) {
+void LocalMap::evict(const Eigen::Vector3d& p_map_base) {
   std::vector<TileKey> far;
   for (const auto& [key, tile] : tiles_) {
-    const Eigen::Vector3d centre = key.origin_map().array() + kTileSizeM / 2;
-    if ((centre - p_map_base).norm() > config_.radius_m + kTileSizeM) {
+    if ((centre_map(key) - p_map_base).norm() > config_.radius_m + tile_m()) {
       far.push_back(key);
     }
   }
   // In order of place, since the order of a hash table is nobody's promise.
-  std::sort(far.begin(), far.end(), [](const TileKey& a, const TileKey& b) {
-    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-  });
+  std::sort(far.begin(), far.end());
   for (const TileKey& key : far) {
-    tiles_.at(key)->append_points(evicted);
+    if (shelf_ != nullptr) {
+      tiles_.at(key)->cells.store(cell_m_, bytes_);
+      lost_tile_count_ += shelf_->put(key, bytes_) ? 0 : 1;
+    }
     tiles_.erase(key);
   }
 }
 
-void LocalMap::publish() {
-  std::vector<std::shared_ptr<const TileIndex>> indices;
-  indices.reserve(tiles_.size());
-  for (auto& [key, tile] : tiles_) {
-    tile->rebuild_index();
-    indices.push_back(tile->index());
+void LocalMap::look_for_stored(const Eigen::Vector3d& p_map_base) {
+  stored_.clear();
+  if (shelf_ == nullptr) {
+    return;
   }
-  snapshot_ = std::make_shared<const MapSnapshot>(std::move(indices));
+  const auto reach = static_cast<std::int32_t>(std::ceil(config_.radius_m / tile_m()));
+  const CellIndex robot = LocalFrame(p_map_base, cell_m_).origin_cell;
+  const TileKey at = tile_of(robot);
+  for (std::int32_t x = at.x - reach; x <= at.x + reach; ++x) {
+    for (std::int32_t y = at.y - reach; y <= at.y + reach; ++y) {
+      for (std::int32_t z = at.z - reach; z <= at.z + reach; ++z) {
+        const TileKey key{x, y, z};
+        if ((centre_map(key) - p_map_base).norm() <= config_.radius_m && !tiles_.contains(key) &&
+            shelf_->contains(key)) {
+          stored_.push_back(key);
+        }
+      }
+    }
+  }
+  const auto farther = [&](const TileKey& a, const TileKey& b) {
+    const double da = (centre_map(a) - p_map_base).squaredNorm();
+    const double db = (centre_map(b) - p_map_base).squaredNorm();
+    return da > db || (da == db && a < b);
+  };
+  std::sort(stored_.begin(), stored_.end(), farther);
 }
 
-void LocalMap::append_points(std::vector<MapPoint>& points) const {
+void LocalMap::bring_back_stored() {
+  restored_ = 0;
+  while (restored_ < kTilesPerUpdate && !stored_.empty()) {
+    const TileKey key = stored_.back();
+    stored_.pop_back();
+    if (!tiles_.contains(key)) {
+      restore(key);
+    }
+  }
+}
+
+void LocalMap::publish() {
+  std::vector<std::shared_ptr<const PlaneTile>> planes;
+  std::vector<std::shared_ptr<const TileTree>> trees;
+  const bool wants_trees = config_.matcher == Matcher::kNearest;
+  for (auto& [key, tile] : tiles_) {
+    const bool changed = tile->changed && tile->cells.publish();
+    tile->changed = false;
+    if (tile->cells.planes()->plane_count == 0) {
+      tile->tree = nullptr;
+    } else if (wants_trees) {
+      if (changed) tile->tree = std::make_shared<const TileTree>(*tile->cells.planes(), cell_m_);
+      trees.push_back(tile->tree);
+    } else {
+      planes.push_back(tile->cells.planes());
+    }
+  }
+  if (wants_trees) {
+    snapshot_ = std::make_shared<const NearestPlane>(std::move(trees), cell_m_);
+  } else {
+    snapshot_ = std::make_shared<const PlaneHash>(std::move(planes), cell_m_);
+  }
+}
+
+namespace {
+
+template <typename Tiles>
+std::vector<TileKey> sorted_keys(const Tiles& tiles) {
   std::vector<TileKey> keys;
-  keys.reserve(tiles_.size());
-  for (const auto& [key, tile] : tiles_) {
+  keys.reserve(tiles.size());
+  for (const auto& [key, tile] : tiles) {
     keys.push_back(key);
   }
-  std::sort(keys.begin(), keys.end(), [](const TileKey& a, const TileKey& b) {
-    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-  });
-  for (const TileKey& key : keys) {
-    tiles_.at(key)->append_points(points);
+  std::sort(keys.begin(), keys.end());
+  return keys;
+}
+
+}  // namespace
+
+void LocalMap::append_points(std::vector<MapPoint>& points) const {
+  for (const TileKey& key : sorted_keys(tiles_)) {
+    isobar::append_points(tiles_.at(key)->cells, cell_m_, points);
+  }
+}
+
+void LocalMap::store_all() {
+  if (shelf_ == nullptr) {
+    return;
+  }
+  for (const TileKey& key : sorted_keys(tiles_)) {
+    tiles_.at(key)->cells.store(cell_m_, bytes_);
+    lost_tile_count_ += shelf_->put(key, bytes_) ? 0 : 1;
   }
 }
 
 std::size_t LocalMap::cell_count() const {
   std::size_t count = 0;
   for (const auto& [key, tile] : tiles_) {
-    count += tile->cells().size();
+    count += tile->cells.cell_count();
   }
   return count;
+}
+
+std::size_t LocalMap::memory_bytes() const {
+  std::size_t bytes = 0;
+  for (const auto& [key, tile] : tiles_) {
+    bytes += sizeof(Tile) - sizeof(MapTile) + tile->cells.memory_bytes();
+  }
+  return bytes;
 }
 
 }  // namespace isobar

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <memory>
 #include <unordered_map>
 #include <vector>
@@ -13,65 +14,91 @@
 #include "core/map/map_point.hpp"
 #include "core/map/map_snapshot.hpp"
 #include "core/map/map_tile.hpp"
+#include "core/map/nearest_plane.hpp"
+#include "core/map/plane_fitter.hpp"
+#include "core/map/tile_shelf.hpp"
 
 namespace isobar {
 
-/// Density-controlled planes on a grid of cells, in tiles around the robot. Memory is bounded by the radius.
+/// Density-controlled planes on a grid of cells, in tiles around the robot. Memory is bounded by the radius;
+/// what leaves it goes to the shelf and comes back when the robot does.
 class LocalMap {
  public:
-  /// `T_base_lidar`: pose of the lidar in base_link; rays start there.
-  LocalMap(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar);
+  /// `T_base_lidar`: pose of the lidar in base_link; rays start there. `shelf` may be null: what leaves the
+  /// radius is forgotten then.
+  LocalMap(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, TileShelf* shelf = nullptr);
+  LocalMap(const LocalMap&) = delete;
+  LocalMap& operator=(const LocalMap&) = delete;
 
   /// Takes a registered scan if the robot moved or the place is new (see MapConfig). Points of a scan with
-  /// mode kPriorOnly are taken only where nothing is known yet. Points of tiles that left the radius are
-  /// appended to `evicted`. Returns true where snapshot() changed.
-  bool update(const RegisteredScan& scan, std::vector<MapPoint>& evicted);
+  /// mode kPriorOnly are taken only where nothing is known yet. Returns true where snapshot() changed.
+  bool update(const RegisteredScan& scan);
 
   /// The newest snapshot; never null. Give it to a SnapshotExchange.
   [[nodiscard]] const std::shared_ptr<const MapSnapshot>& snapshot() const { return snapshot_; }
 
-  /// Appends every point now in memory (for map.ply, after what was evicted). Sorted, so that equal input
-  /// gives equal output.
+  /// Appends every point now in memory. Sorted, so that equal input gives equal output.
   void append_points(std::vector<MapPoint>& points) const;
 
+  /// Puts a copy of every tile in memory on the shelf, for the end of a run.
+  void store_all();
+
   [[nodiscard]] std::size_t cell_count() const;
+  [[nodiscard]] std::size_t plane_count() const { return snapshot_->plane_count(); }
   [[nodiscard]] std::size_t tile_count() const { return tiles_.size(); }
+  /// Bytes of cells and planes (not of search trees).
+  [[nodiscard]] std::size_t memory_bytes() const;
   /// Cells removed because rays passed through them, since the start.
   [[nodiscard]] std::uint64_t seen_through_count() const { return seen_through_count_; }
+  /// Tiles that the shelf could not keep or give back, since the start.
+  [[nodiscard]] std::uint64_t lost_tile_count() const { return lost_tile_count_; }
 
  private:
   struct KeyHash {
     std::size_t operator()(const TileKey& key) const { return key.hash(); }
   };
-  struct Touched {
-    MapTile* tile;
-    std::uint32_t cell;
+  struct Tile {
+    explicit Tile(const TileKey& key) : cells(key) {}
+    MapTile cells;
+    std::shared_ptr<const TileTree> tree;  // of cells.planes(), where the matcher wants one
+    bool changed = true;                   // since publish()
   };
-  /// A cell's own plane must be this much better than required, else its neighbours help.
-  static constexpr float kOwnCellShare = 0.5F;
+  struct Touched {
+    Tile* tile = nullptr;
+    std::uint16_t block = 0;
+    std::uint16_t slot = 0;
+  };
 
   [[nodiscard]] bool wants(const PoseEstimate& pose) const;
   void insert(const RegisteredScan& scan);
   void remove_seen_through(const RegisteredScan& scan);
-  [[nodiscard]] Moments neighbourhood(const MapTile& centre_tile, const MapCell& centre) const;
-  bool fit_cell(const MapTile& tile, const MapCell& cell, Plane& plane_tile) const;
   void fit_touched();
-  void evict(const Eigen::Vector3d& p_map_base, std::vector<MapPoint>& evicted);
+  void evict(const Eigen::Vector3d& p_map_base);
+  void look_for_stored(const Eigen::Vector3d& p_map_base);
+  void bring_back_stored();
   void publish();
-  MapTile& tile(const TileKey& key);
-  [[nodiscard]] MapTile* find_tile(const TileKey& key) const;
+  [[nodiscard]] Tile* tile_for_points(const TileKey& key);
+  Tile* restore(const TileKey& key);
+  [[nodiscard]] const MapTile* find_tile(const TileKey& key) const;
+  [[nodiscard]] Eigen::Vector3d centre_map(const TileKey& key) const;
+  [[nodiscard]] double tile_m() const { return static_cast<double>(cell_m_) * kTileCells; }
 
   MapConfig config_;
-  PlaneCriteria criteria_;
+  float cell_m_;
   Eigen::Isometry3d T_base_lidar_;
-  int cells_per_edge_;
-  std::unordered_map<TileKey, std::unique_ptr<MapTile>, KeyHash> tiles_;
-  std::shared_ptr<const MapSnapshot> snapshot_;
+  TileShelf* shelf_;
+  PlaneFitter fitter_;
+  std::unordered_map<TileKey, std::unique_ptr<Tile>, KeyHash> tiles_;
+  std::shared_ptr<const MapSnapshot> snapshot_ = std::make_shared<const MapSnapshot>();
   std::vector<Touched> touched_;  // cells that wait for a fit
+  std::vector<TileKey> stored_;   // tiles of the shelf to bring back, the nearest last
+  std::size_t restored_ = 0;      // in this update
+  std::vector<std::byte> bytes_;  // scratch
   FreeSpace free_space_;
   PoseEstimate last_pose_;
   bool started_ = false;
   std::uint64_t seen_through_count_ = 0;
+  std::uint64_t lost_tile_count_ = 0;
 };
 
 }  // namespace isobar

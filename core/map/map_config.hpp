@@ -2,10 +2,20 @@
 // Configuration of the local map.
 #pragma once
 
+#include <cstdint>
+
 namespace isobar {
+
+/// How a point of the scan finds its plane of the map.
+enum class Matcher : std::uint8_t {
+  kPlaneHash,  ///< the plane of the cell that it is in; where there is none, the nearest one
+  kNearest,    ///< the plane whose point is nearest (the paper's), by k-d trees
+};
 
 /// Size and density of the local map, and when it changes.
 struct MapConfig {
+  /// How points are matched to planes.
+  Matcher matcher = Matcher::kPlaneHash;
   /// Edge of a plane cell [m], 0.1 … 1. Smaller follows finer indoor detail, larger needs fewer cells
   /// outdoors.
   double cell_m = 0.25;
@@ -20,7 +30,7 @@ struct MapConfig {
   double update_interval_s = 1.0;
   /// … or when less than this share of the scan found the map, 0 … 1: a door opened, the place is new.
   double update_overlap = 0.75;
-  /// Observations after which a cell's plane no longer changes, 8 … 1000. Enough to average the lidar's
+  /// Observations after which a cell's plane no longer changes, 8 … 127. Enough to average the lidar's
   /// noise; few enough that the oldest pose counts, which keeps drift out of places seen twice.
   int freeze_observations = 80;
   /// Largest thickness (standard deviation along the normal) of a cell that counts as a plane [m], 0.01 …

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which plane of the map each sampled point of the scan belongs to. Another way to match would replace this
-// file and MapSnapshot::nearest().
+// Which plane of the map each sampled point of the scan belongs to. How it is found is the map's matcher's
+// choice.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -23,15 +23,24 @@ struct Pair {
 class Correspondences {
  public:
   /// `capacity`: points at most.
-  explicit Correspondences(std::size_t capacity) { pairs_.reserve(capacity); }
+  explicit Correspondences(std::size_t capacity);
+
+  /// Begins with a new scan or a new map near `p_map_base`.
+  void start(const MapSnapshot& map, const Eigen::Vector3d& p_map_base);
 
   /// Matches every `stride`-th of `p_base` placed at `T_map_base`, seen from `p_base_lidar`, to planes whose
-  /// point is within `max_distance_m`. The result is valid until the next call.
+  /// point is within `max_distance_m`. `map` and `p_base` as at start(). The result is valid until the next
+  /// call.
   std::span<const Pair> find(const MapSnapshot& map, std::span<const Eigen::Vector3f> p_base,
                              std::size_t stride, const Eigen::Isometry3d& T_map_base,
                              const Eigen::Vector3d& p_base_lidar, double max_distance_m);
 
  private:
+  LocalFrame frame_;
+  std::size_t stride_ = 0;                // of the last find(); 0 after start()
+  std::vector<Eigen::Vector3f> p_robot_;  // sizes are fixed in the constructor
+  std::vector<Eigen::Vector3f> p_local_;
+  std::vector<PlaneMatch> matches_;
   std::vector<Pair> pairs_;
 };
 

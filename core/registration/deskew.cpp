@@ -36,7 +36,7 @@ Eigen::Isometry3d Deskewer::T_end_base(std::int64_t stamp_ns, const PriorHistory
   return T;
 }
 
-void Deskewer::fill_knots(const Scan& scan, const PriorHistory& history, const ScanMotion& motion) {
+void Deskewer::start(const Scan& scan, const PriorHistory& history, const ScanMotion& motion) {
   constexpr std::int64_t kLongestNs = std::int64_t{1 << 16} * kPointTimeUnitNs;
   const std::int64_t span_ns = std::clamp<std::int64_t>(scan.end_stamp_ns - scan.stamp_ns, 0, kLongestNs);
   const std::int64_t steps = span_ns / kPriorStepNs + 1;
@@ -49,35 +49,32 @@ void Deskewer::fill_knots(const Scan& scan, const PriorHistory& history, const S
       // At the middle of the knot's span.
       const double after = (static_cast<double>(k) + 0.5) / static_cast<double>(kKnotsPerPrior);
       Knot& knot = knots_[knot_count_++];
-      knot.R_end_lidar = (T_before.linear() * (1.0 - after) + T_after.linear() * after).cast<float>();
-      knot.t_end_lidar =
-          (T_before.translation() * (1.0 - after) + T_after.translation() * after).cast<float>();
+      const Eigen::Matrix4f T = (T_before.matrix() * (1.0 - after) + T_after.matrix() * after).cast<float>();
+      knot = {T.col(0), T.col(1), T.col(2), T.col(3)};
     }
     T_before = T_after;
   }
 }
 
-void Deskewer::deskew(const Scan& scan, const PriorHistory& history, const ScanMotion& motion,
-                      RegisteredScan& out) {
-  fill_knots(scan, history, motion);
-  const std::uint32_t count = std::min(scan.point_count, Scan::kMaxPoints);
-  std::uint32_t kept = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const ScanPoint& point = scan.points[i];
-    const Eigen::Vector3f p_lidar(point.x_m, point.y_m, point.z_m);
-    const float squared_range = p_lidar.squaredNorm();
+std::size_t Deskewer::move(std::span<const ScanPoint> points, ScanPoint* out) const {
+  std::size_t kept = 0;
+  for (const ScanPoint& point : points) {
+    const float squared_range = point.x_m * point.x_m + point.y_m * point.y_m + point.z_m * point.z_m;
     if (!(squared_range >= squared_min_range_m2_ && squared_range <= squared_max_range_m2_)) {
       continue;
     }
     const Knot& knot = knots_[std::min<std::size_t>(point.time_4us / kUnitsPerKnot, knot_count_ - 1)];
-    const Eigen::Vector3f p_base = knot.R_end_lidar * p_lidar + knot.t_end_lidar;
-    ScanPoint& moved = out.points[kept++];
-    moved = point;
-    moved.x_m = p_base.x();
-    moved.y_m = p_base.y();
-    moved.z_m = p_base.z();
+    const Eigen::Vector4f p_base = knot.x * point.x_m + knot.y * point.y_m + knot.z * point.z_m + knot.t;
+    out[kept++] = {p_base.x(), p_base.y(), p_base.z(), point.time_4us, point.ring, point.intensity};
   }
-  out.point_count = kept;
+  return kept;
+}
+
+void Deskewer::deskew(const Scan& scan, const PriorHistory& history, const ScanMotion& motion,
+                      RegisteredScan& out) {
+  start(scan, history, motion);
+  const std::uint32_t count = std::min(scan.point_count, Scan::kMaxPoints);
+  out.point_count = static_cast<std::uint32_t>(move({scan.points, count}, out.points));
 }
 
 }  // namespace isobar

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/estimates.hpp"
@@ -26,18 +28,27 @@ class Deskewer {
   /// are dropped, as are numbers that are not finite.
   Deskewer(const Eigen::Isometry3d& T_base_lidar, double min_range_m, double max_range_m);
 
+  /// Takes in how the lidar moved during `scan`: what move() needs. Times that `history` does not reach use
+  /// its nearest prior.
+  void start(const Scan& scan, const PriorHistory& history, const ScanMotion& motion);
+  /// Writes those of `points`, a part of that scan, which are in range, as p_base at scan.end_stamp_ns, to
+  /// `out`; returns their number. `out` may be where `points` begin.
+  std::size_t move(std::span<const ScanPoint> points, ScanPoint* out) const;
+
   /// Writes the points of `scan`, as p_base at scan.end_stamp_ns, to out.points and their number to
-  /// out.point_count. Times that `history` does not reach use its nearest prior.
+  /// out.point_count.
   void deskew(const Scan& scan, const PriorHistory& history, const ScanMotion& motion, RegisteredScan& out);
 
  private:
+  // Columns of T_end_lidar, each padded to a register of four floats.
   struct Knot {
-    Eigen::Matrix3f R_end_lidar;
-    Eigen::Vector3f t_end_lidar;
+    Eigen::Vector4f x;
+    Eigen::Vector4f y;
+    Eigen::Vector4f z;
+    Eigen::Vector4f t;
   };
   [[nodiscard]] Eigen::Isometry3d T_end_base(std::int64_t stamp_ns, const PriorHistory& history,
                                              const ScanMotion& motion) const;
-  void fill_knots(const Scan& scan, const PriorHistory& history, const ScanMotion& motion);
 
   Eigen::Isometry3d T_base_lidar_;
   float squared_min_range_m2_;

@@ -9,15 +9,64 @@ namespace isobar {
 
 namespace {
 
-using Vector6f = Eigen::Matrix<float, 6, 1>;
+// Pairs are taken by chunks, one row a pair, so that every operation runs down a column, four or more pairs
+// at a time. Sums within a chunk are in single precision, from chunk to chunk in double: 64 addends lose no
+// more than four millionths.
+constexpr int kChunk = 64;
+using Column = Eigen::Array<float, kChunk, 1>;
 
 // 1.4826 times the median of absolute values is the standard deviation of a normal distribution.
 constexpr float kDeviationPerMedian = 1.4826F;
 constexpr float kLossPerDeviation = 3.0F;
 
-// Variance of a residual in units of the noise's: 1 where the fixed directions are not felt.
-float relative_variance(const Vector6f& jacobian, const PairNoise& noise) {
-  return 1.0F + jacobian.cwiseAbs2().dot(noise.fixed_variance) / (noise.noise_m * noise.noise_m);
+struct Chunk {
+  Eigen::Array<float, kChunk, 6> jacobian;
+  Column residual_m;
+  Column squared_lever_m2;
+  // Of a residual in units of the noise's: 1 where the fixed directions are not felt.
+  Column variance;
+  int count = 0;  // rows behind these are zero
+};
+
+void load(std::span<const Pair> pairs, const PairNoise& noise, Chunk& chunk) {
+  Eigen::Array<float, kChunk, 3> p;
+  chunk.count = static_cast<int>(pairs.size());
+  if (chunk.count < kChunk) {
+    p.setZero();
+    chunk.jacobian.setZero();
+    chunk.residual_m.setZero();
+  }
+  for (int i = 0; i < chunk.count; ++i) {
+    const Pair& pair = pairs[static_cast<std::size_t>(i)];
+    for (int axis = 0; axis < 3; ++axis) {
+      p(i, axis) = pair.p_robot[axis];
+      chunk.jacobian(i, 3 + axis) = pair.normal[axis];
+    }
+    chunk.residual_m[i] = pair.residual_m;
+  }
+  // point_to_plane_jacobian(), column by column.
+  const auto n = chunk.jacobian.rightCols<3>();
+  chunk.jacobian.col(0) = p.col(1) * n.col(2) - p.col(2) * n.col(1);
+  chunk.jacobian.col(1) = p.col(2) * n.col(0) - p.col(0) * n.col(2);
+  chunk.jacobian.col(2) = p.col(0) * n.col(1) - p.col(1) * n.col(0);
+  chunk.squared_lever_m2 = p.col(0).square() + p.col(1).square() + p.col(2).square();
+  chunk.variance.setOnes();
+  for (int k = 0; k < 6; ++k) {
+    const float relative = noise.fixed_variance[k] / (noise.noise_m * noise.noise_m);
+    if (relative > 0.0F) {
+      chunk.variance += relative * chunk.jacobian.col(k).square();
+    }
+  }
+}
+
+// Calls `use` with all pairs, chunk by chunk.
+template <typename Use>
+void for_each_chunk(std::span<const Pair> pairs, const PairNoise& noise, Use&& use) {
+  Chunk chunk;
+  for (std::size_t done = 0; done < pairs.size(); done += kChunk) {
+    load(pairs.subspan(done, std::min<std::size_t>(kChunk, pairs.size() - done)), noise, chunk);
+    use(chunk);
+  }
 }
 
 }  // namespace
@@ -27,15 +76,18 @@ float residual_scale_m(std::span<const Pair> pairs, const PairNoise& noise, floa
   std::array<float, kBins> histogram{};
   const float bins_per_m = kBins / largest_m;
   float total = 0.0F;
-  for (const Pair& pair : pairs) {
-    const Vector6f jacobian = point_to_plane_jacobian(pair);
-    const float error = std::abs(pair.residual_m) / std::sqrt(relative_variance(jacobian, noise));
+  for_each_chunk(pairs, noise, [&](const Chunk& chunk) {
+    const Column bins =
+        (chunk.residual_m.abs() / chunk.variance.sqrt() * bins_per_m).min(static_cast<float>(kBins - 1));
     // A floor says nothing to a solver that cannot move up: neither do its residuals.
-    const float share = jacobian.tail<3>().cwiseAbs2().dot(noise.free.tail<3>());
-    const auto bin = static_cast<std::size_t>(std::min(error * bins_per_m, static_cast<float>(kBins - 1)));
-    histogram[bin] += share;
-    total += share;
-  }
+    const Column share = chunk.jacobian.col(3).square() * noise.free[3] +
+                         chunk.jacobian.col(4).square() * noise.free[4] +
+                         chunk.jacobian.col(5).square() * noise.free[5];
+    for (int i = 0; i < chunk.count; ++i) {
+      histogram[static_cast<std::size_t>(bins[i])] += share[i];
+    }
+    total += share.sum();
+  });
   float below = 0.0F;
   std::size_t bin = 0;
   while (bin + 1 < kBins && below + histogram[bin] < 0.5F * total) {
@@ -49,20 +101,22 @@ float residual_scale_m(std::span<const Pair> pairs, const PairNoise& noise, floa
 NormalEquations accumulate(std::span<const Pair> pairs, const PairNoise& noise, float scale_m) {
   NormalEquations sum;
   const float c2 = kLossPerDeviation * scale_m * kLossPerDeviation * scale_m;
-  for (const Pair& pair : pairs) {
-    const Vector6f jacobian = point_to_plane_jacobian(pair);
-    const float variance = relative_variance(jacobian, noise);
-    const float error2 = pair.residual_m * pair.residual_m;
-    const float loss = 1.0F + error2 / (variance * c2);
-    const float weight = 1.0F / (loss * loss * variance);
-    const Vector6d j = jacobian.cast<double>();
-    const double w = weight;
-    sum.hessian.selfadjointView<Eigen::Lower>().rankUpdate(j, w);
-    sum.gradient += w * pair.residual_m * j;
-    sum.weight_sum += w;
-    sum.squared_error_sum += w * error2;
-    sum.squared_lever_sum += w * pair.p_robot.squaredNorm();
-  }
+  for_each_chunk(pairs, noise, [&](const Chunk& chunk) {
+    const Column squared_error = chunk.residual_m.square();
+    const Column loss = 1.0F + squared_error / (chunk.variance * c2);
+    Column weight = (loss.square() * chunk.variance).inverse();
+    weight.tail(kChunk - chunk.count).setZero();
+    for (int row = 0; row < 6; ++row) {
+      const Column weighted = weight * chunk.jacobian.col(row);
+      sum.gradient(row) += (weighted * chunk.residual_m).sum();
+      for (int col = 0; col <= row; ++col) {
+        sum.hessian(row, col) += (weighted * chunk.jacobian.col(col)).sum();
+      }
+    }
+    sum.weight_sum += weight.sum();
+    sum.squared_error_sum += (weight * squared_error).sum();
+    sum.squared_lever_sum += (weight * chunk.squared_lever_m2).sum();
+  });
   sum.hessian = sum.hessian.selfadjointView<Eigen::Lower>();
   return sum;
 }

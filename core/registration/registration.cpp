@@ -131,8 +131,7 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
   }
   const MethodTraits& traits = traits_for(end);
   const Prediction prediction = motion_.predict(end, traits);
-  deskewer_.deskew(scan, history_, motion_.scan_motion(end, prediction), out);
-  sampler_.thin(out);
+  prepare_scan(scan, history_, motion_.scan_motion(end, prediction), deskewer_, sampler_, out);
 
   PoseEstimate& pose = out.pose;
   pose.T_map_base = prediction.T_map_base;
@@ -182,6 +181,7 @@ bool Registration::solve(const MapSnapshot& map, const Prediction& prediction, c
   const double search_m =
       2.0 * prediction.deviation.tail<3>().dot(traits.basis.bottomRows<3>().rowwise().norm());
 
+  correspondences_.start(map, pose.T_map_base.translation());
   double distance_m = config_.first_distance_m + std::min(search_m, kLargestSearchM);
   int coarse = kCoarseIterations;
   Step step;

@@ -15,6 +15,7 @@
 #include "core/registration/point_to_plane.hpp"
 #include "core/registration/registration_config.hpp"
 #include "core/registration/sampling.hpp"
+#include "core/registration/scan_preparation.hpp"
 #include "core/registration/solver.hpp"
 
 namespace isobar {

@@ -2,35 +2,20 @@
 #include "drivers/velodyne/velodyne_decoder.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-
-#include "core/geometry.hpp"
 
 namespace isobar::velodyne {
 namespace {
 
-constexpr double kRadPerCount = kRadPerDeg / 100.0;
 /// The azimuth only grows; a fall by more than this is the passage through 0, less is jitter of the motor
 /// [0.01 deg].
 constexpr std::uint32_t kMaxBackwardJitter = 1'000;
-/// Steps from block to block above this are gaps of a restricted field of view, not rotation: 10 deg in one
-/// block would be 250 turns a second.
-constexpr std::uint32_t kMaxBlockStep = 1'000;
 /// ScanPoint::time_4us reaches 262 ms.
 constexpr std::int64_t kMaxScanNs = 262'000'000;
 /// A packet overtaken by longer than this does not belong to the open scan [ns].
 constexpr std::int64_t kMaxLateNs = 50'000'000;
 /// Longer silence is no packet loss but a sensor that was off [ns].
 constexpr std::int64_t kMaxCountedGapNs = 60'000'000'000;
-
-std::uint32_t read_u16(const std::uint8_t* at) { return at[0] | static_cast<std::uint32_t>(at[1]) << 8U; }
-std::uint32_t read_u32(const std::uint8_t* at) { return read_u16(at) | read_u16(at + 2) << 16U; }
-
-std::uint32_t to_count(double degrees) {
-  const double turns = degrees / 360.0;
-  return static_cast<std::uint32_t>(std::lround((turns - std::floor(turns)) * kFullTurn)) % kFullTurn;
-}
 
 ClockAnchorConfig hourly_clock() {
   ClockAnchorConfig config;
@@ -41,34 +26,14 @@ ClockAnchorConfig hourly_clock() {
 }  // namespace
 
 VelodyneDecoder::VelodyneDecoder(const VelodyneConfig& config)
-    : config_(config),
-      traits_(traits_of(config.model)),
-      cos_azimuth_(kFullTurn),
-      sin_azimuth_(kFullTurn),
-      anchor_(hourly_clock()) {
-  for (std::size_t laser = 0; laser < static_cast<std::size_t>(traits_.lasers); ++laser) {
-    cos_elevation_[laser] = static_cast<float>(std::cos(traits_.elevation_deg[laser] * kRadPerDeg));
-    sin_elevation_[laser] = static_cast<float>(std::sin(traits_.elevation_deg[laser] * kRadPerDeg));
-  }
-  for (std::size_t count = 0; count < kFullTurn; ++count) {
-    cos_azimuth_[count] = static_cast<float>(std::cos(static_cast<double>(count) * kRadPerCount));
-    sin_azimuth_[count] = static_cast<float>(std::sin(static_cast<double>(count) * kRadPerCount));
-  }
-  constexpr double kMaxCount = 65'535.0;
-  // The small shares keep 0.3 m / 2 mm from becoming 150.00000000000003.
-  min_count_ = static_cast<std::uint32_t>(
-      std::clamp(std::ceil(config.min_range_m / kDistanceUnitM - 1e-6), 1.0, kMaxCount));
-  max_count_ = static_cast<std::uint32_t>(
-      std::clamp(std::floor(config.max_range_m / kDistanceUnitM + 1e-6), 0.0, kMaxCount));
-  mask_start_ = to_count(config.mask_start_deg);
-  mask_width_ = (to_count(config.mask_end_deg) + kFullTurn - mask_start_) % kFullTurn;
-}
+    : model_(config.model), traits_(traits_of(config.model)), returns_(config), anchor_(hourly_clock()) {}
 
 DecodeResult VelodyneDecoder::add_packet(std::span<const std::uint8_t> payload, std::int64_t host_stamp_ns,
                                          Scan& current) {
-  Packet packet;
-  const DecodeStatus status = inspect(payload, packet);
+  DataPacket packet;
+  const DecodeStatus status = read_packet(payload, model_, packet);
   if (status != DecodeStatus::kOk) {
+    count(status, packet);
     return {status, false};
   }
   if (seen(packet)) {
@@ -109,47 +74,27 @@ std::string VelodyneDecoder::wrong_model_message() const {
   return text.data();
 }
 
-DecodeStatus VelodyneDecoder::inspect(std::span<const std::uint8_t> payload, Packet& packet) {
-  if (payload.size() == kPositionPacketBytes) {
-    ++counters_.position;
-    return DecodeStatus::kPosition;
+void VelodyneDecoder::count(DecodeStatus status, const DataPacket& packet) {
+  switch (status) {
+    case DecodeStatus::kPosition:
+      ++counters_.position;
+      break;
+    case DecodeStatus::kTruncated:
+      ++counters_.truncated;
+      break;
+    case DecodeStatus::kOversized:
+      ++counters_.oversized;
+      break;
+    case DecodeStatus::kWrongModel:
+      wrong_product_id_ = packet.product_id;
+      ++counters_.wrong_model;
+      break;
+    default:
+      ++counters_.garbage;
   }
-  if (payload.size() < kDataPacketBytes) {
-    ++counters_.truncated;
-    return DecodeStatus::kTruncated;
-  }
-  if (payload.size() > kDataPacketBytes) {
-    ++counters_.oversized;
-    return DecodeStatus::kOversized;
-  }
-  const auto garbage = [this] {
-    ++counters_.garbage;
-    return DecodeStatus::kGarbage;
-  };
-  packet.bytes = payload.data();
-  for (std::size_t block = 0; block < kBlocks; ++block) {
-    const std::uint8_t* at = packet.bytes + block * kBlockBytes;
-    packet.azimuth[block] = read_u16(at + 2);
-    if (at[0] != kBlockFlag0 || at[1] != kBlockFlag1 || packet.azimuth[block] >= kFullTurn) {
-      return garbage();
-    }
-  }
-  const std::uint8_t product_id = packet.bytes[kProductIdOffset];
-  if (product_id != static_cast<std::uint8_t>(config_.model)) {
-    wrong_product_id_ = product_id;
-    ++counters_.wrong_model;
-    return DecodeStatus::kWrongModel;
-  }
-  const auto mode = static_cast<ReturnMode>(packet.bytes[kReturnModeOffset]);
-  if (mode != ReturnMode::kStrongest && mode != ReturnMode::kLast && mode != ReturnMode::kDual) {
-    return garbage();
-  }
-  packet.dual = mode == ReturnMode::kDual;
-  packet.timestamp_us = read_u32(packet.bytes + kTimestampOffset);
-  return DecodeStatus::kOk;
 }
 
-bool VelodyneDecoder::seen(const Packet& packet) {
+bool VelodyneDecoder::seen(const DataPacket& packet) {
   for (const Identity& identity : recent_) {
     if (identity.used && identity.timestamp_us == packet.timestamp_us &&
         identity.azimuth == packet.azimuth[0]) {
@@ -161,8 +106,8 @@ bool VelodyneDecoder::seen(const Packet& packet) {
   return false;
 }
 
-DecodeResult VelodyneDecoder::add_in_order(const Packet& packet, bool stepped, std::int64_t offset_before_ns,
-                                           Scan& current) {
+DecodeResult VelodyneDecoder::add_in_order(const DataPacket& packet, bool stepped,
+                                           std::int64_t offset_before_ns, Scan& current) {
   DecodeResult result;
   if (const std::int64_t gap_ns = packet.device_ns - last_device_ns_; have_last_ && gap_ns > 0) {
     shortest_gap_ns_ = shortest_gap_ns_ == 0 ? gap_ns : std::min(shortest_gap_ns_, gap_ns);
@@ -170,31 +115,29 @@ DecodeResult VelodyneDecoder::add_in_order(const Packet& packet, bool stepped, s
   const std::uint32_t lost = stepped ? 0 : lost_before(packet);
   counters_.lost += lost;
   const int cut = first_block_of_next_scan(packet, stepped, current);
-  const std::int64_t end_ns =
-      packet.device_ns + traits_.firing_offset_ns(kBlocks - 1, kChannels - 1, packet.dual);
   if (cut > 0) {
     if (!scan_open_) {
       open(packet.device_ns, current);
     }
     current.packets_lost += lost;
-    decode(packet, 0, cut);
-    append(packet.device_ns + traits_.firing_offset_ns(cut - 1, kChannels - 1, packet.dual), current);
+    append(packet, 0, cut, current);
   }
   if (cut < kBlocks) {
     if (scan_open_) {
       complete(offset_before_ns, current);
       result.scan_complete = true;
     }
-    decode(packet, cut, kBlocks);
-    pending_ = true;
-    pending_start_ns_ = packet.device_ns + traits_.firing_offset_ns(cut, 0, packet.dual);
-    pending_end_ns_ = end_ns;
-    pending_lost_ = cut == 0 ? lost : 0;
+    wait_for_next_scan(packet, cut, cut == 0 ? lost : 0);
     if (!result.scan_complete) {
       take_pending(current);
     }
   }
   ++counters_.packets;
+  remember(packet);
+  return result;
+}
+
+void VelodyneDecoder::remember(const DataPacket& packet) {
   have_last_ = true;
   last_device_ns_ = packet.device_ns;
   last_azimuth_ = packet.azimuth[kBlocks - 1];
@@ -202,10 +145,9 @@ DecodeResult VelodyneDecoder::add_in_order(const Packet& packet, bool stepped, s
   const std::int64_t swept_ns = traits_.firing_offset_ns(kBlocks - 1, 0, packet.dual);
   azimuth_rate_ =
       swept < kFullTurn / 4 ? static_cast<double>(swept) / static_cast<double>(swept_ns) : azimuth_rate_;
-  return result;
 }
 
-DecodeResult VelodyneDecoder::add_reordered(const Packet& packet, Scan& current) {
+DecodeResult VelodyneDecoder::add_reordered(const DataPacket& packet, Scan& current) {
   ++counters_.reordered;
   if (!scan_open_) {
     open(packet.device_ns, current);
@@ -226,13 +168,12 @@ DecodeResult VelodyneDecoder::add_reordered(const Packet& packet, Scan& current)
   // What came late had been counted as lost.
   counters_.lost -= counters_.lost > 0 ? 1 : 0;
   current.packets_lost -= current.packets_lost > 0 ? 1 : 0;
-  decode(packet, 0, kBlocks);
-  append(packet.device_ns + traits_.firing_offset_ns(kBlocks - 1, kChannels - 1, packet.dual), current);
+  append(packet, 0, kBlocks, current);
   ++counters_.packets;
   return {};
 }
 
-std::uint32_t VelodyneDecoder::lost_before(const Packet& packet) const {
+std::uint32_t VelodyneDecoder::lost_before(const DataPacket& packet) const {
   const std::int64_t gap_ns = packet.device_ns - last_device_ns_;
   if (!have_last_ || gap_ns <= 0 || gap_ns > kMaxCountedGapNs) {
     return 0;
@@ -244,7 +185,8 @@ std::uint32_t VelodyneDecoder::lost_before(const Packet& packet) const {
   return packets > 1 ? static_cast<std::uint32_t>(packets - 1) : 0;
 }
 
-int VelodyneDecoder::first_block_of_next_scan(const Packet& packet, bool stepped, const Scan& current) const {
+int VelodyneDecoder::first_block_of_next_scan(const DataPacket& packet, bool stepped,
+                                              const Scan& current) const {
   if (!have_last_) {
     return kBlocks;
   }
@@ -267,64 +209,6 @@ int VelodyneDecoder::first_block_of_next_scan(const Packet& packet, bool stepped
   return kBlocks;
 }
 
-void VelodyneDecoder::decode(const Packet& packet, int first_block, int end_block) {
-  point_count_ = 0;
-  const int stride = packet.dual ? 2 : 1;
-  std::uint32_t step = 0;
-  for (int block = 0; block < end_block; ++block) {
-    const int next = block / stride * stride + stride;
-    if (next < kBlocks) {  // the last firing has no successor: it takes the step before it
-      const std::uint32_t to_next = (packet.azimuth[static_cast<std::size_t>(next)] + kFullTurn -
-                                     packet.azimuth[static_cast<std::size_t>(block)]) %
-                                    kFullTurn;
-      if (to_next <= kMaxBlockStep) {
-        step = to_next;
-      }
-    }
-    if (block >= first_block) {
-      decode_block(packet, block, step);
-    }
-  }
-}
-
-void VelodyneDecoder::decode_block(const Packet& packet, int block, std::uint32_t azimuth_step) {
-  const std::uint8_t* channel_bytes =
-      packet.bytes + static_cast<std::size_t>(block) * kBlockBytes + kBlockHeaderBytes;
-  // In dual return the odd block repeats the firing of the even one before it.
-  const std::uint8_t* twin = packet.dual && block % 2 == 1 ? channel_bytes - kBlockBytes : nullptr;
-  const std::uint32_t block_azimuth = packet.azimuth[static_cast<std::size_t>(block)];
-  const auto block_ns = static_cast<double>(traits_.firings_per_block * traits_.firing_cycle_ns);
-  const std::int64_t block_start_ns = traits_.firing_offset_ns(block, 0, packet.dual);
-  for (int channel = 0; channel < kChannels; ++channel) {
-    const std::uint8_t* at = channel_bytes + static_cast<std::size_t>(channel) * kChannelBytes;
-    const std::uint32_t count = read_u16(at);
-    const bool repeated = twin != nullptr && read_u16(twin + (at - channel_bytes)) == count;
-    if (count < min_count_ || count > max_count_ || repeated) {
-      continue;
-    }
-    const std::int64_t firing_ns = traits_.firing_offset_ns(block, channel, packet.dual);
-    // Rounded to the resolution of the sensor's own azimuths: at most 0.005 deg, 0.9 mm at 10 m.
-    const double counts = azimuth_step * static_cast<double>(firing_ns - block_start_ns) / block_ns;
-    // Never negative, and lround would cost a call a point.
-    const auto beyond = static_cast<std::uint32_t>(counts + 0.5);  // NOLINT(bugprone-incorrect-roundings)
-    const std::size_t azimuth = (block_azimuth + beyond) % kFullTurn;
-    if ((azimuth + kFullTurn - mask_start_) % kFullTurn < mask_width_) {
-      continue;
-    }
-    const auto laser = static_cast<std::size_t>(channel % traits_.lasers);
-    const float range = static_cast<float>(count) * static_cast<float>(kDistanceUnitM);
-    const float across = range * cos_elevation_[laser];
-    TimedPoint& point = points_[point_count_++];
-    point.point = {across * cos_azimuth_[azimuth],
-                   -across * sin_azimuth_[azimuth],
-                   range * sin_elevation_[laser],
-                   0,
-                   traits_.ring[laser],
-                   at[2]};
-    point.device_ns = packet.device_ns + firing_ns;
-  }
-}
-
 void VelodyneDecoder::open(std::int64_t device_ns, Scan& current) {
   scan_open_ = true;
   scan_start_ns_ = device_ns;
@@ -334,25 +218,31 @@ void VelodyneDecoder::open(std::int64_t device_ns, Scan& current) {
   current.sequence = sequence_++;
 }
 
-void VelodyneDecoder::append(std::int64_t end_device_ns, Scan& current) {
-  ScanPoint* out = current.points + current.point_count;
-  for (std::size_t i = 0; i < point_count_; ++i) {
-    *out = points_[i].point;
-    out->time_4us = static_cast<std::uint16_t>(
-        (points_[i].device_ns - scan_start_ns_ + kPointTimeUnitNs / 2) / kPointTimeUnitNs);
-    ++out;
-  }
-  current.point_count += static_cast<std::uint32_t>(point_count_);
-  counters_.returns += point_count_;
-  point_count_ = 0;
-  scan_end_ns_ = std::max(scan_end_ns_, end_device_ns);
+void VelodyneDecoder::append(const DataPacket& packet, int first_block, int end_block, Scan& current) {
+  const std::uint32_t written =
+      returns_.decode(packet, first_block, end_block, packet.device_ns - scan_start_ns_,
+                      current.points + current.point_count);
+  current.point_count += written;
+  counters_.returns += written;
+  scan_end_ns_ = std::max(
+      scan_end_ns_, packet.device_ns + traits_.firing_offset_ns(end_block - 1, kChannels - 1, packet.dual));
+}
+
+void VelodyneDecoder::wait_for_next_scan(const DataPacket& packet, int first_block, std::uint32_t lost) {
+  pending_ = true;
+  pending_packet_ = packet;
+  std::copy_n(packet.bytes, kDataPacketBytes, pending_bytes_.begin());
+  pending_block_ = first_block;
+  pending_lost_ = lost;
 }
 
 void VelodyneDecoder::take_pending(Scan& current) {
   pending_ = false;
-  open(pending_start_ns_, current);
+  pending_packet_.bytes = pending_bytes_.data();
+  open(pending_packet_.device_ns + traits_.firing_offset_ns(pending_block_, 0, pending_packet_.dual),
+       current);
   current.packets_lost = pending_lost_;
-  append(pending_end_ns_, current);
+  append(pending_packet_, pending_block_, kBlocks, current);
 }
 
 void VelodyneDecoder::complete(std::int64_t offset_ns, Scan& current) {

@@ -6,36 +6,14 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "core/samples.hpp"
 #include "core/time/clock_anchor.hpp"
+#include "drivers/velodyne/data_packet.hpp"
 #include "drivers/velodyne/packet_format.hpp"
+#include "drivers/velodyne/return_decoder.hpp"
 
 namespace isobar::velodyne {
-
-struct VelodyneConfig {
-  Model model = Model::kVlp16;
-  /// Returns nearer than this are dropped [m], 0 … 10: housing and mount of the sensor, 0 keeps all.
-  double min_range_m = 0.3;
-  /// Returns farther than this are dropped [m], up to 131 (16 bits of 2 mm).
-  double max_range_m = 131.0;
-  /// Sector in which the sensor sees the robot itself [deg], azimuth clockwise from above as the packet
-  /// counts, from start to end, 0 … 360, may pass 0. Equal values: no sector is dropped.
-  double mask_start_deg = 0.0;
-  double mask_end_deg = 0.0;
-};
-
-enum class DecodeStatus : std::uint8_t {
-  kOk,          ///< decoded
-  kPosition,    ///< a position packet: no points, nothing wrong
-  kTruncated,   ///< shorter than a data packet
-  kOversized,   ///< longer than a data packet
-  kGarbage,     ///< right size, but a block flag, an azimuth or the return mode is impossible
-  kWrongModel,  ///< of another model than configured: see wrong_model_message()
-  kDuplicate,   ///< seen already
-  kTooLate,     ///< overtaken by so much that no open scan can hold it
-};
 
 struct DecodeResult {
   DecodeStatus status = DecodeStatus::kOk;
@@ -63,7 +41,7 @@ struct VelodyneCounters {
 /// Decodes Velodyne data packets into scans. Pure: no I/O, no clock, no allocation after construction.
 ///
 /// The caller owns the memory of the scans. Every call names the scan that is being filled; the decoder
-/// resets it at the start of a revolution. When a packet closes a revolution, its points of the next
+/// resets it at the start of a revolution. When a packet closes a revolution, its blocks of the next
 /// revolution wait inside the decoder for the next call:
 ///
 ///     Scan* scan = loan();
@@ -91,47 +69,30 @@ class VelodyneDecoder {
   [[nodiscard]] std::string wrong_model_message() const;
 
  private:
-  /// A data packet that has been checked.
-  struct Packet {
-    const std::uint8_t* bytes = nullptr;
-    std::uint32_t timestamp_us = 0;
-    bool dual = false;
-    std::array<std::uint32_t, kBlocks> azimuth{};  // [0.01 deg]
-    std::int64_t device_ns = 0;                    // of its first firing, unwrapped
-  };
-  struct TimedPoint {
-    ScanPoint point;  // time_4us not yet set
-    std::int64_t device_ns;
-  };
   struct Identity {
     std::uint32_t timestamp_us = 0;
     std::uint32_t azimuth = 0;
     bool used = false;
   };
 
-  DecodeStatus inspect(std::span<const std::uint8_t> payload, Packet& packet);
-  bool seen(const Packet& packet);
-  DecodeResult add_in_order(const Packet& packet, bool stepped, std::int64_t offset_before_ns, Scan& current);
-  DecodeResult add_reordered(const Packet& packet, Scan& current);
-  [[nodiscard]] std::uint32_t lost_before(const Packet& packet) const;
-  [[nodiscard]] int first_block_of_next_scan(const Packet& packet, bool stepped, const Scan& current) const;
-  void decode(const Packet& packet, int first_block, int end_block);
-  void decode_block(const Packet& packet, int block, std::uint32_t azimuth_step);
+  void count(DecodeStatus status, const DataPacket& packet);
+  bool seen(const DataPacket& packet);
+  DecodeResult add_in_order(const DataPacket& packet, bool stepped, std::int64_t offset_before_ns,
+                            Scan& current);
+  DecodeResult add_reordered(const DataPacket& packet, Scan& current);
+  [[nodiscard]] std::uint32_t lost_before(const DataPacket& packet) const;
+  [[nodiscard]] int first_block_of_next_scan(const DataPacket& packet, bool stepped,
+                                             const Scan& current) const;
+  void remember(const DataPacket& packet);
   void open(std::int64_t device_ns, Scan& current);
-  void append(std::int64_t end_device_ns, Scan& current);
+  void append(const DataPacket& packet, int first_block, int end_block, Scan& current);
+  void wait_for_next_scan(const DataPacket& packet, int first_block, std::uint32_t lost);
   void take_pending(Scan& current);
   void complete(std::int64_t offset_ns, Scan& current);
 
-  VelodyneConfig config_;
+  Model model_;
   const ModelTraits& traits_;
-  std::array<float, kChannels> cos_elevation_{};  // by laser
-  std::array<float, kChannels> sin_elevation_{};
-  std::uint32_t min_count_ = 1;  // in units of kDistanceUnitM
-  std::uint32_t max_count_ = 0;
-  std::uint32_t mask_start_ = 0;
-  std::uint32_t mask_width_ = 0;
-  std::vector<float> cos_azimuth_;  // by azimuth in 0.01 deg
-  std::vector<float> sin_azimuth_;
+  ReturnDecoder returns_;
 
   ClockAnchor anchor_;
   VelodyneCounters counters_;
@@ -150,11 +111,11 @@ class VelodyneDecoder {
   std::int64_t scan_end_ns_ = 0;
   std::uint32_t sequence_ = 0;
 
-  std::array<TimedPoint, static_cast<std::size_t>(kBlocks) * kChannels> points_;  // of one packet
-  std::size_t point_count_ = 0;
-  bool pending_ = false;  // points_ belong to a scan that has not been opened yet
-  std::int64_t pending_start_ns_ = 0;
-  std::int64_t pending_end_ns_ = 0;
+  // Blocks of the packet that closed a scan, for the next scan, which has no memory yet.
+  bool pending_ = false;
+  DataPacket pending_packet_;
+  std::array<std::uint8_t, kDataPacketBytes> pending_bytes_{};
+  int pending_block_ = 0;
   std::uint32_t pending_lost_ = 0;
 };
 

@@ -41,6 +41,7 @@ struct Change {
   void operator()(std::vector<int>* v) const { *v = {1, 0}; }
   void operator()(Role* v) const { *v = Role::kBaseStation; }
   void operator()(Method* v) const { *v = Method::kOdometry; }
+  void operator()(Matcher* v) const { *v = Matcher::kNearest; }
   void operator()(AirTemperatureMode* v) const { *v = AirTemperatureMode::kFixed; }
   void operator()(CompensationModel* v) const { *v = CompensationModel::kSimple; }
   void operator()(std::vector<double>* v) const { *v = {1.5, -1.0 / 3.0}; }

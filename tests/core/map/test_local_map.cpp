@@ -3,9 +3,12 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <random>
+#include <span>
+#include <vector>
 
 #include "core/map/local_map.hpp"
 
@@ -58,6 +61,22 @@ std::size_t points_within(const LocalMap& map, const Eigen::Vector3d& centre, do
   return count;
 }
 
+// A shelf that keeps everything in memory and counts.
+struct ShelfInMemory final : isobar::TileShelf {
+  bool put(const isobar::TileKey& key, std::span<const std::byte> bytes) override {
+    tiles[key].assign(bytes.begin(), bytes.end());
+    return true;
+  }
+  bool take(const isobar::TileKey& key, std::vector<std::byte>& bytes) override {
+    ++taken;
+    bytes = tiles.at(key);
+    return true;
+  }
+  [[nodiscard]] bool contains(const isobar::TileKey& key) const override { return tiles.contains(key); }
+  std::map<isobar::TileKey, std::vector<std::byte>> tiles;
+  std::size_t taken = 0;
+};
+
 // A post of 0.4 m at `x_m`, 0: what a standing person looks like.
 RangeOf room_with_post(double x_m) {
   return [x_m](const Eigen::Vector3d& direction) {
@@ -72,13 +91,12 @@ RangeOf room_with_post(double x_m) {
 TEST_CASE("a wall is matched on its plane, with the normal towards the robot") {
   LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
   auto scan = std::make_unique<RegisteredScan>();
-  std::vector<MapPoint> evicted;
   std::mt19937 random(5);
   std::normal_distribution<double> noise(0.0, 0.015);
   for (int i = 0; i < 10; ++i) {
     fill_scan(*scan, 0.0, i * 2'000'000'000LL,
               [&](const Eigen::Vector3d& direction) { return range_to_walls(direction) + noise(random); });
-    CHECK(map.update(*scan, evicted));
+    CHECK(map.update(*scan));
   }
   MapMatch match;
   const Eigen::Vector3d beside_wall(kRoomM - 0.1, 1.0, 0.3);
@@ -93,32 +111,29 @@ TEST_CASE("a wall is matched on its plane, with the normal towards the robot") {
 TEST_CASE("a robot that stands still does not make the map grow") {
   LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
   auto scan = std::make_unique<RegisteredScan>();
-  std::vector<MapPoint> evicted;
   fill_scan(*scan, 0.0, 0, range_to_walls);
-  map.update(*scan, evicted);
+  map.update(*scan);
   const std::size_t once = points_within(map, Eigen::Vector3d::Zero(), 100.0);
   for (int i = 1; i < 50; ++i) {
     fill_scan(*scan, 0.0, i * 2'000'000'000LL, range_to_walls);
-    map.update(*scan, evicted);
+    map.update(*scan);
   }
   CHECK(once > 1000);
   CHECK(points_within(map, Eigen::Vector3d::Zero(), 100.0) == once);
-  CHECK(evicted.empty());
 }
 
 TEST_CASE("what rays pass through leaves the map; the walls stay") {
   LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
   auto scan = std::make_unique<RegisteredScan>();
-  std::vector<MapPoint> evicted;
   fill_scan(*scan, 0.0, 0, room_with_post(3.0));
-  map.update(*scan, evicted);
+  map.update(*scan);
   const Eigen::Vector3d post(3.0, 0.0, 0.0);
   REQUIRE(points_within(map, post, 0.5) > 10);
   fill_scan(*scan, 0.0, 0, range_to_walls);
   const std::size_t walls = points_within(map, Eigen::Vector3d(-kRoomM, 0.0, 0.0), 2.0);
   for (int i = 1; i < 8; ++i) {
     fill_scan(*scan, 0.0, i * 2'000'000'000LL, range_to_walls);
-    map.update(*scan, evicted);
+    map.update(*scan);
   }
   CHECK(points_within(map, post, 0.5) == 0);
   CHECK(points_within(map, Eigen::Vector3d(-kRoomM, 0.0, 0.0), 2.0) >= walls);
@@ -127,42 +142,122 @@ TEST_CASE("what rays pass through leaves the map; the walls stay") {
   CHECK(map.seen_through_count() > 0);
 }
 
-TEST_CASE("tiles out of reach are handed out once, and memory stays bounded on a long way") {
+TEST_CASE("tiles out of reach go to the shelf, and memory stays bounded on a long way") {
   MapConfig config;
   config.radius_m = 20.0;
-  LocalMap map(config, Eigen::Isometry3d::Identity());
+  ShelfInMemory shelf;
+  LocalMap map(config, Eigen::Isometry3d::Identity(), &shelf);
   auto scan = std::make_unique<RegisteredScan>();
-  std::vector<MapPoint> evicted;
   std::size_t most_tiles = 0;
   constexpr int kWayM = 100;  // five times the radius
   for (int i = 0; i <= kWayM; ++i) {
     fill_scan(*scan, i * 1.0, i * 1'000'000'000LL, range_to_walls);
-    map.update(*scan, evicted);
+    map.update(*scan);
     most_tiles = std::max(most_tiles, map.tile_count());
   }
   // A ball of 20 m + one tile holds at most (2 * 28 / 8 + 1)^3 tiles, of which a flat world fills two layers.
   CHECK(most_tiles < 128);
+  std::vector<MapPoint> stored;
+  for (const auto& [key, bytes] : shelf.tiles) {
+    CHECK(isobar::append_tile_points(bytes, stored));
+  }
+  REQUIRE(stored.size() > 1000);
   double nearest = 1e9;
-  for (const MapPoint& point : evicted) {
+  for (const MapPoint& point : stored) {
     nearest = std::min(nearest, kWayM - point.p_map.x());
   }
-  CHECK(nearest > config.radius_m - isobar::kTileSizeM);
-  const std::size_t out = evicted.size();
-  CHECK(out > 1000);
-  map.append_points(evicted);
-  CHECK(evicted.size() > out);
+  CHECK(nearest > config.radius_m - 8.0);  // less a tile
+}
+
+TEST_CASE("a robot that comes back finds the map that it left, and no shelf is asked in between") {
+  MapConfig config;
+  config.radius_m = 20.0;
+  ShelfInMemory shelf;
+  LocalMap map(config, Eigen::Isometry3d::Identity(), &shelf);
+  auto scan = std::make_unique<RegisteredScan>();
+  std::int64_t stamp_ns = 0;
+  const auto go_to = [&](double x_m) {
+    fill_scan(*scan, x_m, stamp_ns += 1'000'000'000, range_to_walls);
+    map.update(*scan);
+  };
+  for (int i = 0; i < 5; ++i) go_to(0.0);
+  const Eigen::Vector3d wall(-kRoomM, 0.0, 0.0);
+  const std::size_t points = points_within(map, wall, 4.0);
+  std::vector<isobar::MapMatch> before;
+  const auto look = [&] {
+    std::vector<isobar::MapMatch> matches;
+    for (double y = -4.0; y <= 4.0; y += 0.3) {
+      isobar::MapMatch match;
+      if (map.snapshot()->nearest({-kRoomM + 0.05, y, 0.2}, Eigen::Vector3d::Zero(), 0.4, match))
+        matches.push_back(match);
+    }
+    return matches;
+  };
+  before = look();
+  REQUIRE(before.size() > 10);
+  for (double x = 0.0; x < 80.0; x += 8.0) go_to(x);
+  REQUIRE(points_within(map, wall, 4.0) == 0);
+  const std::size_t taken = shelf.taken;
+  go_to(80.0);
+  CHECK(shelf.taken == taken);
+  // 12 m away, so that these scans add nothing to the wall.
+  for (int i = 0; i < 8; ++i) go_to(12.0);
+  CHECK(points_within(map, wall, 4.0) == points);
+  const auto after = look();
+  REQUIRE(after.size() == before.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    CHECK(after[i].q_map == before[i].q_map);
+    CHECK(after[i].normal_map == before[i].normal_map);
+  }
+  CHECK(map.lost_tile_count() == 0);
+}
+
+TEST_CASE("points that fall into a tile of the shelf add to it, even before the map looked for it") {
+  MapConfig config;
+  config.radius_m = 20.0;
+  ShelfInMemory shelf;
+  LocalMap map(config, Eigen::Isometry3d::Identity(), &shelf);
+  auto scan = std::make_unique<RegisteredScan>();
+  fill_scan(*scan, 0.0, 0, range_to_walls);
+  map.update(*scan);
+  const std::size_t points = points_within(map, Eigen::Vector3d(-kRoomM, 0.0, 0.0), 3.0);
+  fill_scan(*scan, 60.0, 1'000'000'000, range_to_walls);
+  map.update(*scan);
+  // One long look back along the x axis: its points lie on the wall that was seen from 0.
+  scan->pose.T_map_base.translation().x() = 13.0;
+  scan->pose.stamp_ns += 1'000'000'000;
+  scan->point_count = 1;
+  scan->points[0] = ScanPoint{-18.0F, 0.1F, 0.1F, 0, 0, 0};
+  map.update(*scan);
+  CHECK(points_within(map, Eigen::Vector3d(-kRoomM, 0.0, 0.0), 3.0) >= points);
+}
+
+TEST_CASE("a damaged tile is counted and forgotten, and the place is mapped anew") {
+  MapConfig config;
+  config.radius_m = 20.0;
+  ShelfInMemory shelf;
+  LocalMap map(config, Eigen::Isometry3d::Identity(), &shelf);
+  auto scan = std::make_unique<RegisteredScan>();
+  fill_scan(*scan, 0.0, 0, range_to_walls);
+  map.update(*scan);
+  fill_scan(*scan, 80.0, 1'000'000'000, range_to_walls);
+  map.update(*scan);
+  for (auto& [key, bytes] : shelf.tiles) bytes.resize(bytes.size() - 1);
+  fill_scan(*scan, 0.0, 2'000'000'000, range_to_walls);
+  map.update(*scan);
+  CHECK(map.lost_tile_count() > 0);
+  CHECK(points_within(map, Eigen::Vector3d::Zero(), 8.0) > 1000);
 }
 
 TEST_CASE("a snapshot does not change when the map does, and unchanged tiles are shared") {
   LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
   auto scan = std::make_unique<RegisteredScan>();
-  std::vector<MapPoint> evicted;
   fill_scan(*scan, 0.0, 0, range_to_walls);
-  map.update(*scan, evicted);
+  map.update(*scan);
   const auto before = map.snapshot();
   const std::size_t planes = before->plane_count();
   fill_scan(*scan, 30.0, 1'000'000'000, range_to_walls);
-  map.update(*scan, evicted);
+  map.update(*scan);
   CHECK(before->plane_count() == planes);
   CHECK(map.snapshot()->plane_count() > planes);
 }
@@ -170,27 +265,25 @@ TEST_CASE("a snapshot does not change when the map does, and unchanged tiles are
 TEST_CASE("a scan placed by the prior alone adds what is unknown and leaves what is known") {
   LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
   auto scan = std::make_unique<RegisteredScan>();
-  std::vector<MapPoint> evicted;
   fill_scan(*scan, 0.0, 0, range_to_walls);
-  map.update(*scan, evicted);
+  map.update(*scan);
   const std::size_t known = points_within(map, Eigen::Vector3d(-kRoomM, 0.0, 0.0), 1.5);
   // 0.3 m off: it would double every wall that is perpendicular to the way.
   fill_scan(*scan, 0.3, 1'000'000'000, range_to_walls);
   scan->pose.mode = PoseMode::kPriorOnly;
-  map.update(*scan, evicted);
+  map.update(*scan);
   CHECK(points_within(map, Eigen::Vector3d(-kRoomM, 0.0, 0.0), 1.5) == known);
   fill_scan(*scan, 40.0, 2'000'000'000, range_to_walls);
   scan->pose.mode = PoseMode::kPriorOnly;
-  map.update(*scan, evicted);
+  map.update(*scan);
   CHECK(points_within(map, Eigen::Vector3d(40.0 - kRoomM, 0.0, 0.0), 1.5) > known / 2);
 }
 
 TEST_CASE("a pose that is not finite does not reach the map") {
   LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
   auto scan = std::make_unique<RegisteredScan>();
-  std::vector<MapPoint> evicted;
   fill_scan(*scan, 0.0, 0, range_to_walls);
   scan->pose.T_map_base.translation().y() = std::nan("");
-  CHECK_FALSE(map.update(*scan, evicted));
+  CHECK_FALSE(map.update(*scan));
   CHECK(map.cell_count() == 0);
 }

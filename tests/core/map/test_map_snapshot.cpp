@@ -1,89 +1,217 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <map>
+#include <memory>
 #include <random>
-#include <tuple>
+#include <vector>
 
-#include "core/map/map_snapshot.hpp"
+#include "core/map/map_block.hpp"
+#include "core/map/nearest_plane.hpp"
+#include "core/map/plane_hash.hpp"
 
 namespace {
 
+using isobar::CellIndex;
+using isobar::LocalFrame;
 using isobar::MapMatch;
 using isobar::MapSnapshot;
-using isobar::tile_of;
-using isobar::TileIndex;
+using isobar::MatchQuery;
+using isobar::NearestPlane;
+using isobar::PackedPlane;
+using isobar::PlaneHash;
+using isobar::PlaneMatch;
+using isobar::PlaneTile;
 using isobar::TileKey;
-using isobar::TilePlane;
+using isobar::TileTree;
+
+constexpr float kCellM = 0.25F;
+// Far from the origin, where single precision in map coordinates would show.
+const Eigen::Vector3d kFarAway(8000.0, -5000.0, 0.0);
 
 struct WorldPlane {
   Eigen::Vector3d q;
   Eigen::Vector3f normal;
+  CellIndex cell;
 };
 
-// Random planes over several tiles, far from the origin, where single precision in map coordinates would
-// show.
-std::vector<WorldPlane> random_planes(std::mt19937& random) {
+// At most one plane a cell, its point in the cell, over several tiles.
+std::vector<WorldPlane> random_planes(std::mt19937& random, int count) {
   std::uniform_real_distribution<double> place(-11.0, 11.0);
   std::normal_distribution<float> direction;
-  std::vector<WorldPlane> planes;
-  for (int i = 0; i < 3000; ++i) {
+  std::map<std::array<int, 3>, WorldPlane> planes;
+  for (int i = 0; i < count; ++i) {
     const Eigen::Vector3f normal(direction(random), direction(random), direction(random));
-    planes.push_back({Eigen::Vector3d(place(random) + 8000.0, place(random) - 5000.0, place(random)),
-                      normal.normalized()});
+    const Eigen::Vector3d q = kFarAway + Eigen::Vector3d(place(random), place(random), place(random));
+    const LocalFrame frame(q, kCellM);
+    const CellIndex cell = frame.cell_of(frame.to_local(q));
+    planes.insert({{cell.x(), cell.y(), cell.z()}, {q, normal.normalized(), cell}});
   }
-  return planes;
+  std::vector<WorldPlane> list;
+  for (const auto& [cell, plane] : planes) list.push_back(plane);
+  return list;
 }
 
-MapSnapshot snapshot_of(const std::vector<WorldPlane>& planes) {
-  std::map<std::tuple<int, int, int>, std::vector<TilePlane>> tiles;
+std::vector<std::shared_ptr<const PlaneTile>> tiles_of(const std::vector<WorldPlane>& planes) {
+  std::map<TileKey, std::map<std::size_t, std::map<int, PackedPlane>>> sorted;
   for (const WorldPlane& plane : planes) {
-    const TileKey key = tile_of(plane.q);
-    tiles[{key.x, key.y, key.z}].push_back({(plane.q - key.origin_map()).cast<float>(), plane.normal});
+    const TileKey key = isobar::tile_of(plane.cell);
+    const std::size_t block = isobar::block_of(plane.cell);
+    const Eigen::Vector3d centre =
+        (isobar::first_cell(key, block).cast<double>().array() + 0.5 * isobar::kBlockCells) * double{kCellM};
+    sorted[key][block][isobar::place_of(plane.cell)] =
+        PackedPlane::of((plane.q - centre).cast<float>(), plane.normal, kCellM);
   }
-  std::vector<std::shared_ptr<const TileIndex>> indices{nullptr};
-  for (auto& [key, list] : tiles) {
-    const TileKey tile{std::get<0>(key), std::get<1>(key), std::get<2>(key)};
-    indices.push_back(std::make_shared<const TileIndex>(tile, std::move(list)));
+  std::vector<std::shared_ptr<const PlaneTile>> tiles;
+  for (const auto& [key, blocks] : sorted) {
+    auto tile = std::make_shared<PlaneTile>();
+    tile->key = key;
+    for (const auto& [index, members] : blocks) {
+      auto block = std::make_shared<isobar::PlaneBlock>();
+      for (const auto& [slot, plane] : members) {
+        block->mask.insert(slot);
+        block->planes.push_back(plane);
+      }
+      tile->plane_count += members.size();
+      tile->blocks[index] = std::move(block);
+    }
+    tiles.push_back(std::move(tile));
   }
-  return MapSnapshot(std::move(indices));
+  return tiles;
 }
+
+std::unique_ptr<MapSnapshot> nearest_plane_of(const std::vector<WorldPlane>& planes) {
+  std::vector<std::shared_ptr<const TileTree>> trees;
+  for (const auto& tile : tiles_of(planes)) trees.push_back(std::make_shared<const TileTree>(*tile, kCellM));
+  return std::make_unique<NearestPlane>(std::move(trees), kCellM);
+}
+
+std::unique_ptr<MapSnapshot> plane_hash_of(const std::vector<WorldPlane>& planes) {
+  return std::make_unique<PlaneHash>(tiles_of(planes), kCellM);
+}
+
+bool faces(const WorldPlane& plane, const Eigen::Vector3d& viewpoint) {
+  return plane.normal.cast<double>().dot(viewpoint - plane.q) > 0.0;
+}
+
+const WorldPlane* nearest_of_all(const std::vector<WorldPlane>& planes, const Eigen::Vector3d& p,
+                                 const Eigen::Vector3d& viewpoint, double max_distance) {
+  const WorldPlane* best = nullptr;
+  for (const WorldPlane& plane : planes) {
+    const double distance = (plane.q - p).norm();
+    if (distance < max_distance && faces(plane, viewpoint)) {
+      max_distance = distance;
+      best = &plane;
+    }
+  }
+  return best;
+}
+
+// A plane is stored to 1/2 of 2 m / 2^15 = 31 um an axis.
+constexpr double kStoredM = 1e-4;
 
 }  // namespace
 
-TEST_CASE("the nearest facing plane is the one that a search through all finds") {
+TEST_CASE("trees find the nearest facing plane that a search through all finds") {
   std::mt19937 random(7);
-  const std::vector<WorldPlane> planes = random_planes(random);
-  const MapSnapshot snapshot = snapshot_of(planes);
-  REQUIRE(snapshot.plane_count() == planes.size());
+  const std::vector<WorldPlane> planes = random_planes(random, 3000);
+  const auto snapshot = nearest_plane_of(planes);
+  REQUIRE(snapshot->plane_count() == planes.size());
   std::uniform_real_distribution<double> place(-12.0, 12.0);
   constexpr double kMaxDistance = 1.2;
   int found = 0;
   for (int i = 0; i < 500; ++i) {
-    const Eigen::Vector3d p(place(random) + 8000.0, place(random) - 5000.0, place(random));
+    const Eigen::Vector3d p = kFarAway + Eigen::Vector3d(place(random), place(random), place(random));
     const Eigen::Vector3d viewpoint = p + Eigen::Vector3d(place(random), place(random), place(random));
-    double best = kMaxDistance;
-    for (const WorldPlane& plane : planes) {
-      const double distance = (plane.q - p).norm();
-      if (distance < best && plane.normal.cast<double>().dot(viewpoint - plane.q) > 0.0) {
-        best = distance;
-      }
-    }
+    const WorldPlane* best = nearest_of_all(planes, p, viewpoint, kMaxDistance);
     MapMatch match;
-    const bool any = snapshot.nearest(p, viewpoint, kMaxDistance, match);
-    CHECK(any == (best < kMaxDistance));
-    if (any) {
+    const bool any = snapshot->nearest(p, viewpoint, kMaxDistance, match);
+    CHECK(any == (best != nullptr));
+    if (any && best != nullptr) {
       ++found;
-      // Positions in a tile are floats up to 8 m: 1e-6 m.
-      CHECK((match.q_map - p).norm() == doctest::Approx(best).epsilon(1e-5));
-      CHECK(match.normal_map.cast<double>().dot(viewpoint - match.q_map) > 0.0);
+      CHECK((match.q_map - best->q).norm() < kStoredM);
+      CHECK(match.normal_map.dot(best->normal) > 0.9999F);
     }
   }
   CHECK(found > 200);
+}
+
+TEST_CASE(
+    "the hash gives the plane of the point's own cell, and elsewhere the nearest that faces the robot") {
+  std::mt19937 random(8);
+  const std::vector<WorldPlane> planes = random_planes(random, 30'000);
+  const auto snapshot = plane_hash_of(planes);
+  REQUIRE(snapshot->plane_count() == planes.size());
+  std::map<std::array<int, 3>, const WorldPlane*> by_cell;
+  for (const WorldPlane& plane : planes) by_cell[{plane.cell.x(), plane.cell.y(), plane.cell.z()}] = &plane;
+  std::uniform_real_distribution<double> place(-11.5, 11.5);
+  int own = 0;
+  int around = 0;
+  for (int i = 0; i < 2000; ++i) {
+    Eigen::Vector3d p = kFarAway + Eigen::Vector3d(place(random), place(random), place(random));
+    if (i % 3 == 0) {  // near a plane, as most points of a scan are
+      p = planes[static_cast<std::size_t>(i)].q +
+          0.005 * Eigen::Vector3d(place(random), place(random), place(random));
+    }
+    const Eigen::Vector3d viewpoint = p + Eigen::Vector3d(place(random), place(random), place(random));
+    const double max_distance = i % 2 == 0 ? 0.35 : 1.2;
+    const LocalFrame frame(p, kCellM);
+    const CellIndex cell = frame.cell_of(frame.to_local(p));
+    const auto in_cell = by_cell.find({cell.x(), cell.y(), cell.z()});
+    const WorldPlane* expected = nearest_of_all(planes, p, viewpoint, max_distance);
+    if (in_cell != by_cell.end() && faces(*in_cell->second, viewpoint) &&
+        (in_cell->second->q - p).norm() < max_distance) {
+      expected = in_cell->second;
+      ++own;
+    } else {
+      around += expected != nullptr ? 1 : 0;
+    }
+    MapMatch match;
+    REQUIRE(snapshot->nearest(p, viewpoint, max_distance, match) == (expected != nullptr));
+    if (expected != nullptr) {
+      CHECK((match.q_map - expected->q).norm() < kStoredM);
+      CHECK(match.normal_map.dot(expected->normal) > 0.9999F);
+    }
+  }
+  CHECK(own > 100);
+  CHECK(around > 500);
+}
+
+TEST_CASE("what a matcher remembers of the last call never changes what it finds") {
+  std::mt19937 random(9);
+  const std::vector<WorldPlane> planes = random_planes(random, 30'000);
+  for (const auto& snapshot : {plane_hash_of(planes), nearest_plane_of(planes)}) {
+    MatchQuery query;
+    query.frame = LocalFrame(kFarAway, kCellM);
+    query.viewpoint_local = query.frame.to_local(kFarAway + Eigen::Vector3d(1.0, 2.0, 3.0));
+    std::uniform_real_distribution<float> place(-10.0F, 10.0F);
+    std::normal_distribution<float> step(0.0F, 0.02F);
+    std::vector<Eigen::Vector3f> points(500);
+    for (Eigen::Vector3f& p : points) {
+      p = query.frame.to_local(kFarAway) + Eigen::Vector3f(place(random), place(random), place(random));
+    }
+    std::vector<PlaneMatch> remembered(points.size());
+    for (int iteration = 0; iteration < 8; ++iteration) {
+      query.max_distance_m = iteration < 3 ? 1.0F : 0.3F;
+      std::vector<PlaneMatch> fresh(points.size());
+      snapshot->match(query, points, remembered);
+      snapshot->match(query, points, fresh);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        REQUIRE(remembered[i].found == fresh[i].found);
+        if (!fresh[i].found) continue;
+        CHECK(remembered[i].q_local == fresh[i].q_local);
+        CHECK(remembered[i].normal == fresh[i].normal);
+      }
+      for (Eigen::Vector3f& p : points) p += Eigen::Vector3f(step(random), step(random), step(random));
+    }
+  }
 }
 
 TEST_CASE("an empty map matches nothing") {
   MapMatch match;
   CHECK_FALSE(MapSnapshot().nearest(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 10.0, match));
   CHECK(MapSnapshot().empty());
+  CHECK_FALSE(plane_hash_of({})->nearest(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 2.0, match));
+  CHECK_FALSE(nearest_plane_of({})->nearest(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 2.0, match));
 }

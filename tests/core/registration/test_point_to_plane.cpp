@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -93,4 +94,57 @@ TEST_CASE("a pair that feels an error of the fixed height counts less, one that 
   CHECK(accumulate(wall, noise, 0.02F).weight_sum == doctest::Approx(1.0));
   // Variance 0.02^2 + (0.8 * 0.06)^2 in units of 0.02^2.
   CHECK(accumulate(ramp, noise, 0.02F).weight_sum == doctest::Approx(1.0 / (1.0 + 0.64 * 9.0)));
+}
+
+TEST_CASE("the sums are those of one pair after another in double precision, however many pairs there are") {
+  std::mt19937 random(14);
+  PairNoise noise;
+  noise.fixed_variance << 1e-4F, 2e-4F, 0.0F, 0.0F, 0.0F, 9e-4F;
+  constexpr double kScaleM = 0.03;
+  for (const int count : {0, 1, 63, 64, 65, 128, 1'801}) {
+    std::vector<Pair> pairs;
+    NormalEquations expected;
+    Matrix6d sizes = Matrix6d::Zero();
+    for (int i = 0; i < count; ++i) {
+      pairs.push_back({random_vector(random, 8.0F), random_vector(random, 1.0F).normalized(),
+                       random_vector(random, 0.05F).x()});
+      const Vector6d jacobian = point_to_plane_jacobian(pairs.back()).cast<double>();
+      const double variance =
+          1.0 + jacobian.cwiseAbs2().dot(noise.fixed_variance.cast<double>()) / (0.02 * 0.02);
+      const double error2 = static_cast<double>(pairs.back().residual_m) * pairs.back().residual_m;
+      const double loss = 1.0 + error2 / (variance * 9.0 * kScaleM * kScaleM);
+      const double weight = 1.0 / (loss * loss * variance);
+      expected.hessian += weight * jacobian * jacobian.transpose();
+      sizes += weight * jacobian.cwiseAbs() * jacobian.cwiseAbs().transpose();
+      expected.gradient += weight * pairs.back().residual_m * jacobian;
+      expected.weight_sum += weight;
+      expected.squared_error_sum += weight * error2;
+      expected.squared_lever_sum += weight * pairs.back().p_robot.cast<double>().squaredNorm();
+    }
+    const NormalEquations sum = accumulate(pairs, noise, static_cast<float>(kScaleM));
+    // Single precision: 1e-7 a step, a dozen steps a term and 64 addends at most; signs may cancel.
+    constexpr double kShare = 1e-5;
+    CHECK(((sum.hessian - expected.hessian).cwiseAbs() - kShare * sizes).maxCoeff() <= 0.0);
+    CHECK((sum.hessian - sum.hessian.transpose()).cwiseAbs().maxCoeff() == 0.0);
+    CHECK((sum.gradient - expected.gradient).norm() <= kShare * 0.05 * sizes.diagonal().sum());
+    CHECK(sum.weight_sum == doctest::Approx(expected.weight_sum).epsilon(kShare));
+    CHECK(sum.squared_error_sum == doctest::Approx(expected.squared_error_sum).epsilon(kShare));
+    CHECK(sum.squared_lever_sum == doctest::Approx(expected.squared_lever_sum).epsilon(kShare));
+  }
+}
+
+TEST_CASE("the scale is that of the pairs, whatever their order; none at all give the smallest") {
+  std::mt19937 random(15);
+  PairNoise noise;
+  noise.fixed_variance << 1e-4F, 1e-4F, 0.0F, 0.0F, 0.0F, 4e-4F;
+  std::vector<Pair> pairs;
+  for (int i = 0; i < 777; ++i) {
+    pairs.push_back({random_vector(random, 3.0F), random_vector(random, 1.0F).normalized(),
+                     random_vector(random, 0.06F).x()});
+  }
+  const float scale_m = residual_scale_m(pairs, noise, 0.5F);
+  std::shuffle(pairs.begin(), pairs.end(), random);
+  // Sums of single precision in another order.
+  CHECK(residual_scale_m(pairs, noise, 0.5F) == doctest::Approx(scale_m).epsilon(1e-4));
+  CHECK(residual_scale_m({}, noise, 0.5F) == doctest::Approx(noise.noise_m));
 }

@@ -57,7 +57,6 @@ TEST_CASE("eleven real scans of a corridor follow each other in steps of half a 
   LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
   auto scan = std::make_unique<Scan>();
   auto out = std::make_unique<RegisteredScan>();
-  std::vector<MapPoint> evicted;
   Eigen::Vector3d before = Eigen::Vector3d::Zero();
   for (int i = 0; i < 11; ++i) {
     REQUIRE(load_pcd(folder / (std::to_string(8 + i) + ".pcd"), *scan));
@@ -66,7 +65,7 @@ TEST_CASE("eleven real scans of a corridor follow each other in steps of half a 
     scan->sequence = static_cast<std::uint32_t>(i);
     registration.add_prior(ignorant_prior(scan->stamp_ns));
     registration.register_scan(*scan, *map.snapshot(), *out);
-    map.update(*out, evicted);
+    map.update(*out);
     const Eigen::Vector3d now = out->pose.T_map_base.translation();
     CAPTURE(i);
     CAPTURE((now - before).transpose());

@@ -101,8 +101,7 @@ class Run {
     const std::size_t before = allocation_count();
     registration_.register_scan(*scan_, *map_.snapshot(), *out_);
     allocations_ += allocation_count() - before;
-    std::vector<MapPoint> evicted;
-    map_.update(*out_, evicted);
+    map_.update(*out_);
     return out_->pose;
   }
 

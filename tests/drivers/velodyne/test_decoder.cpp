@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <random>
 #include <vector>
@@ -93,6 +95,62 @@ TEST_CASE("Each laser's point lies where manual and geometry put it, azimuth adv
       CHECK(p.intensity == channel);
       CHECK(p.ring == static_cast<int>(elevation_deg[channel % 16] + 15) / 2);
     }
+  }
+}
+
+TEST_CASE("At every rotation up to 10 degrees a block, azimuths are the nearest hundredth, halves upwards") {
+  struct Timing {
+    velodyne::Model model;
+    std::uint8_t product_id;
+    // Both manuals: firing times are whole multiples of a step between lasers.
+    int steps_a_block;
+    int (*steps_until)(int channel);
+  };
+  for (const Timing& timing :
+       {Timing{velodyne::Model::kVlp16, 0x22, 48,
+               [](int channel) { return channel / 16 * 24 + channel % 16; }},
+        Timing{velodyne::Model::kHdl32e, 0x21, 40, [](int channel) { return channel; }}}) {
+    VelodyneConfig config;
+    config.model = timing.model;
+    for (int step = 0; step <= 1'000; ++step) {
+      Run run(config);
+      PacketPlan plan;
+      plan.product_id = timing.product_id;
+      plan.first_azimuth_deg = 300.0;
+      plan.step_deg = 0.01 * step;
+      run.feed(build_packet(plan), kHostStart);
+      for (int channel = 0; channel < 32; ++channel) {  // of block 0
+        const ScanPoint& p = run.scan->points[channel];
+        const int beyond =
+            (2 * step * timing.steps_until(channel) + timing.steps_a_block) / (2 * timing.steps_a_block);
+        const double azimuth = -std::atan2(p.y_m, p.x_m) / kRad + 360.0;
+        // Positions in single precision: 1e-5 deg.
+        REQUIRE(std::abs(std::fmod(azimuth, 360.0) - (300.0 + 0.01 * beyond)) < 1e-4);
+      }
+    }
+  }
+}
+
+TEST_CASE("A packet that closes a scan is decoded the same when the caller's memory is gone by the next") {
+  Run kept;
+  Run reused;
+  std::vector<std::uint8_t> buffer;
+  std::vector<std::vector<std::uint8_t>> all;
+  for (int n = 0; n < 200; ++n) {
+    all.push_back(build_packet(turning(n, 350.0)));
+    buffer = all.back();
+    kept.feed(all.back(), host_of(n));
+    reused.feed(buffer, host_of(n));
+    std::fill(buffer.begin(), buffer.end(), std::uint8_t{0xAA});
+  }
+  kept.finish();
+  reused.finish();
+  REQUIRE(kept.done.size() == reused.done.size());
+  for (std::size_t i = 0; i < kept.done.size(); ++i) {
+    const Scan& a = *kept.done[i];
+    const Scan& b = *reused.done[i];
+    REQUIRE(a.point_count == b.point_count);
+    CHECK(std::memcmp(a.points, b.points, a.point_count * sizeof(ScanPoint)) == 0);
   }
 }
 

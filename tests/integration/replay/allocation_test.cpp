@@ -76,7 +76,6 @@ TEST_CASE("after start-up no packet, sample or scan makes decoder, prior or regi
   LocalMap map(settings.map, settings.T_base_lidar);
   const auto scan = std::make_unique<Scan>();
   const auto registered = std::make_unique<RegisteredScan>();
-  std::vector<MapPoint> evicted;
 
   std::uint64_t on_the_path = 0;
   std::uint64_t scans = 0;
@@ -106,7 +105,7 @@ TEST_CASE("after start-up no packet, sample or scan makes decoder, prior or regi
     const std::uint64_t spent = allocations - before;
     if (complete) {
       ++scans;
-      map.update(*registered, evicted);
+      map.update(*registered);
     }
     if (scans >= 20) on_the_path += spent;
   }

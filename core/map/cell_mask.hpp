@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which cells of a block are taken, and where each stands in a dense list.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/map/grid.hpp"
+
+namespace isobar {
+
+/// Sides of a cell: a wall thinner than a cell has two.
+inline constexpr int kSides = 2;
+
+/// A set of slots 0 … 1023 of a block: side * 512 + place. Finding a member's rank takes one popcount.
+class CellMask {
+ public:
+  static constexpr int kSlots = kPlacesPerBlock * kSides;
+  static constexpr std::size_t kWords = kSlots / 64;
+
+  [[nodiscard]] bool has(int slot) const { return (word(slot) >> bit(slot) & 1U) != 0; }
+
+  /// Number of members below `slot`: its index in a list of the members in order.
+  [[nodiscard]] std::size_t rank(int slot) const {
+    const std::uint64_t below = word(slot) & ((std::uint64_t{1} << bit(slot)) - 1);
+    return ranks_[index(slot)] + static_cast<std::size_t>(std::popcount(below));
+  }
+
+  [[nodiscard]] std::size_t count() const {
+    return ranks_[kWords - 1] + static_cast<std::size_t>(std::popcount(words_[kWords - 1]));
+  }
+
+  void insert(int slot) {
+    words_[index(slot)] |= std::uint64_t{1} << bit(slot);
+    update_ranks();
+  }
+  void erase(int slot) {
+    words_[index(slot)] &= ~(std::uint64_t{1} << bit(slot));
+    update_ranks();
+  }
+
+  /// As insert(), but ranks are wrong until count_ranks().
+  void mark(int slot) { words_[index(slot)] |= std::uint64_t{1} << bit(slot); }
+  void count_ranks() { update_ranks(); }
+
+  /// Members of layer z (0 … 7) of a side: bit y * 8 + x.
+  [[nodiscard]] std::uint64_t layer(int side, int z) const {
+    return words_[static_cast<std::size_t>(side * kBlockCells + z)];
+  }
+
+ private:
+  [[nodiscard]] static std::size_t index(int slot) { return static_cast<std::size_t>(slot) / 64; }
+  [[nodiscard]] static unsigned bit(int slot) { return static_cast<unsigned>(slot) % 64; }
+  [[nodiscard]] std::uint64_t word(int slot) const { return words_[index(slot)]; }
+
+  void update_ranks() {
+    std::uint16_t sum = 0;
+    for (std::size_t i = 0; i < kWords; ++i) {
+      ranks_[i] = sum;
+      sum = static_cast<std::uint16_t>(sum + std::popcount(words_[i]));
+    }
+  }
+
+  std::array<std::uint64_t, kWords> words_{};
+  std::array<std::uint16_t, kWords> ranks_{};
+};
+
+/// Bits of the cells x0 … x1, y0 … y1 (0 … 7, both ends included) in a layer.
+[[nodiscard]] constexpr std::uint64_t layer_window(int x0, int x1, int y0, int y1) {
+  const std::uint64_t row = (std::uint64_t{0xFF} >> static_cast<unsigned>(7 - (x1 - x0)))
+                            << static_cast<unsigned>(x0);
+  std::uint64_t window = 0;
+  for (int y = y0; y <= y1; ++y) {
+    window |= row << static_cast<unsigned>(8 * y);
+  }
+  return window;
+}
+
+}  // namespace isobar

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The grid of the map: cells, blocks of 8 x 8 x 8 cells, tiles of 4 x 4 x 4 blocks. With cells of 0.25 m a
+// block is 2 m and a tile 8 m wide.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/map/tile_key.hpp"
+
+namespace isobar {
+
+inline constexpr int kBlockCells = 8;  ///< cells along the edge of a block
+inline constexpr int kTileBlocks = 4;  ///< blocks along the edge of a tile
+inline constexpr int kTileCells = kBlockCells * kTileBlocks;
+inline constexpr std::size_t kBlocksPerTile = std::size_t{kTileBlocks} * kTileBlocks * kTileBlocks;
+inline constexpr int kPlacesPerBlock = kBlockCells * kBlockCells * kBlockCells;
+
+/// A cell of the grid: floor(p_map / cell_m) of each axis.
+using CellIndex = Eigen::Vector3i;
+
+/// Greatest integer that is not above `value`; |value| must be below 2^31.
+template <typename Real>
+[[nodiscard]] inline std::int32_t floor_int(Real value) {
+  const auto truncated = static_cast<std::int32_t>(value);
+  return truncated - (static_cast<Real>(truncated) > value ? 1 : 0);
+}
+
+[[nodiscard]] inline TileKey tile_of(const CellIndex& cell) {
+  return {cell.x() >> 5, cell.y() >> 5, cell.z() >> 5};
+}
+
+/// Number of the cell's block in its tile, 0 … 63.
+[[nodiscard]] inline std::size_t block_of(const CellIndex& cell) {
+  return static_cast<std::size_t>((((cell.z() >> 3 & 3) * kTileBlocks) + (cell.y() >> 3 & 3)) * kTileBlocks +
+                                  (cell.x() >> 3 & 3));
+}
+
+/// Number of the cell in its block, 0 … 511: x runs fastest.
+[[nodiscard]] inline int place_of(const CellIndex& cell) {
+  return (((cell.z() & 7) * kBlockCells) + (cell.y() & 7)) * kBlockCells + (cell.x() & 7);
+}
+
+/// First cell of a tile.
+[[nodiscard]] inline CellIndex first_cell(const TileKey& key) {
+  return {key.x * kTileCells, key.y * kTileCells, key.z * kTileCells};
+}
+
+/// First cell of block `block` of a tile.
+[[nodiscard]] inline CellIndex first_cell(const TileKey& key, std::size_t block) {
+  const int b = static_cast<int>(block);
+  return first_cell(key) + kBlockCells * CellIndex(b % kTileBlocks, b / kTileBlocks % kTileBlocks,
+                                                   b / (kTileBlocks * kTileBlocks));
+}
+
+/// First cell of the block that holds `cell`.
+[[nodiscard]] inline CellIndex first_of_block(const CellIndex& cell) {
+  return {cell.x() & ~7, cell.y() & ~7, cell.z() & ~7};
+}
+
+/// Offset of place `place` from its block's first cell.
+[[nodiscard]] inline CellIndex offset_of(int place) {
+  return {place % kBlockCells, place / kBlockCells % kBlockCells, place / (kBlockCells * kBlockCells)};
+}
+
+/// The neighbourhood of the robot in single precision: axes of the map, origin at the corner of a tile near
+/// it, so that coordinates stay small (10 um at 100 m).
+struct LocalFrame {
+  CellIndex origin_cell = CellIndex::Zero();
+  Eigen::Vector3d origin_map = Eigen::Vector3d::Zero();  ///< [m]
+  float cell_m = 0.25F;
+
+  LocalFrame() = default;
+  /// `p_map`: near what will be looked at, |p_map| < 1e8 m; `cell_m`: 0.1 … 1.
+  LocalFrame(const Eigen::Vector3d& p_map, float cell_edge_m) : cell_m(cell_edge_m) {
+    const double tile_m = static_cast<double>(cell_m) * kTileCells;
+    const CellIndex tile(floor_int(p_map.x() / tile_m), floor_int(p_map.y() / tile_m),
+                         floor_int(p_map.z() / tile_m));
+    origin_cell = tile * kTileCells;
+    origin_map = tile.cast<double>() * tile_m;
+  }
+
+  [[nodiscard]] Eigen::Vector3f to_local(const Eigen::Vector3d& p_map) const {
+    return (p_map - origin_map).cast<float>();
+  }
+  [[nodiscard]] Eigen::Vector3d to_map(const Eigen::Vector3f& p_local) const {
+    return origin_map + p_local.cast<double>();
+  }
+  /// The cell that holds `p_local`.
+  [[nodiscard]] CellIndex cell_of(const Eigen::Vector3f& p_local) const {
+    const Eigen::Vector3f scaled = p_local / cell_m;
+    return origin_cell + CellIndex(floor_int(scaled.x()), floor_int(scaled.y()), floor_int(scaled.z()));
+  }
+  /// Corner of a cell with the smallest coordinates.
+  [[nodiscard]] Eigen::Vector3f corner_local(const CellIndex& cell) const {
+    return (cell - origin_cell).cast<float>() * cell_m;
+  }
+};
+
+}  // namespace isobar

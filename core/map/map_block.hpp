@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A block of the map under construction: 8 x 8 x 8 cells with the moments of their points.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/map/cell_mask.hpp"
+#include "core/map/cell_moments.hpp"
+#include "core/map/plane_block.hpp"
+
+namespace isobar {
+
+/// A cell of the grid, or one side of it. Its plane is in the block's PlaneBlock. 44 bytes.
+struct MapCell {
+  CellMoments moments;
+  std::uint32_t occupied_sub_cells = 0;  ///< one bit each of 3 x 3 x 3, x fastest
+  std::uint16_t slot : 15 = 0;           ///< in the block, see CellMask
+  std::uint16_t waiting : 1 = 0;         ///< for a fit
+  std::array<std::int8_t, 3> toward{};   ///< direction to its first observer, times 127
+  std::uint8_t fitted_count = 0;         ///< moments.count when the plane was fitted
+  std::uint8_t seen_through = 0;         ///< rays that passed, less observations
+  std::uint8_t intensity = 0;            ///< mean of the points' reflectivity
+
+  [[nodiscard]] Eigen::Vector3f toward_vector() const {
+    return Eigen::Vector3f(toward[0], toward[1], toward[2]) / 127.0F;
+  }
+};
+static_assert(sizeof(MapCell) == 44);
+
+/// Cells of a block in order of their slots, and their planes as last published.
+class MapBlock {
+ public:
+  /// What an observation was to a cell.
+  struct Observation {
+    Eigen::Vector3f fraction;  ///< place in the cell, 0 … 1
+    Eigen::Vector3f toward;    ///< unit direction to the sensor
+    std::uint8_t intensity = 0;
+    int freeze = 0;  ///< see MapConfig::freeze_observations
+  };
+  /// Observes a point in place `place` (0 … 511). Returns the slot if the cell now waits for a fit and did
+  /// not before, else -1.
+  int observe(int place, const Observation& observation);
+
+  [[nodiscard]] const MapCell* find(int slot) const {
+    return mask_.has(slot) ? &cells_[mask_.rank(slot)] : nullptr;
+  }
+  [[nodiscard]] const std::vector<MapCell>& cells() const { return cells_; }
+  [[nodiscard]] std::vector<MapCell>& cells() { return cells_; }
+  [[nodiscard]] const CellMask& mask() const { return mask_; }
+
+  /// The plane of a slot as last published; null if it has none.
+  [[nodiscard]] const PackedPlane* plane_at(int slot) const {
+    return planes_ ? planes_->find(slot) : nullptr;
+  }
+
+  /// Takes `slot` off the list of those that wait, and gives or takes (null) its plane at the next publish().
+  void set_plane(int slot, const PackedPlane* plane);
+
+  /// Takes out cells whose seen_through is above `limit`; returns how many.
+  std::size_t remove_seen_through(std::uint8_t limit);
+
+  /// Makes planes() anew from what was set since the last call.
+  void publish();
+  [[nodiscard]] const std::shared_ptr<const PlaneBlock>& planes() const { return planes_; }
+
+  /// True if set_plane() or remove_seen_through() changed something since publish().
+  [[nodiscard]] bool changed() const { return changed_; }
+
+  /// Puts a block together from stored cells and planes, both in order of their slots.
+  void restore(std::vector<MapCell> cells, std::shared_ptr<const PlaneBlock> planes);
+
+  [[nodiscard]] std::size_t memory_bytes() const;
+
+ private:
+  struct Staged {
+    int slot = 0;
+    bool has_plane = false;
+    PackedPlane plane;
+  };
+
+  MapCell& find_or_add(int slot);
+  [[nodiscard]] bool is_other_side(int slot, const Eigen::Vector3f& toward) const;
+
+  CellMask mask_;
+  std::vector<MapCell> cells_;
+  std::vector<Staged> staged_;
+  std::shared_ptr<const PlaneBlock> planes_;
+  bool changed_ = false;
+};
+
+}  // namespace isobar

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The points that stand for a tile in files and viewers.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+#include "core/map/map_tile.hpp"
+
+namespace isobar {
+
+namespace {
+
+constexpr int kThirds = 3;
+constexpr int kSubCells = kThirds * kThirds * kThirds;
+
+Eigen::Vector3i sub_cell(int bit) {
+  return {bit % kThirds, bit / kThirds % kThirds, bit / (kThirds * kThirds)};
+}
+
+// Centre of a third, from the cell's centre.
+Eigen::Vector3f centre_of(const Eigen::Vector3i& sub, float cell_m) {
+  return (sub.cast<float>().array() - 1.0F) * (cell_m / kThirds);
+}
+
+// Where the line through a third along `axis` meets the plane; within the cell and a third beyond, since
+// noise may have carried the points over its border.
+bool on_plane(const Eigen::Vector3f& q_cell, const Eigen::Vector3f& normal, Eigen::Index axis, float cell_m,
+              Eigen::Vector3f& p_cell) {
+  p_cell[axis] = 0.0F;
+  p_cell[axis] = normal.dot(q_cell - p_cell) / normal[axis];
+  return std::abs(p_cell[axis]) < cell_m * (0.5F + 1.0F / kThirds);
+}
+
+struct CellPlace {
+  Eigen::Vector3d centre_map;
+  float cell_m;
+};
+
+void append_plane_points(const MapCell& cell, const CellPlace& place, const Eigen::Vector3f& q_cell,
+                         const Eigen::Vector3f& normal, std::vector<MapPoint>& points) {
+  Eigen::Index axis = 0;
+  normal.cwiseAbs().maxCoeff(&axis);
+  std::array<bool, std::size_t{kThirds} * kThirds> done{};
+  for (int bit = 0; bit < kSubCells; ++bit) {
+    if ((cell.occupied_sub_cells >> static_cast<unsigned>(bit) & 1U) == 0) continue;
+    const Eigen::Vector3i sub = sub_cell(bit);
+    const auto column = static_cast<std::size_t>(sub[(axis + 1) % 3] * kThirds + sub[(axis + 2) % 3]);
+    Eigen::Vector3f p_cell = centre_of(sub, place.cell_m);
+    if (done.at(column) || !on_plane(q_cell, normal, axis, place.cell_m, p_cell)) continue;
+    done.at(column) = true;
+    points.push_back({place.centre_map + p_cell.cast<double>(), normal, cell.intensity});
+  }
+}
+
+void append_loose_points(const MapCell& cell, const CellPlace& place, std::vector<MapPoint>& points) {
+  for (int bit = 0; bit < kSubCells; ++bit) {
+    if ((cell.occupied_sub_cells >> static_cast<unsigned>(bit) & 1U) == 0) continue;
+    const Eigen::Vector3f p_cell = centre_of(sub_cell(bit), place.cell_m);
+    points.push_back({place.centre_map + p_cell.cast<double>(), Eigen::Vector3f::Zero(), cell.intensity});
+  }
+}
+
+}  // namespace
+
+void append_points(const MapTile& tile, float cell_m, std::vector<MapPoint>& points) {
+  const float half_block_m = 0.5F * kBlockCells * cell_m;
+  for (std::size_t i = 0; i < kBlocksPerTile; ++i) {
+    const MapBlock* block = tile.block(i);
+    if (block == nullptr) continue;
+    const CellIndex first = first_cell(tile.key(), i);
+    for (const MapCell& cell : block->cells()) {
+      const CellIndex offset = offset_of(cell.slot % kPlacesPerBlock);
+      const CellPlace place{((first + offset).cast<double>().array() + 0.5) * static_cast<double>(cell_m),
+                            cell_m};
+      if (const PackedPlane* plane = block->plane_at(cell.slot)) {
+        const Eigen::Vector3f centre_block = (offset.cast<float>().array() + 0.5F) * cell_m - half_block_m;
+        append_plane_points(cell, place, plane->q_block(cell_m) - centre_block, plane->unit_normal(), points);
+      } else {
+        append_loose_points(cell, place, points);
+      }
+    }
+  }
+}
+
+}  // namespace isobar

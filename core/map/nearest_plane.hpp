@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Matcher: the plane whose point is nearest, found in one k-d tree a tile. nearest_plane.cpp is the only file
+// that names nanoflann.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/map/map_snapshot.hpp"
+#include "core/map/plane_block.hpp"
+#include "core/map/tile_directory.hpp"
+
+namespace isobar {
+
+/// Immutable search structure over the planes of one tile.
+class TileTree {
+ public:
+  TileTree(const PlaneTile& tile, float cell_m);
+  ~TileTree();
+  TileTree(const TileTree&) = delete;
+  TileTree& operator=(const TileTree&) = delete;
+
+  TileKey key;
+
+  struct Plane {
+    Eigen::Vector3f q_tile;  ///< from the tile's corner [m]
+    Eigen::Vector3f normal;
+  };
+  [[nodiscard]] std::size_t size() const { return planes_.size(); }
+
+  /// The plane nearest to `p_tile` that is closer than sqrt(squared_distance) and faces `viewpoint_tile`,
+  /// both from the tile's corner; null if there is none. Lowers `squared_distance`.
+  const Plane* nearest(const Eigen::Vector3f& p_tile, const Eigen::Vector3f& viewpoint_tile,
+                       float& squared_distance) const;
+
+ private:
+  struct Tree;
+  std::vector<Plane> planes_;
+  std::unique_ptr<Tree> tree_;
+};
+
+class NearestPlane final : public MapSnapshot {
+ public:
+  /// `trees` without null pointers.
+  NearestPlane(std::vector<std::shared_ptr<const TileTree>> trees, float cell_m);
+
+  void match(const MatchQuery& query, std::span<const Eigen::Vector3f> p_local,
+             std::span<PlaneMatch> matches) const override;
+
+ private:
+  bool match_one(const MatchQuery& query, const Eigen::Vector3f& p_local, PlaneMatch& match) const;
+
+  TileDirectory<TileTree> directory_;
+};
+
+}  // namespace isobar

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "core/map/cell_mask.hpp"
+#include "core/map/cell_moments.hpp"
+#include "core/map/map_tile.hpp"
+
+namespace {
+
+using isobar::CellIndex;
+using isobar::CellMask;
+using isobar::CellMoments;
+using isobar::MapBlock;
+using isobar::MapTile;
+using isobar::Moments;
+using isobar::PackedPlane;
+
+constexpr float kCellM = 0.25F;
+
+MapBlock::Observation observation_at(const Eigen::Vector3f& fraction) {
+  return {fraction, Eigen::Vector3f::UnitX(), 40, 80};
+}
+
+// A tile with a few hundred cells, of which two thirds have planes.
+MapTile random_tile(std::mt19937& random) {
+  MapTile tile({-3, 5, 0});
+  std::uniform_int_distribution<int> block(0, 9);
+  std::uniform_int_distribution<int> place(0, isobar::kPlacesPerBlock - 1);
+  std::uniform_real_distribution<float> fraction(0.0F, 1.0F);
+  for (int i = 0; i < 3000; ++i) {
+    MapBlock& in = tile.block_or_add(static_cast<std::size_t>(block(random)));
+    const int slot =
+        in.observe(place(random) / 8, observation_at({fraction(random), fraction(random), fraction(random)}));
+    if (slot >= 0 && slot % 3 != 0) {
+      const PackedPlane plane =
+          PackedPlane::of({0.1F, 0.2F, fraction(random)}, Eigen::Vector3f::UnitX(), kCellM);
+      in.set_plane(slot, &plane);
+    } else if (slot >= 0) {
+      in.set_plane(slot, nullptr);
+    }
+  }
+  tile.publish();
+  return tile;
+}
+
+std::vector<std::byte> bytes_of(const MapTile& tile) {
+  std::vector<std::byte> bytes;
+  tile.store(kCellM, bytes);
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("places, blocks and tiles name each cell once, on both sides of the origin") {
+  std::set<std::array<int, 6>> names;
+  for (int x = -40; x < 40; x += 3) {
+    for (int y = -33; y < 40; y += 7) {
+      for (int z = -20; z < 40; z += 5) {
+        const CellIndex cell(x, y, z);
+        const isobar::TileKey key = isobar::tile_of(cell);
+        const std::size_t block = isobar::block_of(cell);
+        const int place = isobar::place_of(cell);
+        CHECK(isobar::first_cell(key, block) + isobar::offset_of(place) == cell);
+        CHECK(isobar::first_of_block(cell) == isobar::first_cell(key, block));
+        names.insert({key.x, key.y, key.z, static_cast<int>(block), place, 0});
+      }
+    }
+  }
+  CHECK(names.size() == 27 * 11 * 12);
+}
+
+TEST_CASE("floor_int is floor, at whole numbers too") {
+  for (const double value : {-3.0, -2.5, -1e-9, 0.0, 0.999, 1.0, 41.5, -41.5}) {
+    CHECK(isobar::floor_int(value) == static_cast<int>(std::floor(value)));
+  }
+}
+
+TEST_CASE("a mask's rank is the number of members below") {
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> slot(0, CellMask::kSlots - 1);
+  CellMask mask;
+  std::set<int> members;
+  for (int i = 0; i < 600; ++i) {
+    const int s = slot(random);
+    if (i % 4 == 3) {
+      mask.erase(s);
+      members.erase(s);
+    } else {
+      mask.insert(s);
+      members.insert(s);
+    }
+    const int probe = slot(random);
+    CHECK(mask.has(probe) == members.contains(probe));
+    CHECK(mask.rank(probe) ==
+          static_cast<std::size_t>(std::distance(members.begin(), members.lower_bound(probe))));
+  }
+  CHECK(mask.count() == members.size());
+}
+
+TEST_CASE("whole-number moments are those of the points to the width of a unit, in any order") {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> fraction(0.0F, 1.0F);
+  std::vector<Eigen::Vector3f> points(CellMoments::kMostPoints);
+  Moments exact;
+  for (Eigen::Vector3f& p : points) {
+    p = {fraction(random), fraction(random), fraction(random)};
+    exact.add((p.array() - 0.5F) * kCellM);
+  }
+  CellMoments forward;
+  CellMoments backward;
+  for (const Eigen::Vector3f& p : points) forward.add(p);
+  std::reverse(points.begin(), points.end());
+  for (const Eigen::Vector3f& p : points) backward.add(p);
+  CHECK(forward.outer == backward.outer);
+  CHECK(forward.sum == backward.sum);
+  const Moments moments = forward.in_metres(kCellM);
+  CHECK(moments.count == exact.count);
+  // A point is off by a quarter of a millimetre at most.
+  CHECK((moments.mean() - exact.mean()).cwiseAbs().maxCoeff() < 0.00025F);
+  CHECK((moments.outer_diagonal - exact.outer_diagonal).cwiseAbs().maxCoeff() / exact.count <
+        2.0F * 0.125F * 0.00025F);
+}
+
+TEST_CASE("the most points at the corner of a cell do not overflow") {
+  for (const float corner : {0.0F, 1.0F}) {
+    CellMoments moments;
+    for (int i = 0; i < 200; ++i) moments.add(Eigen::Vector3f::Constant(corner));
+    CHECK(int{moments.count} == CellMoments::kMostPoints);
+    CHECK(moments.mean_m(kCellM).x() == doctest::Approx((corner - 0.5F) * kCellM));
+    CHECK(moments.outer[0] == CellMoments::kMostPoints * 256 * 256);
+  }
+}
+
+TEST_CASE("a packed plane is the plane to 31 um and 0.002 degrees") {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> place(-1.1F, 1.1F);
+  std::normal_distribution<float> direction;
+  for (int i = 0; i < 1000; ++i) {
+    const Eigen::Vector3f q(place(random), place(random), place(random));
+    const Eigen::Vector3f normal =
+        Eigen::Vector3f(direction(random), direction(random), direction(random)).normalized();
+    const PackedPlane plane = PackedPlane::of(q, normal, kCellM);
+    CHECK((plane.q_block(kCellM) - q).cwiseAbs().maxCoeff() < 3.2e-5F);
+    CHECK((plane.unit_normal() - normal).norm() < 3e-5F);
+  }
+}
+
+TEST_CASE("published planes stay as they are while the block goes on") {
+  MapBlock block;
+  const int slot = block.observe(77, observation_at({0.5F, 0.5F, 0.5F}));
+  REQUIRE(slot == 77);
+  CHECK(block.observe(77, observation_at({0.5F, 0.5F, 0.5F})) == -1);  // waits already
+  const PackedPlane plane = PackedPlane::of({0.1F, 0.2F, 0.3F}, Eigen::Vector3f::UnitX(), kCellM);
+  block.set_plane(slot, &plane);
+  block.publish();
+  const auto published = block.planes();
+  REQUIRE(published->planes.size() == 1);
+  // From the other side it is another cell: a thin wall has two.
+  MapBlock::Observation behind = observation_at({0.5F, 0.5F, 0.5F});
+  behind.toward = -behind.toward;
+  CHECK(block.observe(77, behind) == 77 + isobar::kPlacesPerBlock);
+  block.set_plane(slot, nullptr);
+  block.publish();
+  CHECK(block.planes() == nullptr);
+  CHECK(published->find(77)->q == plane.q);
+}
+
+TEST_CASE("a tile comes back from its bytes as it was, and goes on as it would have") {
+  std::mt19937 random(6);
+  MapTile tile = random_tile(random);
+  const std::vector<std::byte> bytes = bytes_of(tile);
+  MapTile back(tile.key());
+  REQUIRE(back.restore(bytes, kCellM));
+  CHECK(bytes_of(back) == bytes);
+  back.publish();
+  REQUIRE(back.planes()->plane_count == tile.planes()->plane_count);
+  for (int i = 0; i < 200; ++i) {
+    const auto observation = observation_at({0.01F * static_cast<float>(i % 90), 0.3F, 0.7F});
+    CHECK(tile.block_or_add(2).observe(i, observation) == back.block_or_add(2).observe(i, observation));
+  }
+  CHECK(bytes_of(back) == bytes_of(tile));
+  std::vector<isobar::MapPoint> here;
+  std::vector<isobar::MapPoint> there;
+  isobar::append_points(tile, kCellM, here);
+  REQUIRE(isobar::append_tile_points(bytes_of(back), there));
+  REQUIRE(here.size() == there.size());
+  CHECK(here.size() > 500);
+  CHECK(here.back().p_map == there.back().p_map);
+}
+
+TEST_CASE("bytes that are not a tile are refused whole, wherever they are cut or changed in length") {
+  std::mt19937 random(7);
+  const MapTile tile = random_tile(random);
+  const std::vector<std::byte> bytes = bytes_of(tile);
+  for (std::size_t length = 0; length < bytes.size(); length += 97) {
+    MapTile back(tile.key());
+    CHECK_FALSE(back.restore(std::span(bytes).first(length), kCellM));
+    CHECK(back.cell_count() == 0);
+  }
+  std::vector<std::byte> longer = bytes;
+  longer.push_back(std::byte{0});
+  CHECK_FALSE(MapTile(tile.key()).restore(longer, kCellM));
+  CHECK_FALSE(MapTile({0, 0, 0}).restore(bytes, kCellM));  // another place
+  CHECK_FALSE(MapTile(tile.key()).restore(bytes, 0.5F));   // other cells
+  CHECK(isobar::stored_cell_m(bytes) == kCellM);
+}
+
+TEST_CASE("a cell of 0.25 m costs at most 64 bytes with its plane") {
+  // A wall of 8 x 8 m: what most of a map is.
+  MapTile tile({0, 0, 0});
+  for (int x = 0; x < isobar::kTileCells; ++x) {
+    for (int z = 0; z < isobar::kTileCells; ++z) {
+      const CellIndex cell(x, 13, z);
+      MapBlock& block = tile.block_or_add(isobar::block_of(cell));
+      const int slot = block.observe(isobar::place_of(cell), observation_at({0.5F, 0.5F, 0.5F}));
+      const PackedPlane plane = PackedPlane::of({0.0F, 0.0F, 0.0F}, Eigen::Vector3f::UnitY(), kCellM);
+      block.set_plane(slot, &plane);
+    }
+  }
+  tile.publish();
+  CHECK(tile.memory_bytes() <= 64 * tile.cell_count() + 8 * 1024);
+  MESSAGE("bytes a plane cell on a wall: " << static_cast<double>(tile.memory_bytes()) /
+                                                  static_cast<double>(tile.cell_count()));
+}
