@@ -79,15 +79,21 @@ struct MapFileSettings {
   double max_disk_gb = 4.0;  ///< 0.001 … 1000; beyond it the file of tiles begun longest ago goes
 };
 
-/// [realtime]
+/// [realtime]; deadlines in ms, 0.1 … 10 000
 struct RealtimeSettings {
   bool enabled = false;        ///< SCHED_FIFO, and all memory locked
   int inertial_priority = 55;  ///< 1 … 99
   int prior_priority = 55;
   int lidar_priority = 45;
   int registration_priority = 40;
-  std::vector<int> estimator_cpus;  ///< cores for lidar, inertial, prior and registration; empty: all
-  std::vector<int> map_cpus;        ///< cores for the map thread; empty: all
+  std::vector<int> estimator_cpus;         ///< cores for lidar, inertial, prior and registration; empty: all
+  std::vector<int> map_cpus;               ///< cores for the map thread; empty: all
+  double lidar_deadline_ms = 10.0;         ///< end of a scan to the scan handed on
+  double prior_deadline_ms = 10.0;         ///< IMU sample to its prior handed on
+  double registration_deadline_ms = 50.0;  ///< end of a scan to its pose handed on
+  double map_deadline_ms = 100.0;          ///< pose handed on to the map that holds its scan
+  double prior_reach_ms = 6.0;             ///< see ScanQueueConfig, 0 … 100
+  double prior_wait_ms = 50.0;             ///< see ScanQueueConfig, 1 … 1000
 };
 
 struct Config {

@@ -8,6 +8,36 @@ void add_priority(const char* key, int& priority, const char* doc, std::vector<S
   settings.push_back({key, &priority, "", 1, 99, doc});
 }
 
+void add_deadline(const char* key, double& limit_ms, const char* doc, std::vector<Setting>& settings) {
+  settings.push_back({key, &limit_ms, "ms", 0.1, 10'000.0, doc});
+}
+
+// With the defaults one update of the map in 650 was late beside `stress-ng --cpu 4`, and nothing else
+// (tests/benchmark/live).
+void add_deadlines(RealtimeSettings& realtime, std::vector<Setting>& settings) {
+  add_deadline(
+      "realtime.lidar_deadline_ms", realtime.lidar_deadline_ms,
+      "From the end of a scan to the scan that is handed on. Whoever is later is counted, and said in "
+      "the diagnostics. 10: the packet that tells of the end comes 3 ms after it at most.",
+      settings);
+  add_deadline("realtime.prior_deadline_ms", realtime.prior_deadline_ms,
+               "From an IMU sample to the prior that holds it. 10: two samples at 200 Hz.", settings);
+  add_deadline("realtime.registration_deadline_ms", realtime.registration_deadline_ms,
+               "From the end of a scan to its pose. 50: half of a scan at 10 Hz is left for what follows.",
+               settings);
+  add_deadline("realtime.map_deadline_ms", realtime.map_deadline_ms,
+               "From a pose to the map that holds its scan. 100: the next scan but one is matched to it.",
+               settings);
+  settings.push_back(
+      {"realtime.prior_reach_ms", &realtime.prior_reach_ms, "ms", 0.0, 100.0,
+       "A scan is registered at once when the newest prior is at most so much older than its end. 6: "
+       "one sample at 200 Hz, over which a constant twist foretells a turn to 0.1 mrad."});
+  settings.push_back(
+      {"realtime.prior_wait_ms", &realtime.prior_wait_ms, "ms", 1.0, 1'000.0,
+       "Else it waits for the IMU, so long after it came at most; then it goes on without. 50: it is "
+       "registered before the next one comes."});
+}
+
 void add_realtime(RealtimeSettings& realtime, std::vector<Setting>& settings) {
   settings.push_back({.key = "realtime.enabled",
                       .target = &realtime.enabled,
@@ -25,6 +55,7 @@ void add_realtime(RealtimeSettings& realtime, std::vector<Setting>& settings) {
                       "Cores for lidar, inertial, prior and registration; empty: all."});
   settings.push_back(
       {"realtime.map_cpus", &realtime.map_cpus, "", 0, 1'023, "Cores for the map; empty: all."});
+  add_deadlines(realtime, settings);
 }
 
 void add_name(const char* key, std::string& name, const char* doc, std::vector<Setting>& settings) {

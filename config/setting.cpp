@@ -77,9 +77,11 @@ bool is_for_robots_only(std::string_view key) {
       "altimeter.stuck_timeout_s"};
   // Sections end with a dot.
   // clang-format off
-  static constexpr std::array<std::string_view, 31> kForRobots{
+  static constexpr std::array<std::string_view, 37> kForRobots{
       "method", "lidar.", "imu.", "barometer.xyz_m", "base_barometer.", "output.", "realtime.prior_priority",
       "realtime.lidar_priority", "realtime.registration_priority", "realtime.map_cpus",
+      "realtime.lidar_deadline_ms", "realtime.prior_deadline_ms", "realtime.registration_deadline_ms",
+      "realtime.map_deadline_ms", "realtime.prior_reach_ms", "realtime.prior_wait_ms",
       "dds.second_base_station", "dds.map_frame", "dds.odom_frame", "dds.base_frame", "dds.lidar_frame",
       "dds.imu_frame", "dds.barometer_frame", "dds.odom_rate_hz", "dds.altitude_rate_hz", "dds.publish_clouds",
       "dds.receive_base_pressure", "dds.receive_sensors", "dds.propagator.", "altimeter.", "attitude.",
@@ -118,7 +120,7 @@ std::string_view section_doc(std::string_view section) {
       {"base_barometer.compensation", "The same for the first base station's barometer."},
       {"input", "UDP port on which a live run takes samples of IMU, barometers and wheels."},
       {"output", "What a live run writes and shows."},
-      {"realtime", "Scheduling of the threads of a live run."},
+      {"realtime", "Scheduling of the threads of a live run, and how late each stage may be."},
       {"dds", "What isobar-dds says, to whom, and under which names."},
       {"dds.propagator", "How corrections of the registration enter odom."},
       {"altimeter", "How air pressure is checked and turned into height."},

@@ -95,6 +95,7 @@ struct RegisteredScan {
   static constexpr std::uint32_t kMaxPoints = 70'000;
 
   PoseEstimate pose;
+  std::int64_t handed_over_ns = 0;  ///< when it went on to the map, robot clock; live runs only
   std::uint32_t point_count = 0;
   ScanPoint points[kMaxPoints];  // NOLINT(modernize-avoid-c-arrays): p_base, payload in shared memory
 

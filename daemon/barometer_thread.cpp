@@ -50,6 +50,7 @@ void BarometerThread::stop() noexcept {
 void BarometerThread::loop() noexcept {
   (void)apply_to_this_thread(settings_);
   do {
+    heartbeat_.beat();
     arm(step());
   } while (wait());
 }

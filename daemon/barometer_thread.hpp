@@ -8,6 +8,7 @@
 
 #include "daemon/mailbox.hpp"
 #include "daemon/realtime.hpp"
+#include "daemon/worker_watch.hpp"
 #include "drivers/barometer/barometer_device.hpp"
 #include "ipc/shared_memory.hpp"
 
@@ -36,6 +37,7 @@ class BarometerThread {
   void stop() noexcept;  ///< returns when the thread has ended
 
   [[nodiscard]] BarometerThreadStatus status() const noexcept { return status_.get(); }
+  [[nodiscard]] const Heartbeat& heartbeat() const noexcept { return heartbeat_; }
 
  private:
   void loop() noexcept;
@@ -50,6 +52,7 @@ class BarometerThread {
   ipc::Publisher<PressureSample> publisher_;
   BarometerThreadStatus own_;
   Mailbox<BarometerThreadStatus> status_;
+  Heartbeat heartbeat_;
   std::thread thread_;
 };
 

@@ -20,6 +20,7 @@
 #include "daemon/inertial_thread.hpp"
 #include "daemon/level_changes.hpp"
 #include "daemon/station_thread.hpp"
+#include "daemon/worker_watch.hpp"
 
 namespace isobar {
 namespace {
@@ -111,6 +112,10 @@ void run_base_station(const Config& config, Service& service) {
     return StationSnapshot{RobotClock::now_ns(), input.status(),
                            barometer ? barometer->status() : BarometerThreadStatus{}, station.status()};
   };
+  WorkerWatch watch;
+  watch.add("input", input);
+  if (barometer) watch.add("barometer", *barometer);
+  watch.add("station", station);
   StationSnapshot before = look();
   LevelChanges changes;
   ipc::Publisher<ipc::HealthReport> health(ipc::topics::kHealth);
@@ -119,12 +124,13 @@ void run_base_station(const Config& config, Service& service) {
     const StationSnapshot now = look();
     const bool failed_or_back = now.barometer.device.state != before.barometer.device.state;
     if (now.now_ns - before.now_ns < kReportEveryNs && !failed_or_back) continue;
+    if (watch.all_alive(now.now_ns)) service.alive();
     ipc::HealthReport report;
     fill(now, before, config, refusals, report);
+    watch.fill(report);
     before = now;
     health.send(report);
     for (const std::string& line : news(report, changes)) spdlog::info("{}", line);
-    service.alive();
   }
   spdlog::info("stopping");
   service.stopping();

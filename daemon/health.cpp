@@ -58,6 +58,20 @@ bool HealthMonitor::due(const StatusSnapshot& now) {
          now.barometer.device.state != last_.barometer.device.state;
 }
 
+void HealthMonitor::fill_deadlines(const StatusSnapshot& now, HealthReport& report) const {
+  add_deadline(report, "lidar/deadline", now.lidar.punctuality, last_.lidar.punctuality, "scans");
+  add_deadline(report, "prior/deadline", now.prior.punctuality, last_.prior.punctuality, "priors");
+  add_deadline(report, "registration/deadline", now.registration.punctuality, last_.registration.punctuality,
+               "poses");
+  add_deadline(report, "map/deadline", now.map.punctuality, last_.map.punctuality, "updates");
+  // Where the memory is locked nothing is left to be fetched.
+  if (config_.realtime.enabled) {
+    add_count(report, "registration/page_faults", now.registration.page_faults,
+              last_.registration.page_faults,
+              "page faults of the registration, each may cost some microseconds");
+  }
+}
+
 void HealthMonitor::fill(const StatusSnapshot& now, HealthReport& report) {
   const double elapsed_s = last_.now_ns == 0 ? 1.0 : static_cast<double>(now.now_ns - last_.now_ns) * 1e-9;
   report.stamp_ns = now.now_ns;
@@ -66,6 +80,7 @@ void HealthMonitor::fill(const StatusSnapshot& now, HealthReport& report) {
   fill_samples(now, elapsed_s, report);
   fill_faults(now, report);
   fill_estimate(now, report);
+  fill_deadlines(now, report);
   add_refusals(report, refusals_);
   last_ = now;
 }
@@ -184,7 +199,7 @@ void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& repor
   add_count(report, "registration/refused", registration.from_prior, last_.registration.from_prior,
             "scans that did not fit the map; their pose is the prior's");
   add_count(report, "registration/dropped", registration.dropped_scans, last_.registration.dropped_scans,
-            "scans dropped: they came faster than they could be registered");
+            "scans dropped, a newer one was there; their poses are the prior's");
   add_count(report, "registration/priors_dropped", registration.dropped_priors,
             last_.registration.dropped_priors, "priors that the registration did not get");
   add_count(report, "registration/bridged", registration.bridged, last_.registration.bridged,
@@ -192,7 +207,7 @@ void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& repor
   report.add("map", HealthLevel::kOk, "cells in memory", static_cast<double>(now.map.cells));
   report.add("map/ms", HealthLevel::kOk, "CPU time of the last update", now.map.update_ms);
   add_count(report, "map/dropped", now.map.dropped_scans, last_.map.dropped_scans,
-            "scans that the map did not get");
+            "scans that the map did not take, a newer one was there");
 }
 
 std::vector<std::string> HealthMonitor::news(const HealthReport& report) {

@@ -49,6 +49,7 @@ class HealthMonitor {
   void fill_base_stations(const StatusSnapshot& now, ipc::HealthReport& report) const;
   static void fill_faults(const StatusSnapshot& now, ipc::HealthReport& report);
   void fill_estimate(const StatusSnapshot& now, ipc::HealthReport& report) const;
+  void fill_deadlines(const StatusSnapshot& now, ipc::HealthReport& report) const;
 
   Config config_;
   std::vector<std::string> refusals_;

@@ -8,6 +8,7 @@
 
 #include "config/config.hpp"
 #include "daemon/barometer_thread.hpp"
+#include "daemon/deadline.hpp"
 #include "daemon/inertial_thread.hpp"
 #include "daemon/level_changes.hpp"
 #include "ipc/topics.hpp"
@@ -22,6 +23,11 @@ inline constexpr std::int64_t kSilenceNs = 1'000'000'000;
 /// An entry for a count that should be zero; none while it is. A warning while it grows.
 void add_count(ipc::HealthReport& report, const char* name, std::uint64_t now, std::uint64_t before,
                const char* sentence);
+
+/// An entry for the punctuality of a stage; none before its first output. A warning while it is late.
+/// @param what it makes, "scans"
+void add_deadline(ipc::HealthReport& report, const char* name, const DeadlineStatus& now,
+                  const DeadlineStatus& before, const char* what);
 
 /// A sensor's own entry: does it send?
 /// @param last_ns robot clock, of its newest sample; 0: none yet

@@ -29,7 +29,8 @@ void InertialThread::stop() noexcept {
 void InertialThread::loop() noexcept {
   (void)apply_to_this_thread(settings_);
   receive_until_stopped(
-      receiver_, [this](const ReceivedDatagram& datagram) { take_datagram(datagram); }, [this] { report(); });
+      receiver_, heartbeat_, [this](const ReceivedDatagram& datagram) { take_datagram(datagram); },
+      [this] { report(); });
 }
 
 void InertialThread::take_datagram(const ReceivedDatagram& received) noexcept {

@@ -9,6 +9,7 @@
 #include "core/time/clock_anchor.hpp"
 #include "daemon/mailbox.hpp"
 #include "daemon/realtime.hpp"
+#include "daemon/worker_watch.hpp"
 #include "drivers/datagram/datagram.hpp"
 #include "drivers/datagram/udp.hpp"
 #include "ipc/shared_memory.hpp"
@@ -45,6 +46,7 @@ class InertialThread {
 
   [[nodiscard]] InertialStatus status() const noexcept { return status_.get(); }
   [[nodiscard]] std::uint16_t port() const noexcept { return receiver_.port(); }
+  [[nodiscard]] const Heartbeat& heartbeat() const noexcept { return heartbeat_; }
 
  private:
   void loop() noexcept;
@@ -65,6 +67,7 @@ class InertialThread {
   ipc::Publisher<WheelSample> wheel_;
   InertialStatus own_;
   Mailbox<InertialStatus> status_;
+  Heartbeat heartbeat_;
   std::thread thread_;
 };
 

@@ -10,7 +10,8 @@ LidarThread::LidarThread(const velodyne::VelodyneConfig& config, const std::stri
     : settings_(std::move(settings)),
       receiver_(address, port),
       decoder_(config),
-      publisher_(ipc::topics::kLidarScan) {}
+      publisher_(ipc::topics::kLidarScan),
+      deadline_(settings_.deadline_ms) {}
 
 LidarThread::~LidarThread() {
   stop();
@@ -30,7 +31,11 @@ void LidarThread::loop() noexcept {
   (void)apply_to_this_thread(settings_);
   loaned_ = publisher_.loan();
   receive_until_stopped(
-      receiver_, [this](const ReceivedDatagram& datagram) { take_packet(datagram); }, [this] { report(); });
+      receiver_, heartbeat_, [this](const ReceivedDatagram& datagram) { take_packet(datagram); },
+      [this] {
+        report();
+        pause();
+      });
 }
 
 void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
@@ -40,12 +45,26 @@ void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
 }
 
 void LidarThread::hand_over() noexcept {
+  pacing_.scan_ended((loaned_ != nullptr ? *loaned_ : unpublished_).end_stamp_ns);
   if (loaned_ != nullptr) {
+    const std::int64_t end_ns = loaned_->end_stamp_ns;
     publisher_.publish(loaned_);
+    deadline_.note(end_ns, RobotClock::now_ns());
   } else {
     ++own_.scans_without_memory;
   }
   loaned_ = publisher_.loan();
+}
+
+// Only after a packet that is of now: what has gathered in the socket is fetched first.
+void LidarThread::pause() noexcept {
+  constexpr std::int64_t kOfNowNs = 1'000'000;
+  constexpr std::int64_t kNsPerMs = 1'000'000;
+  const std::int64_t now_ns = RobotClock::now_ns();
+  if (now_ns - own_.last_packet_ns > kOfNowNs) return;
+  if (const std::int64_t pause_ns = pacing_.pause_ns(now_ns); pause_ns > 0) {
+    receiver_.pause(static_cast<int>(pause_ns / kNsPerMs));
+  }
 }
 
 void LidarThread::report() noexcept {
@@ -53,6 +72,7 @@ void LidarThread::report() noexcept {
     decoder_.wrong_model_message().copy(own_.wrong_model_message.data(), own_.wrong_model_message.size() - 1);
   }
   own_.counters = decoder_.counters();
+  own_.punctuality = deadline_.status();
   own_.dropped_by_kernel = receiver_.dropped_by_kernel();
   status_.put(own_);
 }

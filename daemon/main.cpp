@@ -31,12 +31,13 @@
 #include "daemon/registration_thread.hpp"
 #include "daemon/service.hpp"
 #include "daemon/stage_settings.hpp"
+#include "daemon/worker_watch.hpp"
 
 namespace isobar {
 
 namespace {
 
-/// How each thread is scheduled; the table of priorities is in the configuration, [realtime].
+/// How each thread is scheduled and when it is late; the figures are in the configuration, [realtime].
 struct Scheduling {
   ThreadSettings lidar, inertial, barometer, prior, registration, map, output;
 };
@@ -44,14 +45,20 @@ struct Scheduling {
 Scheduling scheduling_of(const RealtimeSettings& realtime) {
   const auto fifo = [&](int priority) { return realtime.enabled ? priority : 0; };
   return {
-      {"lidar", fifo(realtime.lidar_priority), realtime.estimator_cpus},
+      {"lidar", fifo(realtime.lidar_priority), realtime.estimator_cpus, realtime.lidar_deadline_ms},
       {"inertial", fifo(realtime.inertial_priority), realtime.estimator_cpus},
       {"barometer", fifo(realtime.inertial_priority), realtime.estimator_cpus},
-      {"prior", fifo(realtime.prior_priority), realtime.estimator_cpus},
-      {"registration", fifo(realtime.registration_priority), realtime.estimator_cpus},
-      {"map", 0, realtime.map_cpus},
+      {"prior", fifo(realtime.prior_priority), realtime.estimator_cpus, realtime.prior_deadline_ms},
+      {"registration", fifo(realtime.registration_priority), realtime.estimator_cpus,
+       realtime.registration_deadline_ms},
+      {"map", 0, realtime.map_cpus, realtime.map_deadline_ms},
       {"output", 0, {}},
   };
+}
+
+ScanQueueConfig scan_queue_of(const RealtimeSettings& realtime) {
+  return {static_cast<std::int64_t>(realtime.prior_reach_ms * 1e6),
+          static_cast<std::int64_t>(realtime.prior_wait_ms * 1e6)};
 }
 
 /// What the system refuses of the scheduling, for the health report: a robot drives without it, only less
@@ -91,7 +98,7 @@ void run_robot(const Config& config, Service& service) {
   const std::unique_ptr<FileTileStore> store = map_store(config);
   MapThread map(stages.map, stages.T_base_lidar, config.output.cloud_interval_s, store.get(), scheduling.map);
   RegistrationThread registration(stages.registration, stages.method, stages.T_base_lidar, map.snapshots(),
-                                  scheduling.registration);
+                                  scan_queue_of(config.realtime), scheduling.registration);
   PriorThread prior(stages.prior, scheduling.prior);
   std::unique_ptr<BarometerDevice> device = make_barometer(config.barometer);
   InertialThread inertial(config.input.address, config.input.port, {.barometer = device == nullptr},
@@ -119,17 +126,27 @@ void run_robot(const Config& config, Service& service) {
                           prior.status(),       registration.status(),
                           map.status()};
   };
+  // Not the barometer: if it hangs it does so in the kernel, which no new start mends, and poses go on
+  // without.
+  WorkerWatch watch;
+  watch.add("lidar", lidar);
+  watch.add("inertial", inertial);
+  watch.add("prior", prior);
+  watch.add("registration", registration);
+  watch.add("map", map);
+  if (writer) watch.add("output", *writer);
   HealthMonitor monitor(config, refusals);
   ipc::Publisher<ipc::HealthReport> health(ipc::topics::kHealth);
   service.ready();
   while (service.wait_for(std::chrono::milliseconds(100))) {
     const StatusSnapshot now = look();
     if (!monitor.due(now)) continue;
+    if (watch.all_alive(now.now_ns)) service.alive();
     ipc::HealthReport report;
     monitor.fill(now, report);
+    watch.fill(report);
     health.send(report);
     for (const std::string& line : monitor.news(report)) spdlog::info("{}", line);
-    service.alive();
   }
 
   spdlog::info("stopping");

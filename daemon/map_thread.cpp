@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "daemon/cpu_time.hpp"
+#include "daemon/message_loop.hpp"
+#include "drivers/datagram/udp.hpp"
 
 namespace isobar {
 
@@ -18,7 +20,8 @@ MapThread::MapThread(const MapConfig& config, const Eigen::Isometry3d& T_base_li
       clouds_(ipc::topics::kMapCloud),
       waiter_({&scans_.raw()}),
       store_(store),
-      cloud_interval_ns_(static_cast<std::int64_t>(cloud_interval_s * 1e9)) {}
+      cloud_interval_ns_(static_cast<std::int64_t>(cloud_interval_s * 1e9)),
+      deadline_(settings_.deadline_ms) {}
 
 MapThread::~MapThread() { stop(); }
 
@@ -33,25 +36,35 @@ void MapThread::stop() noexcept {
 
 void MapThread::loop() noexcept {
   (void)apply_to_this_thread(settings_);
-  while (waiter_.wait() != ipc::Waiter::Event::kStopped) drain();
-  drain();
+  drain_until_stopped(waiter_, heartbeat_, [this] { drain(); });
   map_.store_all();
   say_what_is_lost();
 }
 
+// Freshness wins: of several scans that wait only the newest goes into the map, the registration needs it
+// now.
 void MapThread::drain() noexcept {
-  while (const auto scan = scans_.take()) {
-    const CpuTimer timer;
-    if (map_.update(*scan)) {
-      snapshots_.publish(map_.snapshot());
-      own_.update_ms = timer.elapsed_ms();
-    }
-    publish_cloud(scan->pose.stamp_ns);
+  auto newest = scans_.take();
+  while (auto newer = scans_.take()) {
+    newest = std::move(newer);
+    ++overtaken_;
   }
+  if (newest) add(*newest);
   say_what_is_lost();
-  own_.dropped_scans = scans_.dropped();
+  own_.dropped_scans = scans_.dropped() + overtaken_;
+  own_.punctuality = deadline_.status();
   own_.cells = map_.cell_count();
   status_.put(own_);
+}
+
+void MapThread::add(const RegisteredScan& scan) noexcept {
+  const CpuTimer timer;
+  if (map_.update(scan)) {
+    snapshots_.publish(map_.snapshot());
+    own_.update_ms = timer.elapsed_ms();
+  }
+  deadline_.note(scan.handed_over_ns, RobotClock::now_ns());
+  publish_cloud(scan.pose.stamp_ns);
 }
 
 void MapThread::say_what_is_lost() noexcept {

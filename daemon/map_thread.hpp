@@ -7,18 +7,21 @@
 
 #include "core/map/local_map.hpp"
 #include "core/map/snapshot_exchange.hpp"
+#include "daemon/deadline.hpp"
 #include "daemon/mailbox.hpp"
 #include "daemon/realtime.hpp"
 #include "daemon/tile_store/file_tile_store.hpp"
+#include "daemon/worker_watch.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar {
 
 /// What the map thread says of itself.
 struct MapStatus {
-  std::uint64_t dropped_scans = 0;
+  std::uint64_t dropped_scans = 0;  ///< older than the newest that waited, or lost on the way
   std::uint64_t cells = 0;
-  double update_ms = 0.0;  ///< CPU time of the last update
+  double update_ms = 0.0;      ///< CPU time of the last update
+  DeadlineStatus punctuality;  ///< from a pose handed on to the map that holds its scan
 };
 
 /// Registered scans in; immutable snapshots for the registration and clouds for viewers out. Not real-time:
@@ -39,6 +42,8 @@ class MapThread {
 
   [[nodiscard]] SnapshotExchange<MapSnapshot>& snapshots() noexcept { return snapshots_; }
   [[nodiscard]] MapStatus status() const noexcept { return status_.get(); }
+  void knock() noexcept { waiter_.wake(); }  ///< see WorkerWatch; any thread
+  [[nodiscard]] const Heartbeat& heartbeat() const noexcept { return heartbeat_; }
 
  private:
   /// What the log already has of the store.
@@ -49,6 +54,7 @@ class MapThread {
   };
   void loop() noexcept;
   void drain() noexcept;
+  void add(const RegisteredScan& scan) noexcept;
   void say_what_is_lost() noexcept;
   void publish_cloud(std::int64_t stamp_ns) noexcept;
 
@@ -64,8 +70,11 @@ class MapThread {
   std::int64_t last_cloud_ns_ = 0;
   std::uint32_t cloud_sequence_ = 0;
   std::vector<MapPoint> points_;  ///< scratch
+  std::uint64_t overtaken_ = 0;   ///< scans that a newer one overtook
+  Deadline deadline_;
   MapStatus own_;
   Mailbox<MapStatus> status_;
+  Heartbeat heartbeat_;
   std::thread thread_;
 };
 

@@ -5,6 +5,8 @@
 
 #include <exception>
 
+#include "daemon/message_loop.hpp"
+
 namespace isobar {
 
 OutputThread::OutputThread(RunOutput& output, ThreadSettings settings)
@@ -27,8 +29,7 @@ void OutputThread::stop() noexcept {
 
 void OutputThread::loop() noexcept {
   (void)apply_to_this_thread(settings_);
-  while (waiter_.wait() != ipc::Waiter::Event::kStopped) drain();
-  drain();
+  drain_until_stopped(waiter_, heartbeat_, [this] { drain(); });
 }
 
 void OutputThread::drain() noexcept {

@@ -5,6 +5,7 @@
 
 #include "daemon/realtime.hpp"
 #include "daemon/run_output.hpp"
+#include "daemon/worker_watch.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar {
@@ -19,6 +20,8 @@ class OutputThread {
 
   void start();
   void stop() noexcept;  ///< returns when the thread has ended and every waiting pose is written
+  void knock() noexcept { waiter_.wake(); }  ///< see WorkerWatch; any thread
+  [[nodiscard]] const Heartbeat& heartbeat() const noexcept { return heartbeat_; }
 
  private:
   void loop() noexcept;
@@ -30,6 +33,7 @@ class OutputThread {
   ipc::Subscriber<Prior> priors_;
   ipc::Waiter waiter_;
   Prior newest_prior_;
+  Heartbeat heartbeat_;
   std::thread thread_;
 };
 

@@ -1,7 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/prior_thread.hpp"
 
+#include <chrono>
+
+#include "daemon/message_loop.hpp"
+#include "drivers/datagram/udp.hpp"
+
 namespace isobar {
+namespace {
+
+/// An IMU sample wakes this thread, the slow sensors do not, as only an IMU sample makes a prior. While it is
+/// silent they are looked at so often: their queues hold 256 samples, and the health report wants to know
+/// that they come.
+constexpr std::chrono::milliseconds kWithoutImu(100);
+
+}  // namespace
 
 PriorThread::PriorThread(const PriorConfig& config, ThreadSettings settings)
     : settings_(std::move(settings)),
@@ -11,7 +24,8 @@ PriorThread::PriorThread(const PriorConfig& config, ThreadSettings settings)
       base_barometer_(ipc::topics::kBaseBarometer),
       wheel_(ipc::topics::kWheel),
       publisher_(ipc::topics::kPrior),
-      waiter_({&imu_.raw(), &barometer_.raw(), &base_barometer_.raw(), &wheel_.raw()}) {}
+      waiter_({&imu_.raw()}),
+      deadline_(settings_.deadline_ms) {}
 
 PriorThread::~PriorThread() { stop(); }
 
@@ -26,8 +40,8 @@ void PriorThread::stop() noexcept {
 
 void PriorThread::loop() noexcept {
   (void)apply_to_this_thread(settings_);
-  while (waiter_.wait() != ipc::Waiter::Event::kStopped) drain();
-  drain();
+  drain_until_stopped(
+      waiter_, heartbeat_, [this] { drain(); }, kWithoutImu);
 }
 
 // Seen here, behind all the ways in which a sample comes: by UDP or over DDS.
@@ -55,9 +69,11 @@ void PriorThread::drain() noexcept {
   while (const auto sample = take(imu_, Kind::kImu)) {
     if (!estimator_.add_imu(*sample, prior)) continue;
     publisher_.send(prior);
+    deadline_.note(prior.stamp_ns, RobotClock::now_ns());
     describe(prior);
   }
   own_.counters = estimator_.counters();
+  own_.punctuality = deadline_.status();
   own_.barometers = estimator_.barometers();
   own_.dropped_samples = imu_.dropped() + barometer_.dropped() + base_barometer_.dropped() + wheel_.dropped();
   status_.put(own_);

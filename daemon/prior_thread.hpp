@@ -7,8 +7,10 @@
 
 #include "core/prior/prior_estimator.hpp"
 #include "core/time/cadence.hpp"
+#include "daemon/deadline.hpp"
 #include "daemon/mailbox.hpp"
 #include "daemon/realtime.hpp"
+#include "daemon/worker_watch.hpp"
 #include "drivers/datagram/datagram.hpp"
 #include "ipc/shared_memory.hpp"
 
@@ -27,6 +29,7 @@ struct PriorStatus {
   HeightSource height_source = HeightSource::kNone;
   BarometerHealth barometers;
   bool attitude_valid = false;
+  DeadlineStatus punctuality;  ///< from an IMU sample to its prior handed on
 };
 
 /// Samples in, one prior an IMU sample out.
@@ -41,6 +44,8 @@ class PriorThread {
   void stop() noexcept;  ///< returns when the thread has ended
 
   [[nodiscard]] PriorStatus status() const noexcept { return status_.get(); }
+  void knock() noexcept { waiter_.wake(); }  ///< see WorkerWatch; any thread
+  [[nodiscard]] const Heartbeat& heartbeat() const noexcept { return heartbeat_; }
 
  private:
   void loop() noexcept;
@@ -57,8 +62,10 @@ class PriorThread {
   ipc::Subscriber<WheelSample> wheel_;
   ipc::Publisher<Prior> publisher_;
   ipc::Waiter waiter_;
+  Deadline deadline_;
   PriorStatus own_;
   Mailbox<PriorStatus> status_;
+  Heartbeat heartbeat_;
   std::thread thread_;
 };
 

@@ -4,6 +4,7 @@
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 
 #include <cerrno>
 #include <cstring>
@@ -41,6 +42,12 @@ std::vector<std::string> try_settings(const std::vector<ThreadSettings>& setting
     if (!refused.empty()) refusals.push_back(std::move(refused));
   }
   return refusals;
+}
+
+std::uint64_t page_faults_of_this_thread() noexcept {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return static_cast<std::uint64_t>(usage.ru_minflt + usage.ru_majflt);
 }
 
 std::string lock_memory() noexcept {

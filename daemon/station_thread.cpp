@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "daemon/message_loop.hpp"
+
 namespace isobar {
 namespace {
 
@@ -35,8 +37,7 @@ void StationThread::stop() noexcept {
 
 void StationThread::loop() noexcept {
   (void)apply_to_this_thread(settings_);
-  while (waiter_.wait() != ipc::Waiter::Event::kStopped) drain();
-  drain();
+  drain_until_stopped(waiter_, heartbeat_, [this] { drain(); });
 }
 
 void StationThread::drain() noexcept {

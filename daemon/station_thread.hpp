@@ -10,6 +10,7 @@
 #include "core/time/cadence.hpp"
 #include "daemon/mailbox.hpp"
 #include "daemon/realtime.hpp"
+#include "daemon/worker_watch.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar {
@@ -41,6 +42,8 @@ class StationThread {
   void stop() noexcept;  ///< returns when the thread has ended
 
   [[nodiscard]] StationStatus status() const noexcept { return status_.get(); }
+  void knock() noexcept { waiter_.wake(); }  ///< see WorkerWatch; any thread
+  [[nodiscard]] const Heartbeat& heartbeat() const noexcept { return heartbeat_; }
 
  private:
   void loop() noexcept;
@@ -56,6 +59,7 @@ class StationThread {
   ipc::Waiter waiter_;
   StationStatus own_;
   Mailbox<StationStatus> status_;
+  Heartbeat heartbeat_;
   std::thread thread_;
 };
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ipc/shared_memory.hpp"
 
+#include <poll.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <array>
@@ -22,8 +24,11 @@
 #include <iceoryx_posh/runtime/posh_runtime_single_process.hpp>
 #include <iostream>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/errors.hpp"
 #include "ipc/broker_lock.hpp"
@@ -115,6 +120,80 @@ class MutedStreams {
 
 std::string own_group() { return std::string(iox::posix::PosixGroup::getGroupOfCurrentProcess().getName()); }
 
+/// Who is attached.
+class AttachedProcesses {
+ public:
+  AttachedProcesses() = default;
+  ~AttachedProcesses() {
+    for (const auto& [name, descriptor] : processes_) ::close(descriptor);
+  }
+  AttachedProcesses(const AttachedProcesses&) = delete;
+  AttachedProcesses& operator=(const AttachedProcesses&) = delete;
+
+  void add(const iox::RuntimeName_t& name, pid_t pid) {
+    const auto descriptor = static_cast<int>(::syscall(SYS_pidfd_open, pid, 0));
+    const std::lock_guard lock(mutex_);
+    if (descriptor >= 0) processes_.emplace_back(name, descriptor);
+  }
+  /// Forgets those that have ended, and calls `gone(name)` for each.
+  template <class Gone>
+  void remove_ended(const Gone& gone) {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(processes_, [&gone](const auto& process) {
+      pollfd ended{process.second, POLLIN, 0};
+      if (::poll(&ended, 1, 0) <= 0) return false;
+      gone(process.first);
+      ::close(process.second);
+      return true;
+    });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::pair<iox::RuntimeName_t, int>> processes_;  // pidfd_open(2)
+};
+
+/// The library's own watch over those who are attached goes by the clock: an isobard that was stopped for 1.5
+/// s (a debugger, a frozen machine) gives up all of them as soon as it goes on, and itself too, which ends
+/// it. Here a process is given up when the kernel says that it has ended, and never else: who hangs does no
+/// harm, as full queues drop their oldest message.
+class PatientRouDi
+    : private AttachedProcesses,  // first: the library's threads start in the constructor of the second
+      public iox::roudi::RouDi {
+ public:
+  PatientRouDi(iox::roudi::RouDiMemoryInterface& memory, iox::roudi::PortManager& ports)
+      : RouDi(memory, ports,
+              RoudiStartupParameters(iox::roudi::MonitoringMode::OFF, /*killProcessesInDestructor=*/false,
+                                     RuntimeMessagesThreadStart::DEFER_START)) {
+    startProcessRuntimeMessagesThread();
+  }
+  ~PatientRouDi() override { shutdown(); }
+  PatientRouDi(const PatientRouDi&) = delete;
+  PatientRouDi& operator=(const PatientRouDi&) = delete;
+
+ private:
+  void processMessage(const iox::runtime::IpcMessage& message, const iox::runtime::IpcMessageType& command,
+                      const iox::RuntimeName_t& name) noexcept override {
+    constexpr std::uint32_t kElementsOfRegister = 6;
+    RouDi::processMessage(message, command, name);
+    if (command != iox::runtime::IpcMessageType::REG ||
+        message.getNumberOfElements() != kElementsOfRegister) {
+      return;
+    }
+    std::uint32_t pid = 0;
+    uid_t user = 0;
+    std::int64_t sent = 0;
+    static_cast<void>(parseRegisterMessage(message, pid, user, sent));
+    if (static_cast<pid_t>(pid) != ::getpid()) add(name, static_cast<pid_t>(pid));
+  }
+
+  // Every 100 ms.
+  void cyclicUpdateHook() noexcept override {
+    remove_ended(
+        [this](const iox::RuntimeName_t& name) { static_cast<void>(m_prcMgr->unregisterProcess(name)); });
+  }
+};
+
 /// What a killed isobard left behind is removed at the next start, so its space counts as free.
 std::uint64_t bytes_of_leftovers() {
   std::uint64_t bytes = 0;
@@ -172,15 +251,13 @@ void set_fatal_action(FatalAction action) noexcept { g_fatal_action.store(action
 struct Broker::Impl {
   BrokerLock lock;
   iox::roudi::IceOryxRouDiComponents components;
-  iox::roudi::RouDi roudi;
+  PatientRouDi roudi;
   iox::runtime::PoshRuntimeSingleProcess runtime;
 
   explicit Impl(BrokerLock&& held)
       : lock(std::move(held)),
         components(memory_config()),
-        roudi(components.rouDiMemoryManager, components.portManager,
-              iox::roudi::RouDi::RoudiStartupParameters(iox::roudi::MonitoringMode::ON,
-                                                        /*killProcessesInDestructor=*/false)),
+        roudi(components.rouDiMemoryManager, components.portManager),
         runtime("isobard") {}
 };
 
@@ -326,7 +403,7 @@ bool RawSubscriber::has_data() const noexcept { return impl_->subscriber.hasData
 // ---------------------------------------------------------------------------------------------- Waiter
 
 struct Waiter::Impl {
-  iox::popo::UserTrigger stop_trigger;
+  iox::popo::UserTrigger trigger;
   iox::popo::WaitSet<Waiter::kMaxSubscribers + 1> set;
   std::atomic<bool> stopped{false};
 
@@ -345,7 +422,7 @@ struct Waiter::Impl {
 
 Waiter::Waiter(std::initializer_list<detail::RawSubscriber*> subscribers) : impl_(std::make_unique<Impl>()) {
   bool attached = subscribers.size() <= kMaxSubscribers;
-  attached = attached && !impl_->set.attachEvent(impl_->stop_trigger).has_error();
+  attached = attached && !impl_->set.attachEvent(impl_->trigger).has_error();
   for (detail::RawSubscriber* subscriber : subscribers) {
     attached = attached &&
                !impl_->set.attachState(subscriber->impl_->subscriber, iox::popo::SubscriberState::HAS_DATA)
@@ -370,7 +447,9 @@ Waiter::Event Waiter::wait_for(std::chrono::nanoseconds timeout) noexcept {
 
 void Waiter::stop() noexcept {
   impl_->stopped.store(true, std::memory_order_release);
-  impl_->stop_trigger.trigger();
+  impl_->trigger.trigger();
 }
+
+void Waiter::wake() noexcept { impl_->trigger.trigger(); }
 
 }  // namespace isobar::ipc

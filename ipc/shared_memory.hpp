@@ -223,8 +223,8 @@ class Subscriber {
   detail::RawSubscriber raw_;
 };
 
-/// Sleeps until any of its subscribers has a message. wait() belongs to one thread; stop() may come from any.
-/// Allocates nothing after construction.
+/// Sleeps until any of its subscribers has a message. wait() belongs to one thread; stop() and wake() may
+/// come from any. Allocates nothing after construction.
 class Waiter {
  public:
   static constexpr std::size_t kMaxSubscribers = 15;
@@ -244,6 +244,8 @@ class Waiter {
 
   /// Wakes the waiting thread; from now on every wait returns kStopped.
   void stop() noexcept;
+  /// Wakes the waiting thread once, with kData though there may be none. Any thread.
+  void wake() noexcept;
 
  private:
   struct Impl;

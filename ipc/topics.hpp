@@ -42,7 +42,7 @@ struct HealthEntry {
 
 /// The health of isobard, once a second.
 struct HealthReport {
-  static constexpr std::uint32_t kMaxEntries = 48;
+  static constexpr std::uint32_t kMaxEntries = 64;
 
   std::int64_t stamp_ns = 0;
   std::uint32_t entry_count = 0;     ///< entries[0 … entry_count-1] are valid
@@ -88,8 +88,8 @@ inline constexpr Topic<ImuSample> kImu{"imu", 256, 0};
 inline constexpr Topic<PressureSample> kBarometer{"barometer", 256, 0};
 inline constexpr Topic<PressureSample> kBaseBarometer{"base_barometer", 256, 0};
 inline constexpr Topic<WheelSample> kWheel{"wheel", 256, 0};
-inline constexpr Topic<Prior> kPrior{"prior", 64, 0};
-inline constexpr Topic<PoseEstimate> kPose{"pose", 16, 0};
+inline constexpr Topic<Prior> kPrior{"prior", 256, 0};
+inline constexpr Topic<PoseEstimate> kPose{"pose", 64, 0};
 inline constexpr Topic<RegisteredScan> kRegisteredScan{"registered_scan", 4, 0};
 inline constexpr Topic<MapCloud> kMapCloud{"map_cloud", 1, 1};
 inline constexpr Topic<HealthReport> kHealth{"health", 4, 1};
@@ -106,7 +106,7 @@ struct ChunkPool {
 inline constexpr ChunkPool kChunkPools[] = {
     // NOLINT(modernize-avoid-c-arrays)
     {256, 4096},        // samples
-    {1024, 512},        // priors, poses
+    {1024, 1024},       // priors, poses
     {16 * 1024, 32},    // health
     {1200 * 1024, 32},  // scans, registered scans, maps
 };

@@ -167,6 +167,12 @@ UdpReceiver::Status UdpReceiver::receive(ReceivedDatagram& datagram, int timeout
   return Status::kDatagram;
 }
 
+void UdpReceiver::pause(int duration_ms) noexcept {
+  pollfd wait{stop_event_, POLLIN, 0};
+  // Interrupted by a signal the pause is shorter, which harms nobody.
+  [[maybe_unused]] const int ready = poll(&wait, 1, duration_ms);
+}
+
 void UdpReceiver::stop() noexcept {
   const std::uint64_t one = 1;
   // Fails only when the event is already set many times over: it is set, then.

@@ -42,6 +42,9 @@ class UdpReceiver {
   enum class Status : std::uint8_t { kDatagram, kTimeout, kStopped, kError };
   /// Waits for a datagram, at most timeout_ms (-1: for ever). Allocates nothing. One thread at a time.
   Status receive(ReceivedDatagram& datagram, int timeout_ms);
+  /// Waits without looking at the socket: datagrams gather there. Ends early when stopped. Same thread as
+  /// receive().
+  void pause(int duration_ms) noexcept;
   /// Ends the wait of receive(), now and for all later calls. Any thread, signal handlers too.
   void stop() noexcept;
 

@@ -22,6 +22,7 @@ class ChildProcess {
   bool read_line(std::string& line, std::chrono::milliseconds timeout);
   /// Reads lines until one contains `text`.
   bool read_until(const std::string& text, std::chrono::milliseconds timeout);
+  [[nodiscard]] pid_t pid() const { return pid_; }
   void signal(int number) const;
   /// Exit code, 128 + signal when a signal ended it, -1 when it still runs after the timeout.
   int wait(std::chrono::milliseconds timeout);

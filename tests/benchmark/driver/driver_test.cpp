@@ -50,7 +50,6 @@ DriverOptions short_run() {
 class PoseSink : public EstimateSink {
  public:
   void on_pose(const PoseEstimate& pose, const Prior& /*prior*/) override { poses_.push_back(pose); }
-  void on_evicted(const std::vector<MapPoint>& /*points*/) override {}
   [[nodiscard]] const std::vector<PoseEstimate>& poses() const { return poses_; }
 
  private:

@@ -17,10 +17,7 @@ void SystemUnderTest::register_scan(const Scan& scan, RegisteredScan& out) {
   registration_.register_scan(scan, *snapshot, out);
 }
 
-bool SystemUnderTest::update_map(const RegisteredScan& scan) {
-  evicted_.clear();
-  return map_.update(scan, evicted_);
-}
+bool SystemUnderTest::update_map(const RegisteredScan& scan) { return map_.update(scan); }
 
 void SystemUnderTest::hand_over() {
   snapshots_.publish(map_.snapshot());
@@ -71,6 +68,7 @@ StageCosts StageProbe::split(const Scan& scan, const MapSnapshot& map, const Reg
 
 double StageProbe::time_match(const MapSnapshot& map, const PoseEstimate& pose) {
   const CpuTimer timer;
+  correspondences_.start(map, pose.T_map_base.translation());
   pairs_ = correspondences_.find(map, sampler_.sample(), 1, pose.T_map_base, p_base_lidar_,
                                  config_.last_distance_m);
   return timer.elapsed_ms();

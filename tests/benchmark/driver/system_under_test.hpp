@@ -40,7 +40,6 @@ class SystemUnderTest {
   Registration registration_;
   LocalMap map_;
   SnapshotExchange<MapSnapshot> snapshots_;
-  std::vector<MapPoint> evicted_;
 };
 
 /// CPU time of one registration by stage [ms].

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One thread of another process, held: what a hung call or a starved core does to it.
+#pragma once
+
+#include <sys/ptrace.h>
+#include <sys/types.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+namespace isobar::test {
+
+class StoppedThread {
+ public:
+  /// Holds the thread of that name as long as this lives. One of the tester's threads makes and ends it.
+  StoppedThread(pid_t process, const std::string& name) : thread_(find(process, name)) {
+    if (::ptrace(PTRACE_SEIZE, thread_, nullptr, nullptr) != 0 ||
+        ::ptrace(PTRACE_INTERRUPT, thread_, nullptr, nullptr) != 0 ||
+        ::waitpid(thread_, nullptr, __WALL) != thread_) {
+      throw std::runtime_error("the thread " + name + " cannot be held");
+    }
+  }
+  ~StoppedThread() { ::ptrace(PTRACE_DETACH, thread_, nullptr, nullptr); }
+  StoppedThread(const StoppedThread&) = delete;
+  StoppedThread& operator=(const StoppedThread&) = delete;
+
+ private:
+  static pid_t find(pid_t process, const std::string& name) {
+    const auto tasks = std::filesystem::path("/proc") / std::to_string(process) / "task";
+    for (const auto& task : std::filesystem::directory_iterator(tasks)) {
+      std::string comm;
+      std::getline(std::ifstream(task.path() / "comm") >> std::ws, comm);
+      if (comm == name) return std::stoi(task.path().filename().string());
+    }
+    throw std::runtime_error("no thread " + name);
+  }
+
+  pid_t thread_;
+};
+
+}  // namespace isobar::test
