@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Matcher: the plane of the cell that a point is in. One probe a point; only where its cell has no plane that
-// faces the robot, the nearest one around.
+// faces the robot and lies near the point, the nearest one around.
 #pragma once
 
 #include <memory>

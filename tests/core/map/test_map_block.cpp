@@ -103,6 +103,43 @@ TEST_CASE("a mask's rank is the number of members below") {
   CHECK(mask.count() == members.size());
 }
 
+TEST_CASE("a window over blocks visits each member in it once, and nothing else") {
+  std::mt19937 random(31);
+  std::uniform_int_distribution<int> coordinate(-20, 20);
+  std::uniform_int_distribution<int> size(0, 11);
+  for (int i = 0; i < 200; ++i) {
+    const CellIndex first(coordinate(random), coordinate(random), coordinate(random));
+    const CellIndex last = first + CellIndex(size(random), size(random), size(random));
+    // Every cell of the world is a member where the sum of its coordinates is a multiple of three.
+    const auto is_member = [](const CellIndex& cell) { return (cell.x() + cell.y() + cell.z()) % 3 == 0; };
+    std::set<std::array<int, 3>> visited;
+    int visits = 0;
+    isobar::for_each_block(first, last,
+                           [&](const CellIndex& block, const CellIndex& low, const CellIndex& high) {
+                             CellMask mask;
+                             for (int place = 0; place < isobar::kPlacesPerBlock; ++place) {
+                               if (is_member(block + isobar::offset_of(place))) mask.mark(place);
+                             }
+                             mask.count_ranks();
+                             isobar::for_each_in_window(mask, 0, low, high, [&](int slot) {
+                               const CellIndex cell = block + isobar::offset_of(slot);
+                               visited.insert({cell.x(), cell.y(), cell.z()});
+                               ++visits;
+                             });
+                           });
+    std::set<std::array<int, 3>> expected;
+    for (int x = first.x(); x <= last.x(); ++x) {
+      for (int y = first.y(); y <= last.y(); ++y) {
+        for (int z = first.z(); z <= last.z(); ++z) {
+          if (is_member({x, y, z})) expected.insert({x, y, z});
+        }
+      }
+    }
+    CHECK(visited == expected);
+    CHECK(visits == static_cast<int>(expected.size()));
+  }
+}
+
 TEST_CASE("whole-number moments are those of the points to the width of a unit, in any order") {
   std::mt19937 random(4);
   std::uniform_real_distribution<float> fraction(0.0F, 1.0F);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
 #include <random>
@@ -84,4 +85,52 @@ TEST_CASE("moments about another centre are the same points") {
   CHECK((here.sum - direct.sum).norm() < 1e-4F);
   CHECK((here.outer_diagonal - direct.outer_diagonal).norm() < 1e-4F);
   CHECK((here.outer_off_diagonal - direct.outer_off_diagonal).norm() < 1e-4F);
+}
+
+TEST_CASE(
+    "thickness and normal in closed form are those of an eigensolver, for every shape that is a plane") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
+  std::normal_distribution<float> normal;
+  int planes = 0;
+  for (int i = 0; i < 2000; ++i) {
+    // Clouds from lines to balls, in any attitude, off the centre.
+    const Eigen::Matrix3f turn =
+        Eigen::Quaternionf(normal(random), normal(random), normal(random), normal(random))
+            .normalized()
+            .toRotationMatrix();
+    const Eigen::Vector3f size(0.12F, 0.12F * std::abs(uniform(random)), 0.06F * std::abs(uniform(random)));
+    const Eigen::Vector3f centre = 0.1F * Eigen::Vector3f(uniform(random), uniform(random), uniform(random));
+    Moments moments;
+    std::vector<Eigen::Vector3d> points;
+    for (int k = 0; k < 60; ++k) {
+      const Eigen::Vector3f unit(uniform(random), uniform(random), uniform(random));
+      const Eigen::Vector3f p = centre + turn * size.cwiseProduct(unit);
+      moments.add(p);
+      points.push_back(p.cast<double>());
+    }
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const auto& p : points) mean += p / 60.0;
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (const auto& p : points) covariance += (p - mean) * (p - mean).transpose() / 60.0;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
+    const double thickness = std::sqrt(eigen.eigenvalues()(0));
+    const double width = std::sqrt(eigen.eigenvalues()(1));
+    const PlaneCriteria criteria;
+    Plane plane;
+    const bool is_plane = fit_plane(moments, criteria, plane);
+    // Within a percent of a limit single precision may decide either way.
+    const double by_width = width / criteria.min_width_m;
+    const double by_ratio = thickness * thickness / (0.15 * width * width);
+    const double by_direction = thickness / (width * std::sqrt(60.0)) / criteria.max_normal_deviation_rad;
+    if (by_width > 1.01 && by_ratio < 0.99 && by_direction < 0.99) CHECK(is_plane);
+    if (by_width < 0.99 || by_ratio > 1.01 || by_direction > 1.01) CHECK_FALSE(is_plane);
+    if (!is_plane) continue;
+    ++planes;
+    // Sums in single precision: variances are right to about 1e-9 m^2.
+    CHECK(plane.thickness_m * plane.thickness_m ==
+          doctest::Approx(thickness * thickness).epsilon(1e-3).scale(1e-5));
+    CHECK(std::abs(plane.normal.cast<double>().dot(eigen.eigenvectors().col(0))) > 1.0 - 1e-5);
+  }
+  CHECK(planes > 300);
 }

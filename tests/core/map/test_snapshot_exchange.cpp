@@ -50,7 +50,7 @@ TEST_CASE("what is pinned lives until it is let go, and only the writer frees") 
 }
 
 TEST_CASE("two readers beside a writer that swaps always see a whole and never an older snapshot") {
-  constexpr int kSwaps = 100'000;
+  constexpr int kSwaps = 1'000'000;
   {
     isobar::SnapshotExchange<Marked, 2> exchange(std::make_shared<const Marked>(0));
     std::atomic<bool> stop{false};
