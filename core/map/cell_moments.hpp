@@ -10,6 +10,21 @@
 
 namespace isobar {
 
+struct CellMoments;
+
+/// Sum of the moments of cells around one, about its centre, in the units of CellMoments.
+class MomentSum {
+ public:
+  /// `offset`: of the cell that `moments` belongs to, in cells.
+  void add(const CellMoments& moments, const Eigen::Vector3i& offset);
+  [[nodiscard]] Moments in_metres(float cell_m) const;
+
+ private:
+  std::array<std::int64_t, 6> outer_{};
+  std::array<std::int64_t, 3> sum_{};
+  std::int64_t count_ = 0;
+};
+
 /// Sums over points relative to the cell's centre, in units of 1/512 of the cell's edge (0.5 mm at 0.25 m).
 struct CellMoments {
   /// Units along the edge: a point is at -256 … 256.
@@ -65,5 +80,37 @@ struct CellMoments {
   }
 };
 static_assert(sizeof(CellMoments) == 32);
+
+inline void MomentSum::add(const CellMoments& moments, const Eigen::Vector3i& offset) {
+  // sum (p + d)(p + d)^T = sum p p^T + s d^T + d s^T + n d d^T
+  const std::int32_t n = moments.count;
+  const std::array<std::int32_t, 3> s{moments.sum[0], moments.sum[1], moments.sum[2]};
+  const std::array<std::int32_t, 3> d{offset.x() * CellMoments::kUnits, offset.y() * CellMoments::kUnits,
+                                      offset.z() * CellMoments::kUnits};
+  count_ += n;
+  for (std::size_t i = 0; i < 3; ++i) {
+    sum_[i] += s[i] + n * d[i];
+    outer_[i] += moments.outer[i] + std::int64_t{2 * s[i] + n * d[i]} * d[i];
+  }
+  constexpr std::array<std::array<std::size_t, 2>, 3> kPairs{{{0, 1}, {0, 2}, {1, 2}}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto [i, j] = kPairs[k];
+    outer_[3 + k] += moments.outer[3 + k] + std::int64_t{s[i] + n * d[i]} * d[j] + std::int64_t{s[j]} * d[i];
+  }
+}
+
+inline Moments MomentSum::in_metres(float cell_m) const {
+  const float unit_m = cell_m / CellMoments::kUnits;
+  const float square_m2 = unit_m * unit_m;
+  Moments moments;
+  moments.count = static_cast<float>(count_);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    moments.sum[axis] = static_cast<float>(sum_[i]) * unit_m;
+    moments.outer_diagonal[axis] = static_cast<float>(outer_[i]) * square_m2;
+    moments.outer_off_diagonal[axis] = static_cast<float>(outer_[3 + i]) * square_m2;
+  }
+  return moments;
+}
 
 }  // namespace isobar

@@ -16,6 +16,17 @@ namespace {
 // Tiles that come back from the shelf with one update: so many are read in a few milliseconds.
 constexpr std::size_t kTilesPerUpdate = 8;
 
+// Rays of scans less than this apart say nearly the same of what they pass [s] …
+constexpr double kSeenThroughIntervalS = 0.3;
+// … so that the map is looked through in up to so many parts, one with each scan.
+constexpr double kMostParts = 4.0;
+
+std::size_t parts_at(double elapsed_s) {
+  return elapsed_s > 0.0 ? static_cast<std::size_t>(
+                               std::lround(std::clamp(kSeenThroughIntervalS / elapsed_s, 1.0, kMostParts)))
+                         : 1;
+}
+
 // True if a plane is known in the cube of 4 x 4 x 4 cells around `place`.
 bool plane_in_cube(const MapBlock* block, int place) {
   bool any = false;
@@ -55,6 +66,7 @@ bool LocalMap::update(const RegisteredScan& scan) {
   const Eigen::Vector3d p_map_base = scan.pose.T_map_base.translation();
   const bool new_tile = !started_ || LocalFrame(p_map_base, cell_m_).origin_cell !=
                                          LocalFrame(last_pose_.T_map_base.translation(), cell_m_).origin_cell;
+  const double elapsed_s = static_cast<double>(scan.pose.stamp_ns - last_pose_.stamp_ns) * 1e-9;
   last_pose_ = scan.pose;
   started_ = true;
   if (new_tile) {
@@ -64,7 +76,7 @@ bool LocalMap::update(const RegisteredScan& scan) {
   bring_back_stored();
   insert(scan);
   if (config_.see_through_limit > 0 && scan.pose.mode == PoseMode::kRegistered) {
-    remove_seen_through(scan);
+    remove_seen_through(scan, parts_at(elapsed_s));
   }
   fit_touched();
   publish();
@@ -147,7 +159,8 @@ void LocalMap::insert(const RegisteredScan& scan) {
   }
 }
 
-void LocalMap::remove_seen_through(const RegisteredScan& scan) {
+void LocalMap::remove_seen_through(const RegisteredScan& scan, std::size_t parts) {
+  ++looks_;
   const Eigen::Isometry3d T_lidar_base = T_base_lidar_.inverse();
   free_space_.set_scan(scan, T_lidar_base);
   const LocalFrame frame(scan.pose.T_map_base.translation(), cell_m_);
@@ -163,7 +176,7 @@ void LocalMap::remove_seen_through(const RegisteredScan& scan) {
     }
     for (std::size_t b = 0; b < kBlocksPerTile; ++b) {
       MapBlock* block = tile->cells.block(b);
-      if (block == nullptr) continue;
+      if (block == nullptr || (key.hash() + b + looks_) % parts != 0) continue;
       const Eigen::Vector3f centre_local = block_centre_local(frame, first_cell(key, b));
       if ((centre_local - p_local_lidar).norm() > block_reach) continue;
       if (count_seen_through(T_lidar_local, centre_local, *block)) {

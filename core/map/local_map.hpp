@@ -71,7 +71,7 @@ class LocalMap {
 
   [[nodiscard]] bool wants(const PoseEstimate& pose) const;
   void insert(const RegisteredScan& scan);
-  void remove_seen_through(const RegisteredScan& scan);
+  void remove_seen_through(const RegisteredScan& scan, std::size_t parts);
   bool count_seen_through(const Eigen::Isometry3f& T_lidar_local, const Eigen::Vector3f& centre_local,
                           MapBlock& block) const;
   void fit_touched();
@@ -99,6 +99,7 @@ class LocalMap {
   FreeSpace free_space_;
   PoseEstimate last_pose_;
   bool started_ = false;
+  std::uint64_t looks_ = 0;  // for what was seen through
   std::uint64_t seen_through_count_ = 0;
   std::uint64_t lost_tile_count_ = 0;
 };

@@ -14,6 +14,7 @@ constexpr float kOtherSide = -0.15F;
 // Planes are fitted again when a quarter more is known.
 constexpr int kRefitNumerator = 5;
 constexpr int kRefitDenominator = 4;
+constexpr std::size_t kStagedAtOnce = 24;
 
 std::uint32_t sub_cell_bit(const Eigen::Vector3f& fraction) {
   const auto third = [](float f) {
@@ -73,10 +74,10 @@ int MapBlock::observe(int place, const Observation& observation) {
   if (cell.waiting != 0) {
     return -1;
   }
-  // A cell without a plane is tried at every chance.
+  // A cell without a plane is tried again after as much.
   const bool enough = cell.moments.count * kRefitDenominator >= cell.fitted_count * kRefitNumerator ||
                       cell.moments.count >= observation.freeze;
-  if (!enough && plane_at(slot) != nullptr) {
+  if (!enough) {
     return -1;
   }
   cell.waiting = 1;
@@ -86,11 +87,12 @@ int MapBlock::observe(int place, const Observation& observation) {
 void MapBlock::set_plane(int slot, const PackedPlane* plane) {
   MapCell& cell = cells_[mask_.rank(slot)];
   cell.waiting = 0;
+  cell.fitted_count = cell.moments.count;
   if (plane == nullptr && plane_at(slot) == nullptr) {
     return;
   }
-  if (plane != nullptr) {
-    cell.fitted_count = cell.moments.count;
+  if (staged_.empty()) {
+    staged_.reserve(kStagedAtOnce);
   }
   staged_.push_back({slot, plane != nullptr, plane != nullptr ? *plane : PackedPlane{}});
   changed_ = true;

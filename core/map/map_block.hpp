@@ -22,7 +22,7 @@ struct MapCell {
   std::uint16_t slot : 15 = 0;           ///< in the block, see CellMask
   std::uint16_t waiting : 1 = 0;         ///< for a fit
   std::array<std::int8_t, 3> toward{};   ///< direction to its first observer, times 127
-  std::uint8_t fitted_count = 0;         ///< moments.count when the plane was fitted
+  std::uint8_t fitted_count = 0;         ///< moments.count when a plane was last looked for
   std::uint8_t seen_through = 0;         ///< rays that passed, less observations
   std::uint8_t intensity = 0;            ///< mean of the points' reflectivity
 

@@ -17,6 +17,11 @@ PlaneCriteria criteria_of(const MapConfig& config) {
   return criteria;
 }
 
+// Seen from the same side.
+bool same_way(const MapCell& a, const MapCell& b) {
+  return a.toward[0] * b.toward[0] + a.toward[1] * b.toward[1] + a.toward[2] * b.toward[2] > 0;
+}
+
 }  // namespace
 
 PlaneFitter::PlaneFitter(const MapConfig& config, FindTile find_tile)
@@ -27,10 +32,9 @@ PlaneFitter::PlaneFitter(const MapConfig& config, FindTile find_tile)
 Moments PlaneFitter::neighbourhood(const MapTile& tile, const CellIndex& at, const MapCell& centre) const {
   // Same side only: a thin wall has two.
   const int side = centre.slot / kPlacesPerBlock;
-  const Eigen::Vector3f toward = centre.toward_vector();
   const CellIndex first = at.array() - 1;
   const CellIndex last = at.array() + 1;
-  Moments sum;
+  MomentSum sum;
   for_each_block(first, last, [&](const CellIndex& block_first, const CellIndex& low, const CellIndex& high) {
     const TileKey key = tile_of(block_first);
     const MapTile* in = key == tile.key() ? &tile : find_tile_(key);
@@ -38,23 +42,23 @@ Moments PlaneFitter::neighbourhood(const MapTile& tile, const CellIndex& at, con
     if (block == nullptr) return;
     for_each_in_window(block->mask(), side, low, high, [&](int slot) {
       const MapCell& other = *block->find(slot);
-      if (other.toward_vector().dot(toward) > 0.0F) {
+      if (same_way(other, centre)) {
         const CellIndex offset = block_first + offset_of(slot % kPlacesPerBlock) - at;
-        sum.add(other.moments.in_metres(cell_m_), offset.cast<float>() * cell_m_);
+        sum.add(other.moments, offset);
       }
     });
   });
-  return sum;
+  return sum.in_metres(cell_m_);
 }
 
 Moments PlaneFitter::cube_around(const MapBlock& block, int slot) const {
   const CellIndex centre = offset_of(slot % kPlacesPerBlock);
-  Moments sum;
+  MomentSum sum;
   for_each_in_cube(block.mask(), slot % kPlacesPerBlock, [&](int member) {
     const CellIndex offset = offset_of(member % kPlacesPerBlock) - centre;
-    sum.add(block.find(member)->moments.in_metres(cell_m_), offset.cast<float>() * cell_m_);
+    sum.add(block.find(member)->moments, offset);
   });
-  return sum;
+  return sum.in_metres(cell_m_);
 }
 
 bool PlaneFitter::fit(const MapTile& tile, std::size_t block_index, int slot, PackedPlane& packed) const {

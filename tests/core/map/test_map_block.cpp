@@ -164,6 +164,31 @@ TEST_CASE("whole-number moments are those of the points to the width of a unit, 
         2.0F * 0.125F * 0.00025F);
 }
 
+TEST_CASE("moments of cells around one add up to those of all points about its centre") {
+  std::mt19937 random(41);
+  std::uniform_real_distribution<float> fraction(0.0F, 1.0F);
+  std::uniform_int_distribution<int> step(-3, 3);
+  isobar::MomentSum sum;
+  Moments exact;
+  for (int cell = 0; cell < 40; ++cell) {
+    const Eigen::Vector3i offset(step(random), step(random), step(random));
+    CellMoments moments;
+    for (int i = 0; i < 100; ++i) {
+      const Eigen::Vector3f p(fraction(random), fraction(random), fraction(random));
+      moments.add(p);
+      exact.add((p.array() - 0.5F + offset.array().cast<float>()) * kCellM);
+    }
+    sum.add(moments, offset);
+  }
+  const Moments moments = sum.in_metres(kCellM);
+  CHECK(moments.count == exact.count);
+  // A point is off by a quarter of a millimetre at most, at up to 1 m.
+  CHECK((moments.mean() - exact.mean()).cwiseAbs().maxCoeff() < 0.00025F);
+  CHECK((moments.outer_diagonal - exact.outer_diagonal).cwiseAbs().maxCoeff() / exact.count < 0.0005F);
+  CHECK((moments.outer_off_diagonal - exact.outer_off_diagonal).cwiseAbs().maxCoeff() / exact.count <
+        0.0005F);
+}
+
 TEST_CASE("the most points at the corner of a cell do not overflow") {
   for (const float corner : {0.0F, 1.0F}) {
     CellMoments moments;
