@@ -47,7 +47,8 @@ class CellMask {
 
   /// Members of layer z (0 … 7) of a side: bit y * 8 + x.
   [[nodiscard]] std::uint64_t layer(int side, int z) const {
-    return words_[static_cast<std::size_t>(side * kBlockCells + z)];
+    const int at = side * kBlockCells + z;
+    return words_[static_cast<std::size_t>(at)];
   }
 
  private:

@@ -76,7 +76,9 @@ struct CellMoments {
 
  private:
   [[nodiscard]] static std::int32_t to_units(float fraction) {
-    return static_cast<std::int32_t>(fraction * kUnits + 0.5F) - kUnits / 2;
+    // Never negative, and lround would cost a call a point.
+    return static_cast<std::int32_t>(fraction * kUnits + 0.5F) -
+           kUnits / 2;  // NOLINT(bugprone-incorrect-roundings)
   }
 };
 static_assert(sizeof(CellMoments) == 32);

@@ -33,8 +33,9 @@ template <typename Real>
 
 /// Number of the cell's block in its tile, 0 … 63.
 [[nodiscard]] inline std::size_t block_of(const CellIndex& cell) {
-  return static_cast<std::size_t>((((cell.z() >> 3 & 3) * kTileBlocks) + (cell.y() >> 3 & 3)) * kTileBlocks +
-                                  (cell.x() >> 3 & 3));
+  const int block =
+      (((cell.z() >> 3 & 3) * kTileBlocks) + (cell.y() >> 3 & 3)) * kTileBlocks + (cell.x() >> 3 & 3);
+  return static_cast<std::size_t>(block);
 }
 
 /// Number of the cell in its block, 0 … 511: x runs fastest.

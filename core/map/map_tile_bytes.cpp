@@ -32,6 +32,7 @@ struct BlockHeader {
 template <typename T>
 void append(std::vector<std::byte>& bytes, const T* values, std::size_t count) {
   static_assert(std::is_trivially_copyable_v<T>);
+  if (count == 0) return;
   const auto* first = reinterpret_cast<const std::byte*>(values);
   bytes.insert(bytes.end(), first, first + count * sizeof(T));
 }
@@ -44,6 +45,7 @@ class Reader {
   bool read(T* values, std::size_t count) {
     static_assert(std::is_trivially_copyable_v<T>);
     if (bytes_.size() / sizeof(T) < count) return false;
+    if (count == 0) return true;  // a vector without elements has no address
     std::memcpy(values, bytes_.data(), count * sizeof(T));
     bytes_ = bytes_.subspan(count * sizeof(T));
     return true;

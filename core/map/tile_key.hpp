@@ -11,7 +11,8 @@ struct TileKey {
   std::int32_t x = 0;
   std::int32_t y = 0;
   std::int32_t z = 0;
-  auto operator<=>(const TileKey&) const = default;
+  auto operator<=>(const TileKey&) const =
+      default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 is wrong here
 
   [[nodiscard]] std::uint64_t hash() const {
     std::uint64_t h = static_cast<std::uint32_t>(x) * 0x9E3779B97F4A7C15ULL;

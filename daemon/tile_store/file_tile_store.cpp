@@ -16,14 +16,14 @@ constexpr double kDeadShare = 0.5;
 constexpr double kDeadShareNearLimit = 0.25;
 constexpr double kNearLimit = 0.75;
 /// What a put may move beside as much as it wrote itself.
-constexpr std::uint64_t kLeastMovedBytes = 64 * 1024;
+constexpr std::uint64_t kLeastMovedBytes = std::uint64_t{64} * 1024;
 /// What passing by a superseded tile counts of that.
 constexpr std::uint64_t kSkippedBytes = 256;
 
 }  // namespace
 
 std::uint64_t TileStoreLimits::segment_bytes() const {
-  return std::clamp<std::uint64_t>(max_bytes / 64, 256 * 1024, std::uint64_t{1} << 30);
+  return std::clamp<std::uint64_t>(max_bytes / 64, std::uint64_t{256} * 1024, std::uint64_t{1} << 30);
 }
 
 FileTileStore::FileTileStore(std::filesystem::path directory, const MapHeader& header,
