@@ -77,8 +77,8 @@ struct CellMoments {
  private:
   [[nodiscard]] static std::int32_t to_units(float fraction) {
     // Never negative, and lround would cost a call a point.
-    return static_cast<std::int32_t>(fraction * kUnits + 0.5F) -
-           kUnits / 2;  // NOLINT(bugprone-incorrect-roundings)
+    const auto units = static_cast<std::int32_t>(fraction * kUnits + 0.5F);  // NOLINT
+    return units - kUnits / 2;
   }
 };
 static_assert(sizeof(CellMoments) == 32);
