@@ -45,10 +45,11 @@ void append_plane_points(const MapCell& cell, const CellPlace& place, const Eige
   for (int bit = 0; bit < kSubCells; ++bit) {
     if ((cell.occupied_sub_cells >> static_cast<unsigned>(bit) & 1U) == 0) continue;
     const Eigen::Vector3i sub = sub_cell(bit);
-    const auto column = static_cast<std::size_t>(sub[(axis + 1) % 3] * kThirds + sub[(axis + 2) % 3]);
+    const int column = sub[(axis + 1) % 3] * kThirds + sub[(axis + 2) % 3];
     Eigen::Vector3f p_cell = centre_of(sub, place.cell_m);
-    if (done.at(column) || !on_plane(q_cell, normal, axis, place.cell_m, p_cell)) continue;
-    done.at(column) = true;
+    if (done.at(static_cast<std::size_t>(column)) || !on_plane(q_cell, normal, axis, place.cell_m, p_cell))
+      continue;
+    done.at(static_cast<std::size_t>(column)) = true;
     points.push_back({place.centre_map + p_cell.cast<double>(), normal, cell.intensity});
   }
 }
