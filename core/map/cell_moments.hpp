@@ -58,16 +58,7 @@ struct CellMoments {
   }
 
   /// In metres, about the cell's centre.
-  [[nodiscard]] Moments in_metres(float cell_m) const {
-    const float unit_m = cell_m / kUnits;
-    const float square_m2 = unit_m * unit_m;
-    Moments moments;
-    moments.count = count;
-    moments.sum = Eigen::Vector3f(sum[0], sum[1], sum[2]) * unit_m;
-    moments.outer_diagonal = Eigen::Vector3i(outer[0], outer[1], outer[2]).cast<float>() * square_m2;
-    moments.outer_off_diagonal = Eigen::Vector3i(outer[3], outer[4], outer[5]).cast<float>() * square_m2;
-    return moments;
-  }
+  [[nodiscard]] Moments in_metres(float cell_m) const;
 
   /// Mean of the points relative to the cell's centre [m]; count must not be 0.
   [[nodiscard]] Eigen::Vector3f mean_m(float cell_m) const {
@@ -113,6 +104,12 @@ inline Moments MomentSum::in_metres(float cell_m) const {
     moments.outer_off_diagonal[axis] = static_cast<float>(outer_[3 + i]) * square_m2;
   }
   return moments;
+}
+
+inline Moments CellMoments::in_metres(float cell_m) const {
+  MomentSum alone;
+  alone.add(*this, Eigen::Vector3i::Zero());
+  return alone.in_metres(cell_m);
 }
 
 }  // namespace isobar

@@ -76,12 +76,16 @@ void FreeSpace::spread_to_neighbours() {
   }
 }
 
-bool FreeSpace::may_pass_through(const Eigen::Vector3f& p_lidar, float margin_m) const {
+float FreeSpace::around(const Eigen::Vector3f& p_lidar) const {
   int column = 0;
   int row = 0;
   pixel_of(p_lidar, column, row);
-  const float around = around_m_[index_of(column, row)];
-  return around > margin_m && p_lidar.squaredNorm() <= (around - margin_m) * (around - margin_m);
+  return around_m_[index_of(column, row)];
+}
+
+bool FreeSpace::may_pass_through(const Eigen::Vector3f& p_lidar, float margin_m) const {
+  const float beyond_m = around(p_lidar) - margin_m;
+  return beyond_m > 0.0F && p_lidar.squaredNorm() <= beyond_m * beyond_m;
 }
 
 bool FreeSpace::passes_through(const Eigen::Vector3f& p_lidar, const Eigen::Vector3f& normal_lidar,
@@ -98,10 +102,7 @@ bool FreeSpace::passes_through(const Eigen::Vector3f& p_lidar, const Eigen::Vect
     }
     needed = range + margin_m / cosine;
   }
-  int column = 0;
-  int row = 0;
-  pixel_of(p_lidar, column, row);
-  return around_m_[index_of(column, row)] >= needed;
+  return around(p_lidar) >= needed;
 }
 
 }  // namespace isobar

@@ -33,6 +33,8 @@ class FreeSpace {
   [[nodiscard]] static std::size_t index_of(int column, int row) {
     return static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(column);
   }
+  /// Shortest range in and around the direction of `p_lidar`; 0 where no ray went.
+  [[nodiscard]] float around(const Eigen::Vector3f& p_lidar) const;
   static void pixel_of(const Eigen::Vector3f& p_lidar, int& column, int& row);
 
   void spread_to_neighbours();
