@@ -20,6 +20,8 @@ class CellMask {
   static constexpr int kSlots = kPlacesPerBlock * kSides;
   static constexpr std::size_t kWords = kSlots / 64;
 
+  friend bool operator==(const CellMask&, const CellMask&) = default;
+
   [[nodiscard]] bool has(int slot) const { return (word(slot) >> bit(slot) & 1U) != 0; }
 
   /// Number of members below `slot`: its index in a list of the members in order.

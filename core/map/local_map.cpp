@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/geometry.hpp"
 #include "core/map/plane_hash.hpp"
@@ -78,7 +79,7 @@ bool LocalMap::update(const RegisteredScan& scan) {
   if (config_.see_through_limit > 0 && scan.pose.mode == PoseMode::kRegistered) {
     remove_seen_through(scan, parts_at(elapsed_s));
   }
-  fit_touched();
+  refit_stale();
   publish();
   return true;
 }
@@ -127,7 +128,6 @@ void LocalMap::insert(const RegisteredScan& scan) {
   observation.freeze = config_.freeze_observations;
   // Neighbours in a scan lie in few tiles, in turns: a ring each.
   std::array<Tile*, 64> recent{};
-  touched_.clear();
   for (std::uint32_t i = 0; i < scan.point_count; ++i) {
     const ScanPoint& point = scan.points[i];
     const Eigen::Vector3f p_local = T_local_base * Eigen::Vector3f(point.x_m, point.y_m, point.z_m);
@@ -152,9 +152,11 @@ void LocalMap::insert(const RegisteredScan& scan) {
     observation.fraction = (p_local - frame.corner_local(cell)) / cell_m_;
     observation.toward = ray / range;
     observation.intensity = point.intensity;
-    const int slot = last->cells.block_or_add(block).observe(place_of(cell), observation);
-    if (slot >= 0) {
-      touched_.push_back({last, static_cast<std::uint16_t>(block), static_cast<std::uint16_t>(slot)});
+    MapBlock& observed = last->cells.block_or_add(block);
+    const bool listed = observed.stale();
+    observed.observe(place_of(cell), observation);
+    if (observed.stale() && !listed) {
+      stale_.push_back({last, block});
     }
   }
 }
@@ -180,9 +182,12 @@ void LocalMap::remove_seen_through(const RegisteredScan& scan, std::size_t parts
       const Eigen::Vector3f centre_local = block_centre_local(frame, first_cell(key, b));
       if ((centre_local - p_local_lidar).norm() > block_reach) continue;
       if (count_seen_through(T_lidar_local, centre_local, *block)) {
+        const bool listed = block->stale();
         seen_through_count_ +=
             block->remove_seen_through(static_cast<std::uint8_t>(config_.see_through_limit));
-        tile->changed = true;
+        if (block->stale() && !listed) {
+          stale_.push_back({tile.get(), b});
+        }
       }
     }
   }
@@ -215,18 +220,11 @@ bool LocalMap::count_seen_through(const Eigen::Isometry3f& T_lidar_local, const 
   return any;
 }
 
-void LocalMap::fit_touched() {
-  for (const Touched& touched : touched_) {
-    MapBlock& block = *touched.tile->cells.block(touched.block);
-    if (block.find(touched.slot) == nullptr) {
-      continue;  // seen through meanwhile
-    }
-    PackedPlane plane;
-    const bool fits = fitter_.fit(touched.tile->cells, touched.block, touched.slot, plane);
-    block.set_plane(touched.slot, fits ? &plane : nullptr);
-    touched.tile->changed = true;
+void LocalMap::refit_stale() {
+  for (const StaleBlock& stale : stale_) {
+    stale.tile->changed = fitter_.refit(stale.tile->cells, stale.block) || stale.tile->changed;
   }
-  touched_.clear();
+  stale_.clear();
 }
 
 void LocalMap::evict(const Eigen::Vector3d& p_map_base) {
@@ -290,8 +288,8 @@ void LocalMap::publish() {
   std::vector<std::shared_ptr<const TileTree>> trees;
   const bool wants_trees = config_.matcher == Matcher::kNearest;
   for (auto& [key, tile] : tiles_) {
-    const bool changed = tile->changed && tile->cells.publish();
-    tile->changed = false;
+    const bool changed = std::exchange(tile->changed, false);
+    if (changed) tile->cells.publish();
     if (tile->cells.planes()->plane_count == 0) {
       tile->tree = nullptr;
     } else if (wants_trees) {
@@ -345,14 +343,6 @@ std::size_t LocalMap::cell_count() const {
     count += tile->cells.cell_count();
   }
   return count;
-}
-
-std::size_t LocalMap::memory_bytes() const {
-  std::size_t bytes = 0;
-  for (const auto& [key, tile] : tiles_) {
-    bytes += sizeof(Tile) - sizeof(MapTile) + tile->cells.memory_bytes();
-  }
-  return bytes;
 }
 
 }  // namespace isobar

@@ -46,8 +46,6 @@ class LocalMap {
   [[nodiscard]] std::size_t cell_count() const;
   [[nodiscard]] std::size_t plane_count() const { return snapshot_->plane_count(); }
   [[nodiscard]] std::size_t tile_count() const { return tiles_.size(); }
-  /// Bytes of cells and planes (not of search trees).
-  [[nodiscard]] std::size_t memory_bytes() const;
   /// Cells removed because rays passed through them, since the start.
   [[nodiscard]] std::uint64_t seen_through_count() const { return seen_through_count_; }
   /// Tiles that the shelf could not keep or give back, since the start.
@@ -61,12 +59,11 @@ class LocalMap {
     explicit Tile(const TileKey& key) : cells(key) {}
     MapTile cells;
     std::shared_ptr<const TileTree> tree;  // of cells.planes(), where the matcher wants one
-    bool changed = true;                   // since publish()
+    bool changed = true;                   // since cells.publish()
   };
-  struct Touched {
+  struct StaleBlock {
     Tile* tile = nullptr;
-    std::uint16_t block = 0;
-    std::uint16_t slot = 0;
+    std::size_t block = 0;
   };
 
   [[nodiscard]] bool wants(const PoseEstimate& pose) const;
@@ -74,7 +71,7 @@ class LocalMap {
   void remove_seen_through(const RegisteredScan& scan, std::size_t parts);
   bool count_seen_through(const Eigen::Isometry3f& T_lidar_local, const Eigen::Vector3f& centre_local,
                           MapBlock& block) const;
-  void fit_touched();
+  void refit_stale();
   void evict(const Eigen::Vector3d& p_map_base);
   void look_for_stored(const Eigen::Vector3d& p_map_base);
   void bring_back_stored();
@@ -92,10 +89,10 @@ class LocalMap {
   PlaneFitter fitter_;
   std::unordered_map<TileKey, std::unique_ptr<Tile>, KeyHash> tiles_;
   std::shared_ptr<const MapSnapshot> snapshot_ = std::make_shared<const MapSnapshot>();
-  std::vector<Touched> touched_;  // cells that wait for a fit
-  std::vector<TileKey> stored_;   // tiles of the shelf to bring back, the nearest last
-  std::size_t restored_ = 0;      // in this update
-  std::vector<std::byte> bytes_;  // scratch
+  std::vector<StaleBlock> stale_;  // what this update changed
+  std::vector<TileKey> stored_;    // tiles of the shelf to bring back, the nearest last
+  std::size_t restored_ = 0;       // in this update
+  std::vector<std::byte> bytes_;   // scratch
   FreeSpace free_space_;
   PoseEstimate last_pose_;
   bool started_ = false;

@@ -11,10 +11,9 @@ namespace {
 
 // A plane that turns away from the ray by more than this is the other side of a thin wall.
 constexpr float kOtherSide = -0.15F;
-// Planes are fitted again when a quarter more is known.
-constexpr int kRefitNumerator = 5;
-constexpr int kRefitDenominator = 4;
-constexpr std::size_t kStagedAtOnce = 24;
+// Planes are fitted again when half as much again is known.
+constexpr int kRefitNumerator = 3;
+constexpr int kRefitDenominator = 2;
 
 std::uint32_t sub_cell_bit(const Eigen::Vector3f& fraction) {
   const auto third = [](float f) {
@@ -51,51 +50,42 @@ MapCell& MapBlock::find_or_add(int slot) {
   return cells_[at];
 }
 
-bool MapBlock::is_other_side(int slot, const Eigen::Vector3f& toward) const {
-  const PackedPlane* plane = plane_at(slot);
+bool MapBlock::is_other_side(int place, const Eigen::Vector3f& toward) const {
+  if (!mask_.has(place)) {
+    return false;
+  }
+  // A plane faces its cell's first observer. From about the same direction it cannot be turned away by more.
+  constexpr float kSameDirection2 = 0.02F;  // below kOtherSide squared, less what packing adds
+  const Eigen::Vector3f first_toward = cells_[mask_.rank(place)].toward_vector();
+  if ((toward - first_toward).squaredNorm() < kSameDirection2) {
+    return false;
+  }
+  const PackedPlane* plane = plane_at(place);
   return plane != nullptr && plane->unit_normal().dot(toward) < kOtherSide;
 }
 
-int MapBlock::observe(int place, const Observation& observation) {
+void MapBlock::observe(int place, const Observation& observation) {
   const int slot = is_other_side(place, observation.toward) ? place + kPlacesPerBlock : place;
   MapCell& cell = find_or_add(slot);
-  if (cell.moments.count == 0) {
+  const int count = cell.moments.count();
+  if (count == 0) {
     cell.toward = packed_direction(observation.toward);
   }
   cell.seen_through = static_cast<std::uint8_t>(cell.seen_through - (cell.seen_through > 0 ? 1 : 0));
   cell.occupied_sub_cells |= sub_cell_bit(observation.fraction);
-  const int count = cell.moments.count;
   if (count >= observation.freeze) {
-    return -1;
+    return;
   }
   cell.intensity =
       static_cast<std::uint8_t>((cell.intensity * count + observation.intensity + count / 2) / (count + 1));
   cell.moments.add(observation.fraction);
-  if (cell.waiting != 0) {
-    return -1;
-  }
   // A cell without a plane is tried again after as much.
-  const bool enough = cell.moments.count * kRefitDenominator >= cell.fitted_count * kRefitNumerator ||
-                      cell.moments.count >= observation.freeze;
-  if (!enough) {
-    return -1;
+  const bool enough = (count + 1) * kRefitDenominator >= cell.fitted_count * kRefitNumerator ||
+                      count + 1 >= observation.freeze;
+  if (enough) {
+    cell.waiting = 1;
+    stale_ = true;
   }
-  cell.waiting = 1;
-  return slot;
-}
-
-void MapBlock::set_plane(int slot, const PackedPlane* plane) {
-  MapCell& cell = cells_[mask_.rank(slot)];
-  cell.waiting = 0;
-  cell.fitted_count = cell.moments.count;
-  if (plane == nullptr && plane_at(slot) == nullptr) {
-    return;
-  }
-  if (staged_.empty()) {
-    staged_.reserve(kStagedAtOnce);
-  }
-  staged_.push_back({slot, plane != nullptr, plane != nullptr ? *plane : PackedPlane{}});
-  changed_ = true;
 }
 
 std::size_t MapBlock::remove_seen_through(std::uint8_t limit) {
@@ -104,52 +94,35 @@ std::size_t MapBlock::remove_seen_through(std::uint8_t limit) {
   for (const MapCell& cell : cells_) {
     if (gone(cell)) {
       mask_.erase(cell.slot);
-      changed_ = changed_ || plane_at(cell.slot) != nullptr;
+      stale_ = stale_ || plane_at(cell.slot) != nullptr;
     }
   }
   std::erase_if(cells_, gone);
   return before - cells_.size();
 }
 
-void MapBlock::publish() {
-  if (!changed_) {
-    return;
+bool MapBlock::replace_planes(const CellMask& mask, const std::vector<PackedPlane>& planes) {
+  const bool same = planes_ != nullptr ? planes_->mask == mask && planes_->planes == planes : planes.empty();
+  if (same) {
+    return false;
   }
-  changed_ = false;
-  std::sort(staged_.begin(), staged_.end(), [](const Staged& a, const Staged& b) { return a.slot < b.slot; });
-  auto next = std::make_shared<PlaneBlock>();
-  std::size_t most = staged_.size() + (planes_ ? planes_->planes.size() : 0);
-  next->planes.reserve(std::min(most, cells_.size()));
-  auto staged = staged_.begin();
-  for (const MapCell& cell : cells_) {
-    while (staged != staged_.end() && staged->slot < cell.slot) ++staged;
-    const PackedPlane* plane = plane_at(cell.slot);
-    if (staged != staged_.end() && staged->slot == cell.slot) {
-      plane = staged->has_plane ? &staged->plane : nullptr;
-    }
-    if (plane != nullptr) {
-      next->mask.mark(cell.slot);
-      next->planes.push_back(*plane);
-    }
-  }
-  next->mask.count_ranks();
-  planes_ = next->planes.empty() ? nullptr : std::move(next);
-  staged_ = std::vector<Staged>();  // memory too: most blocks are seldom changed again
+  planes_ = planes.empty() ? nullptr : std::make_shared<const PlaneBlock>(mask, planes);
+  return true;
 }
 
 void MapBlock::restore(std::vector<MapCell> cells, std::shared_ptr<const PlaneBlock> planes) {
   *this = MapBlock{};
   cells_ = std::move(cells);
-  for (const MapCell& cell : cells_) {
+  for (MapCell& cell : cells_) {
     mask_.mark(cell.slot);
+    cell.waiting = 0;  // nobody would know
   }
   mask_.count_ranks();
   planes_ = std::move(planes);
 }
 
 std::size_t MapBlock::memory_bytes() const {
-  std::size_t bytes =
-      sizeof(MapBlock) + cells_.capacity() * sizeof(MapCell) + staged_.capacity() * sizeof(Staged);
+  std::size_t bytes = sizeof(MapBlock) + cells_.capacity() * sizeof(MapCell);
   if (planes_) {
     bytes += sizeof(PlaneBlock) + planes_->planes.capacity() * sizeof(PackedPlane);
   }

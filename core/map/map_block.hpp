@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/map/cell_mask.hpp"
@@ -22,7 +23,7 @@ struct MapCell {
   std::uint16_t slot : 15 = 0;           ///< in the block, see CellMask
   std::uint16_t waiting : 1 = 0;         ///< for a fit
   std::array<std::int8_t, 3> toward{};   ///< direction to its first observer, times 127
-  std::uint8_t fitted_count = 0;         ///< moments.count when a plane was last looked for
+  std::uint8_t fitted_count = 0;         ///< moments.count() when a plane was last looked for
   std::uint8_t seen_through = 0;         ///< rays that passed, less observations
   std::uint8_t intensity = 0;            ///< mean of the points' reflectivity
 
@@ -42,9 +43,8 @@ class MapBlock {
     std::uint8_t intensity = 0;
     int freeze = 0;  ///< see MapConfig::freeze_observations
   };
-  /// Observes a point in place `place` (0 … 511). Returns the slot if the cell now waits for a fit and did
-  /// not before, else -1.
-  int observe(int place, const Observation& observation);
+  /// Observes a point in place `place` (0 … 511).
+  void observe(int place, const Observation& observation);
 
   [[nodiscard]] const MapCell* find(int slot) const {
     return mask_.has(slot) ? &cells_[mask_.rank(slot)] : nullptr;
@@ -53,23 +53,24 @@ class MapBlock {
   [[nodiscard]] std::vector<MapCell>& cells() { return cells_; }
   [[nodiscard]] const CellMask& mask() const { return mask_; }
 
-  /// The plane of a slot as last published; null if it has none.
+  /// The plane of a slot as last fitted; null if it has none.
   [[nodiscard]] const PackedPlane* plane_at(int slot) const {
     return planes_ ? planes_->find(slot) : nullptr;
   }
 
-  /// Takes `slot` off the list of those that wait, and gives or takes (null) its plane at the next publish().
-  void set_plane(int slot, const PackedPlane* plane);
-
   /// Takes out cells whose seen_through is above `limit`; returns how many.
   std::size_t remove_seen_through(std::uint8_t limit);
 
-  /// Makes planes() anew from what was set since the last call.
-  void publish();
-  [[nodiscard]] const std::shared_ptr<const PlaneBlock>& planes() const { return planes_; }
+  /// True if planes() may be out of date: refit() is due.
+  [[nodiscard]] bool stale() const { return stale_; }
 
-  /// True if set_plane() or remove_seen_through() changed something since publish().
-  [[nodiscard]] bool changed() const { return changed_; }
+  /// Asks `fit(cell, plane)` for the planes of the cells that wait for it, false where there is none, and
+  /// makes planes() anew if they are others than before. Returns true if so. `scratch` is overwritten.
+  template <typename Fit>
+  bool refit(Fit fit, std::vector<PackedPlane>& scratch);
+
+  /// Immutable; null where no cell has a plane.
+  [[nodiscard]] const std::shared_ptr<const PlaneBlock>& planes() const { return planes_; }
 
   /// Puts a block together from stored cells and planes, both in order of their slots.
   void restore(std::vector<MapCell> cells, std::shared_ptr<const PlaneBlock> planes);
@@ -77,20 +78,36 @@ class MapBlock {
   [[nodiscard]] std::size_t memory_bytes() const;
 
  private:
-  struct Staged {
-    int slot = 0;
-    bool has_plane = false;
-    PackedPlane plane;
-  };
-
   MapCell& find_or_add(int slot);
-  [[nodiscard]] bool is_other_side(int slot, const Eigen::Vector3f& toward) const;
+  [[nodiscard]] bool is_other_side(int place, const Eigen::Vector3f& toward) const;
+  bool replace_planes(const CellMask& mask, const std::vector<PackedPlane>& planes);
 
   CellMask mask_;
   std::vector<MapCell> cells_;
-  std::vector<Staged> staged_;
   std::shared_ptr<const PlaneBlock> planes_;
-  bool changed_ = false;
+  bool stale_ = false;
 };
+
+template <typename Fit>
+bool MapBlock::refit(Fit fit, std::vector<PackedPlane>& scratch) {
+  stale_ = false;
+  scratch.clear();
+  CellMask mask;
+  for (MapCell& cell : cells_) {
+    const PackedPlane* plane = plane_at(cell.slot);
+    PackedPlane fitted;
+    if (cell.waiting != 0) {
+      plane = fit(std::as_const(cell), fitted) ? &fitted : nullptr;
+      cell.waiting = 0;
+      cell.fitted_count = static_cast<std::uint8_t>(cell.moments.count());
+    }
+    if (plane != nullptr) {
+      mask.mark(cell.slot);
+      scratch.push_back(*plane);
+    }
+  }
+  mask.count_ranks();
+  return replace_planes(mask, scratch);
+}
 
 }  // namespace isobar

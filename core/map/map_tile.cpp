@@ -5,17 +5,7 @@
 
 namespace isobar {
 
-bool MapTile::publish() {
-  bool changed = planes_ == nullptr;
-  for (const auto& block : blocks_) {
-    if (block != nullptr && block->changed()) {
-      block->publish();
-      changed = true;
-    }
-  }
-  if (!changed) {
-    return false;
-  }
+void MapTile::publish() {
   auto next = std::make_shared<PlaneTile>();
   next->key = key_;
   for (std::size_t i = 0; i < kBlocksPerTile; ++i) {
@@ -25,7 +15,6 @@ bool MapTile::publish() {
     }
   }
   planes_ = std::move(next);
-  return true;
 }
 
 std::size_t MapTile::cell_count() const {

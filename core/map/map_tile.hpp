@@ -26,8 +26,8 @@ class MapTile {
     return *blocks_[index];
   }
 
-  /// Makes planes() anew if a block's planes changed. Returns true if it did.
-  bool publish();
+  /// Makes planes() anew from those of the blocks.
+  void publish();
   /// Planes as last published; null before.
   [[nodiscard]] const std::shared_ptr<const PlaneTile>& planes() const { return planes_; }
 
@@ -53,8 +53,5 @@ void append_points(const MapTile& tile, float cell_m, std::vector<MapPoint>& poi
 /// The same from the bytes of MapTile::store(). Returns false, and appends nothing, where they are not a
 /// tile.
 bool append_tile_points(std::span<const std::byte> bytes, std::vector<MapPoint>& points);
-
-/// Edge of the cells of a stored tile [m]; 0 where `bytes` is not one.
-[[nodiscard]] float stored_cell_m(std::span<const std::byte> bytes);
 
 }  // namespace isobar

@@ -65,8 +65,8 @@ bool read_header(Reader& reader, TileHeader& header) {
 bool in_order(const std::vector<MapCell>& cells) {
   int last = -1;
   for (const MapCell& cell : cells) {
-    if (cell.slot <= last || cell.slot >= CellMask::kSlots || cell.moments.count == 0 ||
-        cell.moments.count > CellMoments::kMostPoints) {
+    if (cell.slot <= last || cell.slot >= CellMask::kSlots || cell.moments.count() <= 0 ||
+        cell.moments.count() > CellMoments::kMostPoints) {
       return false;
     }
     last = cell.slot;
@@ -178,12 +178,6 @@ bool append_tile_points(std::span<const std::byte> bytes, std::vector<MapPoint>&
   }
   append_points(tile, header.cell_m, points);
   return true;
-}
-
-float stored_cell_m(std::span<const std::byte> bytes) {
-  Reader reader(bytes);
-  TileHeader header;
-  return read_header(reader, header) ? header.cell_m : 0.0F;
 }
 
 }  // namespace isobar

@@ -21,6 +21,8 @@ struct PackedPlane {
   std::array<std::int16_t, 3> q{};       ///< from the block's centre, in units of the block's edge / 2^15
   std::array<std::int16_t, 3> normal{};  ///< in units of 1 / 32767
 
+  friend bool operator==(const PackedPlane&, const PackedPlane&) = default;
+
   /// `q_block` [m]: from the block's centre, within its edge along each axis; `normal`: unit.
   static PackedPlane of(const Eigen::Vector3f& q_block, const Eigen::Vector3f& unit_normal, float cell_m) {
     const auto pack = [](float value) {
@@ -47,6 +49,10 @@ static_assert(sizeof(PackedPlane) == 12);
 
 /// Planes of a block, one a slot of `mask`, in order.
 struct PlaneBlock {
+  PlaneBlock() = default;
+  PlaneBlock(const CellMask& of_planes, std::vector<PackedPlane> in_order)
+      : mask(of_planes), planes(std::move(in_order)) {}
+
   CellMask mask;
   std::vector<PackedPlane> planes;
 

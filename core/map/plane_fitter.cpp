@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/map/plane_fitter.hpp"
 
+#include <array>
+#include <bitset>
 #include <cmath>
 #include <utility>
 
@@ -29,19 +31,57 @@ PlaneFitter::PlaneFitter(const MapConfig& config, FindTile find_tile)
       criteria_(criteria_of(config)),
       find_tile_(std::move(find_tile)) {}
 
-Moments PlaneFitter::neighbourhood(const MapTile& tile, const CellIndex& at, const MapCell& centre) const {
+class PlaneFitter::Surroundings {
+ public:
+  Surroundings(const MapTile& tile, std::size_t block_index, const FindTile& find_tile)
+      : tile_(tile),
+        find_tile_(find_tile),
+        first_(first_cell(tile.key(), block_index)),
+        centre_(*tile.block(block_index)) {}
+
+  [[nodiscard]] const CellIndex& first() const { return first_; }
+  [[nodiscard]] const MapBlock& centre() const { return centre_; }
+
+  // The block that begins at `first`, null where nothing was seen. It must touch the centre or be it.
+  const MapBlock* block_at(const CellIndex& first) {
+    const CellIndex step = (first - first_) / kBlockCells;
+    const auto at = static_cast<std::size_t>(((step.z() + 1) * 3 + step.y() + 1) * 3 + step.x() + 1);
+    if (!known_.test(at)) {
+      const TileKey key = tile_of(first);
+      const MapTile* in = key == tile_.key() ? &tile_ : find_tile_(key);
+      blocks_[at] = in != nullptr ? in->block(block_of(first)) : nullptr;
+      known_.set(at);
+    }
+    return blocks_[at];
+  }
+
+ private:
+  const MapTile& tile_;
+  const FindTile& find_tile_;
+  CellIndex first_;
+  const MapBlock& centre_;
+  std::array<const MapBlock*, 27> blocks_{};
+  std::bitset<27> known_;
+};
+
+bool PlaneFitter::refit(const MapTile& tile, std::size_t block_index) {
+  Surroundings around(tile, block_index, find_tile_);
+  return tile.block(block_index)
+      ->refit([&](const MapCell& cell, PackedPlane& plane) { return fit(around, cell, plane); }, scratch_);
+}
+
+Moments PlaneFitter::neighbourhood(Surroundings& around, const MapCell& centre) const {
   // Same side only: a thin wall has two.
   const int side = centre.slot / kPlacesPerBlock;
+  const CellIndex at = around.first() + offset_of(centre.slot % kPlacesPerBlock);
   const CellIndex first = at.array() - 1;
   const CellIndex last = at.array() + 1;
   MomentSum sum;
   for_each_block(first, last, [&](const CellIndex& block_first, const CellIndex& low, const CellIndex& high) {
-    const TileKey key = tile_of(block_first);
-    const MapTile* in = key == tile.key() ? &tile : find_tile_(key);
-    const MapBlock* block = in != nullptr ? in->block(block_of(block_first)) : nullptr;
+    const MapBlock* block = around.block_at(block_first);
     if (block == nullptr) return;
     for_each_in_window(block->mask(), side, low, high, [&](int slot) {
-      const MapCell& other = *block->find(slot);
+      const MapCell& other = block->cells()[block->mask().rank(slot)];
       if (same_way(other, centre)) {
         const CellIndex offset = block_first + offset_of(slot % kPlacesPerBlock) - at;
         sum.add(other.moments, offset);
@@ -56,21 +96,18 @@ Moments PlaneFitter::cube_around(const MapBlock& block, int slot) const {
   MomentSum sum;
   for_each_in_cube(block.mask(), slot % kPlacesPerBlock, [&](int member) {
     const CellIndex offset = offset_of(member % kPlacesPerBlock) - centre;
-    sum.add(block.find(member)->moments, offset);
+    sum.add(block.cells()[block.mask().rank(member)].moments, offset);
   });
   return sum.in_metres(cell_m_);
 }
 
-bool PlaneFitter::fit(const MapTile& tile, std::size_t block_index, int slot, PackedPlane& packed) const {
-  const MapBlock& block = *tile.block(block_index);
-  const MapCell& cell = *block.find(slot);
-  const CellIndex offset = offset_of(slot % kPlacesPerBlock);
+bool PlaneFitter::fit(Surroundings& around, const MapCell& cell, PackedPlane& packed) const {
   PlaneCriteria own = criteria_;
   own.max_normal_deviation_rad *= kOwnCellShare;
   Plane plane;  // about the cell's centre
   if (!fit_plane(cell.moments.in_metres(cell_m_), own, plane) &&
-      !fit_plane(neighbourhood(tile, first_cell(tile.key(), block_index) + offset, cell), criteria_, plane) &&
-      !fit_plane(cube_around(block, slot), criteria_, plane)) {
+      !fit_plane(neighbourhood(around, cell), criteria_, plane) &&
+      !fit_plane(cube_around(around.centre(), cell.slot), criteria_, plane)) {
     return false;
   }
   // The plane's point nearest to the cell's own mean.
@@ -80,6 +117,7 @@ bool PlaneFitter::fit(const MapTile& tile, std::size_t block_index, int slot, Pa
     return false;
   }
   const Eigen::Vector3f q_cell = mean - off_plane * plane.normal;
+  const CellIndex offset = offset_of(cell.slot % kPlacesPerBlock);
   const Eigen::Vector3f centre_block = (offset.cast<float>().array() + 0.5F * (1 - kBlockCells)) * cell_m_;
   const bool away = plane.normal.dot(cell.toward_vector()) < 0.0F;
   packed = PackedPlane::of(centre_block + q_cell, away ? (-plane.normal).eval() : plane.normal, cell_m_);

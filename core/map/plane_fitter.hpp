@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <vector>
 
 #include "core/map/map_config.hpp"
 #include "core/map/map_tile.hpp"
@@ -20,19 +21,25 @@ class PlaneFitter {
 
   PlaneFitter(const MapConfig& config, FindTile find_tile);
 
-  /// Fits the plane of cell `slot` of block `block` of `tile`. False where there is none.
-  bool fit(const MapTile& tile, std::size_t block, int slot, PackedPlane& plane) const;
+  /// Fits the planes of the cells of block `block` of `tile` that wait for it. True if the block's planes
+  /// changed.
+  bool refit(const MapTile& tile, std::size_t block);
 
  private:
   // A cell's own plane must be this much better than required, else its neighbours help.
   static constexpr float kOwnCellShare = 0.5F;
 
-  [[nodiscard]] Moments neighbourhood(const MapTile& tile, const CellIndex& at, const MapCell& centre) const;
+  // A block and those around it, each looked for when it is first asked for.
+  class Surroundings;
+
+  bool fit(Surroundings& around, const MapCell& cell, PackedPlane& plane) const;
+  [[nodiscard]] Moments neighbourhood(Surroundings& around, const MapCell& centre) const;
   [[nodiscard]] Moments cube_around(const MapBlock& block, int slot) const;
 
   float cell_m_;
   PlaneCriteria criteria_;
   FindTile find_tile_;
+  std::vector<PackedPlane> scratch_;
 };
 
 /// Calls `visit(slot)` for the members of `mask`, both sides, in the cube of 4 x 4 x 4 cells, aligned to its

@@ -17,6 +17,7 @@ using isobar::CellIndex;
 using isobar::CellMask;
 using isobar::CellMoments;
 using isobar::MapBlock;
+using isobar::MapCell;
 using isobar::MapTile;
 using isobar::Moments;
 using isobar::PackedPlane;
@@ -35,15 +36,15 @@ MapTile random_tile(std::mt19937& random) {
   std::uniform_real_distribution<float> fraction(0.0F, 1.0F);
   for (int i = 0; i < 3000; ++i) {
     MapBlock& in = tile.block_or_add(static_cast<std::size_t>(block(random)));
-    const int slot =
-        in.observe(place(random) / 8, observation_at({fraction(random), fraction(random), fraction(random)}));
-    if (slot >= 0 && slot % 3 != 0) {
-      const PackedPlane plane =
-          PackedPlane::of({0.1F, 0.2F, fraction(random)}, Eigen::Vector3f::UnitX(), kCellM);
-      in.set_plane(slot, &plane);
-    } else if (slot >= 0) {
-      in.set_plane(slot, nullptr);
-    }
+    in.observe(place(random) / 8, observation_at({fraction(random), fraction(random), fraction(random)}));
+  }
+  std::vector<PackedPlane> scratch;
+  for (std::size_t i = 0; i < 10; ++i) {
+    const auto two_thirds = [&](const MapCell& cell, PackedPlane& plane) {
+      plane = PackedPlane::of({0.1F, 0.2F, fraction(random)}, Eigen::Vector3f::UnitX(), kCellM);
+      return cell.slot % 3 != 0;
+    };
+    tile.block_or_add(i).refit(two_thirds, scratch);
   }
   tile.publish();
   return tile;
@@ -193,7 +194,7 @@ TEST_CASE("the most points at the corner of a cell do not overflow") {
   for (const float corner : {0.0F, 1.0F}) {
     CellMoments moments;
     for (int i = 0; i < 200; ++i) moments.add(Eigen::Vector3f::Constant(corner));
-    CHECK(int{moments.count} == CellMoments::kMostPoints);
+    CHECK(moments.count() == CellMoments::kMostPoints);
     CHECK(moments.mean_m(kCellM).x() == doctest::Approx((corner - 0.5F) * kCellM));
     CHECK(moments.outer[0] == CellMoments::kMostPoints * 256 * 256);
   }
@@ -215,20 +216,30 @@ TEST_CASE("a packed plane is the plane to 31 um and 0.002 degrees") {
 
 TEST_CASE("published planes stay as they are while the block goes on") {
   MapBlock block;
-  const int slot = block.observe(77, observation_at({0.5F, 0.5F, 0.5F}));
-  REQUIRE(slot == 77);
-  CHECK(block.observe(77, observation_at({0.5F, 0.5F, 0.5F})) == -1);  // waits already
+  std::vector<PackedPlane> scratch;
   const PackedPlane plane = PackedPlane::of({0.1F, 0.2F, 0.3F}, Eigen::Vector3f::UnitX(), kCellM);
-  block.set_plane(slot, &plane);
-  block.publish();
+  const auto on_this_side = [&](const MapCell& cell, PackedPlane& fitted) {
+    fitted = plane;
+    return cell.slot < isobar::kPlacesPerBlock;
+  };
+  CHECK_FALSE(block.stale());
+  block.observe(77, observation_at({0.5F, 0.5F, 0.5F}));
+  CHECK(block.stale());
+  CHECK(block.refit(on_this_side, scratch));
+  CHECK_FALSE(block.stale());
   const auto published = block.planes();
   REQUIRE(published->planes.size() == 1);
+  block.observe(77, observation_at({0.5F, 0.5F, 0.5F}));
+  CHECK(block.stale());
+  CHECK_FALSE(block.refit(on_this_side, scratch));  // the same plane again: nothing to hand over
+  CHECK(block.planes() == published);
   // From the other side it is another cell: a thin wall has two.
   MapBlock::Observation behind = observation_at({0.5F, 0.5F, 0.5F});
   behind.toward = -behind.toward;
-  CHECK(block.observe(77, behind) == 77 + isobar::kPlacesPerBlock);
-  block.set_plane(slot, nullptr);
-  block.publish();
+  block.observe(77, behind);
+  CHECK(block.find(77 + isobar::kPlacesPerBlock) != nullptr);
+  block.observe(77, observation_at({0.5F, 0.5F, 0.5F}));
+  CHECK(block.refit([](const MapCell&, PackedPlane&) { return false; }, scratch));
   CHECK(block.planes() == nullptr);
   CHECK(published->find(77)->q == plane.q);
 }
@@ -244,7 +255,8 @@ TEST_CASE("a tile comes back from its bytes as it was, and goes on as it would h
   REQUIRE(back.planes()->plane_count == tile.planes()->plane_count);
   for (int i = 0; i < 200; ++i) {
     const auto observation = observation_at({0.01F * static_cast<float>(i % 90), 0.3F, 0.7F});
-    CHECK(tile.block_or_add(2).observe(i, observation) == back.block_or_add(2).observe(i, observation));
+    tile.block_or_add(2).observe(i, observation);
+    back.block_or_add(2).observe(i, observation);
   }
   CHECK(bytes_of(back) == bytes_of(tile));
   std::vector<isobar::MapPoint> here;
@@ -270,7 +282,6 @@ TEST_CASE("bytes that are not a tile are refused whole, wherever they are cut or
   CHECK_FALSE(MapTile(tile.key()).restore(longer, kCellM));
   CHECK_FALSE(MapTile({0, 0, 0}).restore(bytes, kCellM));  // another place
   CHECK_FALSE(MapTile(tile.key()).restore(bytes, 0.5F));   // other cells
-  CHECK(isobar::stored_cell_m(bytes) == kCellM);
 }
 
 TEST_CASE("a cell of 0.25 m costs at most 64 bytes with its plane") {
@@ -280,10 +291,16 @@ TEST_CASE("a cell of 0.25 m costs at most 64 bytes with its plane") {
     for (int z = 0; z < isobar::kTileCells; ++z) {
       const CellIndex cell(x, 13, z);
       MapBlock& block = tile.block_or_add(isobar::block_of(cell));
-      const int slot = block.observe(isobar::place_of(cell), observation_at({0.5F, 0.5F, 0.5F}));
-      const PackedPlane plane = PackedPlane::of({0.0F, 0.0F, 0.0F}, Eigen::Vector3f::UnitY(), kCellM);
-      block.set_plane(slot, &plane);
+      block.observe(isobar::place_of(cell), observation_at({0.5F, 0.5F, 0.5F}));
     }
+  }
+  std::vector<PackedPlane> scratch;
+  for (std::size_t i = 0; i < isobar::kBlocksPerTile; ++i) {
+    const auto wall = [](const MapCell&, PackedPlane& plane) {
+      plane = PackedPlane::of({0.0F, 0.0F, 0.0F}, Eigen::Vector3f::UnitY(), kCellM);
+      return true;
+    };
+    if (MapBlock* block = tile.block(i)) block->refit(wall, scratch);
   }
   tile.publish();
   CHECK(tile.memory_bytes() <= 64 * tile.cell_count() + 8 * 1024);

@@ -157,9 +157,14 @@ void check_steady(const std::vector<Pose>& poses) {
   }
 }
 
-const Pose* first_registered(const std::vector<Pose>& poses, std::int64_t received_after_ns) {
+/// The first that came after `received_after_ns` of a scan that ended after `ended_after_ns`.
+const Pose* first_registered(const std::vector<Pose>& poses, std::int64_t received_after_ns,
+                             std::int64_t ended_after_ns) {
   for (const Pose& pose : poses) {
-    if (pose.received_ns > received_after_ns && pose.estimate.mode == PoseMode::kRegistered) return &pose;
+    if (pose.received_ns > received_after_ns && pose.estimate.stamp_ns > ended_after_ns &&
+        pose.estimate.mode == PoseMode::kRegistered) {
+      return &pose;
+    }
   }
   return nullptr;
 }
@@ -167,13 +172,15 @@ const Pose* first_registered(const std::vector<Pose>& poses, std::int64_t receiv
 void held_registration(const ChildProcess& isobard, Tap& tap) {
   tap.forget();
   tap.gather(500ms);
+  const std::int64_t held_ns = RobotClock::now_ns();
   {
     const StoppedThread held(isobard.pid(), "registration");
     tap.gather(800ms);  // eight scans, of which the queue holds four
   }
   const std::int64_t resumed_ns = RobotClock::now_ns();
   tap.gather(2500ms);
-  const Pose* first = first_registered(tap.poses, resumed_ns);
+  // A scan that the thread had in hand when it was held is finished first; it ended before.
+  const Pose* first = first_registered(tap.poses, resumed_ns, held_ns);
   REQUIRE(first != nullptr);
   // The newest scan that was there: at most a revolution old, and what a loaded machine adds.
   CHECK(first->estimate.stamp_ns > resumed_ns - 150 * kMs);
@@ -205,7 +212,7 @@ void held_process(const ChildProcess& isobard, Tap& tap) {
   REQUIRE(fresh != nullptr);
   CHECK(fresh->received_ns < resumed_ns + 600 * kMs);
   check_steady(tap.poses);
-  CHECK(first_registered(tap.poses, resumed_ns) != nullptr);
+  CHECK(first_registered(tap.poses, resumed_ns, resumed_ns) != nullptr);
 }
 
 void hung_map(const ChildProcess& isobard, Tap& tap, Manager& manager) {
