@@ -24,6 +24,12 @@ class CellMask {
 
   [[nodiscard]] bool has(int slot) const { return (word(slot) >> bit(slot) & 1U) != 0; }
 
+  /// Begins to fetch what has() and rank() of a slot read.
+  void prefetch(int slot) const {
+    __builtin_prefetch(&words_[index(slot)]);
+    __builtin_prefetch(&ranks_[index(slot)]);
+  }
+
   /// Number of members below `slot`: its index in a list of the members in order.
   [[nodiscard]] std::size_t rank(int slot) const {
     const std::uint64_t below = word(slot) & ((std::uint64_t{1} << bit(slot)) - 1);

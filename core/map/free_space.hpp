@@ -17,29 +17,35 @@ class FreeSpace {
   static constexpr int kColumns = 180;
   static constexpr int kRows = 90;
 
+  /// Up to so many points in the lidar's frame, by coordinate, so that the processor takes four at once [m].
+  struct Points {
+    static constexpr std::size_t kMost = 64;
+    std::array<float, kMost> x_m{};
+    std::array<float, kMost> y_m{};
+    std::array<float, kMost> z_m{};
+  };
+  using Ranges = std::array<float, Points::kMost>;
+
   /// Takes the points of a scan. `T_lidar_base`: base_link in the lidar's frame.
   void set_scan(const RegisteredScan& scan, const Eigen::Isometry3d& T_lidar_base);
 
-  /// False where passes_through() is false whatever the normal, which is most often and costs less.
-  [[nodiscard]] bool may_pass_through(const Eigen::Vector3f& p_lidar, float margin_m) const;
+  /// Shortest range in and around the directions of the first `count` points [m]; 0 where no ray went.
+  void shortest_around(const Points& p_lidar, std::size_t count, Ranges& shortest_m) const;
 
-  /// True if rays around the direction of `p_lidar` went farther than it: by at least `margin_m` measured
-  /// across its surface. `normal_lidar`: unit normal there, or zero if unknown. A surface seen at a grazing
-  /// angle is never called passed, since small errors of attitude or height would do that to a floor.
-  [[nodiscard]] bool passes_through(const Eigen::Vector3f& p_lidar, const Eigen::Vector3f& normal_lidar,
-                                    float margin_m) const;
+  /// True if rays around the direction of `p_lidar`, the shortest of which has `shortest_m`, went farther than
+  /// it: by at least `margin_m` measured across its surface. `normal_lidar`: unit normal there, or zero if
+  /// unknown. A surface seen at a grazing angle is never called passed, since small errors of attitude or height
+  /// would do that to a floor.
+  [[nodiscard]] static bool passes_through(const Eigen::Vector3f& p_lidar, const Eigen::Vector3f& normal_lidar,
+                                           float shortest_m, float margin_m);
 
  private:
-  [[nodiscard]] static std::size_t index_of(int column, int row) {
-    return static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(column);
-  }
-  /// Shortest range in and around the direction of `p_lidar`; 0 where no ray went.
-  [[nodiscard]] float around(const Eigen::Vector3f& p_lidar) const;
-  static void pixel_of(const Eigen::Vector3f& p_lidar, int& column, int& row);
+  using Pixels = std::array<std::int32_t, Points::kMost>;
+  using Image = std::array<float, static_cast<std::size_t>(kColumns) * kRows>;
 
+  static void pixels_of(const Points& p_lidar, std::size_t count, Pixels& pixels);
   void spread_to_neighbours();
 
-  using Image = std::array<float, static_cast<std::size_t>(kColumns) * kRows>;
   Image shortest_m_{};  // infinite where no ray went
   Image around_m_{};    // shortest of the pixel and its eight neighbours; 0 where no ray went
 };

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "core/geometry.hpp"
@@ -29,10 +30,10 @@ std::size_t parts_at(double elapsed_s) {
 }
 
 // True if a plane is known in the cube of 4 x 4 x 4 cells around `place`.
-bool plane_in_cube(const MapBlock* block, int place) {
+bool plane_in_cube(const MapBlock& block, int place) {
   bool any = false;
-  if (block != nullptr && block->planes() != nullptr) {
-    for_each_in_cube(block->planes()->mask, place, [&](int /*slot*/) { any = true; });
+  if (block.planes() != nullptr) {
+    for_each_in_cube(block.planes()->mask, place, [&](int /*slot*/) { any = true; });
   }
   return any;
 }
@@ -122,12 +123,9 @@ void LocalMap::insert(const RegisteredScan& scan) {
   Eigen::Isometry3f T_local_base = scan.pose.T_map_base.cast<float>();
   T_local_base.translation() = frame.to_local(scan.pose.T_map_base.translation());
   const Eigen::Vector3f p_local_lidar = T_local_base * T_base_lidar_.translation().cast<float>();
-  const bool only_unknown = scan.pose.mode == PoseMode::kPriorOnly;
   const auto radius = static_cast<float>(config_.radius_m);
-  MapBlock::Observation observation;
-  observation.freeze = config_.freeze_observations;
-  // Neighbours in a scan lie in few tiles, in turns: a ring each.
-  std::array<Tile*, 64> recent{};
+  recent_.fill(nullptr);
+  std::size_t count = 0;
   for (std::uint32_t i = 0; i < scan.point_count; ++i) {
     const ScanPoint& point = scan.points[i];
     const Eigen::Vector3f p_local = T_local_base * Eigen::Vector3f(point.x_m, point.y_m, point.z_m);
@@ -137,26 +135,43 @@ void LocalMap::insert(const RegisteredScan& scan) {
       continue;
     }
     const CellIndex cell = frame.cell_of(p_local);
-    const TileKey key = tile_of(cell);
-    Tile*& last = recent[key.hash() % recent.size()];
-    if (last == nullptr || last->cells.key() != key) {
-      last = tile_for_points(key);
-    }
-    if (last == nullptr) {
+    Tile* tile = recent_tile(tile_of(cell));
+    if (tile == nullptr) {
       continue;
     }
-    const std::size_t block = block_of(cell);
-    if (only_unknown && plane_in_cube(last->cells.block(block), place_of(cell))) {
+    Landing& landing = landings_[count++];
+    landing = {tile, block_of(cell), place_of(cell), nullptr, {}};
+    landing.block = &tile->cells.block_or_add(landing.block_index);
+    landing.observation = {(p_local - frame.corner_local(cell)) / cell_m_, ray / range, point.intensity,
+                           config_.freeze_observations};
+    landing.block->prefetch_mask(landing.place);
+    if (count == landings_.size()) {
+      observe_landings(std::exchange(count, 0), scan.pose.mode);
+    }
+  }
+  observe_landings(count, scan.pose.mode);
+}
+
+// Neighbours in a scan lie in few tiles, in turns: a ring each.
+LocalMap::Tile* LocalMap::recent_tile(const TileKey& key) {
+  Tile*& last = recent_[key.hash() % recent_.size()];
+  if (last == nullptr || last->cells.key() != key) {
+    last = tile_for_points(key);
+  }
+  return last;
+}
+
+void LocalMap::observe_landings(std::size_t count, PoseMode mode) {
+  const std::span landings = std::span(landings_).first(count);
+  for (const Landing& landing : landings) landing.block->prefetch_cell(landing.place);
+  for (const Landing& landing : landings) {
+    if (mode == PoseMode::kPriorOnly && plane_in_cube(*landing.block, landing.place)) {
       continue;
     }
-    observation.fraction = (p_local - frame.corner_local(cell)) / cell_m_;
-    observation.toward = ray / range;
-    observation.intensity = point.intensity;
-    MapBlock& observed = last->cells.block_or_add(block);
-    const bool listed = observed.stale();
-    observed.observe(place_of(cell), observation);
-    if (observed.stale() && !listed) {
-      stale_.push_back({last, block});
+    const bool listed = landing.block->stale();
+    landing.block->observe(landing.place, landing.observation);
+    if (landing.block->stale() && !listed) {
+      stale_.push_back({landing.tile, landing.block_index});
     }
   }
 }
@@ -200,29 +215,47 @@ bool LocalMap::count_seen_through(const Eigen::Isometry3f& T_lidar_local, const 
   const auto limit = static_cast<std::uint8_t>(config_.see_through_limit);
   constexpr std::uint8_t kMost = std::numeric_limits<std::uint8_t>::max();
   const Eigen::Vector3f first_centre = centre_local.array() + 0.5F * (1 - kBlockCells) * cell_m_;
+  std::vector<MapCell>& cells = block.cells();
   bool any = false;
-  for (MapCell& cell : block.cells()) {
-    const Eigen::Vector3f p_local = first_centre +
-                                    offset_of(cell.slot % kPlacesPerBlock).cast<float>() * cell_m_ +
-                                    cell.moments.mean_m(cell_m_);
-    const Eigen::Vector3f p_lidar = T_lidar_local * p_local;
-    if (cell.seen_through == kMost || !free_space_.may_pass_through(p_lidar, margin)) {
-      continue;
+  FreeSpace::Points p_lidar;
+  FreeSpace::Ranges shortest_m;
+  for (std::size_t first = 0; first < cells.size(); first += FreeSpace::Points::kMost) {
+    const std::size_t count = std::min(FreeSpace::Points::kMost, cells.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      const MapCell& cell = cells[first + i];
+      const CellIndex offset = offset_of(cell.slot % kPlacesPerBlock);
+      const Eigen::Vector3f p_local =
+          first_centre + offset.cast<float>() * cell_m_ + cell.moments.mean_m(cell_m_);
+      const Eigen::Vector3f p = T_lidar_local * p_local;
+      p_lidar.x_m[i] = p.x();
+      p_lidar.y_m[i] = p.y();
+      p_lidar.z_m[i] = p.z();
     }
-    Eigen::Vector3f normal = Eigen::Vector3f::Zero();
-    if (const PackedPlane* plane = block.plane_at(cell.slot)) {
-      normal = T_lidar_local.linear() * plane->unit_normal();
-    }
-    if (free_space_.passes_through(p_lidar, normal, margin)) {
-      any = ++cell.seen_through > limit || any;
+    free_space_.shortest_around(p_lidar, count, shortest_m);
+    for (std::size_t i = 0; i < count; ++i) {
+      MapCell& cell = cells[first + i];
+      const Eigen::Vector3f p(p_lidar.x_m[i], p_lidar.y_m[i], p_lidar.z_m[i]);
+      const float beyond_m = shortest_m[i] - margin;
+      // Whatever the normal; which is most often so.
+      if (cell.seen_through == kMost || !(beyond_m > 0.0F) || p.squaredNorm() > beyond_m * beyond_m) {
+        continue;
+      }
+      const PackedPlane* plane = block.plane_at(cell.slot);
+      Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+      if (plane != nullptr) normal = T_lidar_local.linear() * plane->unit_normal();
+      if (FreeSpace::passes_through(p, normal, shortest_m[i], margin)) {
+        any = ++cell.seen_through > limit || any;
+      }
     }
   }
   return any;
 }
 
 void LocalMap::refit_stale() {
-  for (const StaleBlock& stale : stale_) {
-    stale.tile->changed = fitter_.refit(stale.tile->cells, stale.block) || stale.tile->changed;
+  for (std::size_t i = 0; i < stale_.size(); ++i) {
+    if (i + 1 < stale_.size()) stale_[i + 1].tile->cells.block(stale_[i + 1].block)->prefetch_cells();
+    Tile& tile = *stale_[i].tile;
+    tile.changed = fitter_.refit(tile.cells, stale_[i].block) || tile.changed;
   }
   stale_.clear();
 }

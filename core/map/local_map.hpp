@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <unordered_map>
@@ -66,8 +67,20 @@ class LocalMap {
     std::size_t block = 0;
   };
 
+  // A point on its way into the map. Cells lie all over the memory: for many points at once the block, then the
+  // cell is fetched before the first is needed.
+  struct Landing {
+    Tile* tile = nullptr;
+    std::size_t block_index = 0;
+    int place = 0;
+    MapBlock* block = nullptr;
+    MapBlock::Observation observation;
+  };
+
   [[nodiscard]] bool wants(const PoseEstimate& pose) const;
   void insert(const RegisteredScan& scan);
+  void observe_landings(std::size_t count, PoseMode mode);
+  [[nodiscard]] Tile* recent_tile(const TileKey& key);
   void remove_seen_through(const RegisteredScan& scan, std::size_t parts);
   bool count_seen_through(const Eigen::Isometry3f& T_lidar_local, const Eigen::Vector3f& centre_local,
                           MapBlock& block) const;
@@ -89,6 +102,8 @@ class LocalMap {
   PlaneFitter fitter_;
   std::unordered_map<TileKey, std::unique_ptr<Tile>, KeyHash> tiles_;
   std::shared_ptr<const MapSnapshot> snapshot_ = std::make_shared<const MapSnapshot>();
+  std::array<Landing, 32> landings_;
+  std::array<Tile*, 64> recent_{};
   std::vector<StaleBlock> stale_;  // what this update changed
   std::vector<TileKey> stored_;    // tiles of the shelf to bring back, the nearest last
   std::size_t restored_ = 0;       // in this update
