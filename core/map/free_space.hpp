@@ -32,12 +32,13 @@ class FreeSpace {
   /// Shortest range in and around the directions of the first `count` points [m]; 0 where no ray went.
   void shortest_around(const Points& p_lidar, std::size_t count, Ranges& shortest_m) const;
 
-  /// True if rays around the direction of `p_lidar`, the shortest of which has `shortest_m`, went farther than
-  /// it: by at least `margin_m` measured across its surface. `normal_lidar`: unit normal there, or zero if
-  /// unknown. A surface seen at a grazing angle is never called passed, since small errors of attitude or height
-  /// would do that to a floor.
-  [[nodiscard]] static bool passes_through(const Eigen::Vector3f& p_lidar, const Eigen::Vector3f& normal_lidar,
-                                           float shortest_m, float margin_m);
+  /// True if rays around the direction of `p_lidar`, the shortest of which has `shortest_m`, went farther
+  /// than it: by at least `margin_m` measured across its surface. `normal_lidar`: unit normal there, or zero
+  /// if unknown. A surface seen at a grazing angle is never called passed, since small errors of attitude or
+  /// height would do that to a floor.
+  [[nodiscard]] static bool passes_through(const Eigen::Vector3f& p_lidar,
+                                           const Eigen::Vector3f& normal_lidar, float shortest_m,
+                                           float margin_m);
 
  private:
   using Pixels = std::array<std::int32_t, Points::kMost>;

@@ -67,8 +67,8 @@ class LocalMap {
     std::size_t block = 0;
   };
 
-  // A point on its way into the map. Cells lie all over the memory: for many points at once the block, then the
-  // cell is fetched before the first is needed.
+  // A point on its way into the map. Cells lie all over the memory: for many points at once the block, then
+  // the cell is fetched before the first is needed.
   struct Landing {
     Tile* tile = nullptr;
     std::size_t block_index = 0;

@@ -82,9 +82,10 @@ bool fit_plane(const Moments& moments, const PlaneCriteria& criteria, Plane& pla
     return false;
   }
   const double n = moments.count;
-  const Eigen::Vector3d mean = moments.sum.cast<double>() / n;
-  const Eigen::Vector3d diagonal = moments.outer_diagonal.cast<double>() / n - mean.cwiseProduct(mean);
-  const Eigen::Vector3d off = moments.outer_off_diagonal.cast<double>() / n;
+  const double share = 1.0 / n;  // divisions are slow, and all of this is once a cell and scan
+  const Eigen::Vector3d mean = moments.sum.cast<double>() * share;
+  const Eigen::Vector3d diagonal = moments.outer_diagonal.cast<double>() * share - mean.cwiseProduct(mean);
+  const Eigen::Vector3d off = moments.outer_off_diagonal.cast<double>() * share;
   Eigen::Matrix3d covariance = diagonal.asDiagonal();
   covariance(0, 1) = covariance(1, 0) = off.x() - mean.x() * mean.y();
   covariance(0, 2) = covariance(2, 0) = off.y() - mean.x() * mean.z();
@@ -105,14 +106,14 @@ bool fit_plane(const Moments& moments, const PlaneCriteria& criteria, Plane& pla
       !(thickness2 <= kLargestThicknessRatio * width2)) {
     return false;
   }
-  const double deviation = std::sqrt(thickness2 / (width2 * n));
-  if (deviation > criteria.max_normal_deviation_rad) {
+  const double deviation2 = thickness2 / (width2 * n);
+  if (deviation2 > criteria.max_normal_deviation_rad * criteria.max_normal_deviation_rad) {
     return false;
   }
   plane.mean = mean.cast<float>();
-  plane.normal = eigenvector_of(covariance, smallest).cast<float>().normalized();
+  plane.normal = eigenvector_of(covariance, smallest).cast<float>();
   plane.thickness_m = static_cast<float>(std::sqrt(thickness2));
-  plane.normal_deviation_rad = static_cast<float>(deviation);
+  plane.normal_deviation_rad = static_cast<float>(std::sqrt(deviation2));
   return plane.normal.allFinite();
 }
 
