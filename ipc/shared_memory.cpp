@@ -42,6 +42,8 @@
 #define ISOBAR_TSAN 1
 #endif
 #endif
+// Told of the header at the start of the chunk: what follows it begins where the type of the topic that has
+// the chunk now wants it, and that may be another place than where it began in the topic before.
 #ifdef ISOBAR_TSAN
 extern "C" void __tsan_acquire(void* address);  // NOLINT(bugprone-reserved-identifier)
 extern "C" void __tsan_release(void* address);  // NOLINT(bugprone-reserved-identifier)
@@ -50,15 +52,20 @@ extern "C" void __tsan_release(void* address);  // NOLINT(bugprone-reserved-iden
 namespace isobar::ipc {
 namespace {
 
+/// The library keeps the numbers of a chunk in front of it.
+const iox::mepoo::ChunkHeader& header_of(const void* chunk) {
+  return *iox::mepoo::ChunkHeader::fromUserPayload(chunk);
+}
+
 void mark_acquired([[maybe_unused]] const void* chunk) noexcept {
 #ifdef ISOBAR_TSAN
-  __tsan_acquire(const_cast<void*>(chunk));
+  __tsan_acquire(const_cast<iox::mepoo::ChunkHeader*>(&header_of(chunk)));
 #endif
 }
 
 void mark_released([[maybe_unused]] const void* chunk) noexcept {
 #ifdef ISOBAR_TSAN
-  __tsan_release(const_cast<void*>(chunk));
+  __tsan_release(const_cast<iox::mepoo::ChunkHeader*>(&header_of(chunk)));
 #endif
 }
 
@@ -233,11 +240,6 @@ iox::RouDiConfig_t memory_config() {
 iox::capro::ServiceDescription service_of(const char* topic) {
   using iox::capro::IdString_t;
   return {IdString_t("isobar"), IdString_t("1"), IdString_t(iox::cxx::TruncateToCapacity, topic)};
-}
-
-/// The library keeps the numbers of a chunk in front of it.
-const iox::mepoo::ChunkHeader& header_of(const void* chunk) {
-  return *iox::mepoo::ChunkHeader::fromUserPayload(chunk);
 }
 
 }  // namespace
