@@ -48,6 +48,12 @@ template <typename Real>
   return {key.x * kTileCells, key.y * kTileCells, key.z * kTileCells};
 }
 
+/// Centre of a tile in the map's frame [m]; `cell_m`: edge of a cell.
+[[nodiscard]] inline Eigen::Vector3d centre_of(const TileKey& key, float cell_m) {
+  const double tile_m = static_cast<double>(cell_m) * kTileCells;
+  return (Eigen::Vector3d(key.x, key.y, key.z).array() + 0.5) * tile_m;
+}
+
 /// First cell of block `block` of a tile.
 [[nodiscard]] inline CellIndex first_cell(const TileKey& key, std::size_t block) {
   const int b = static_cast<int>(block);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <utility>
 
@@ -17,17 +16,6 @@ namespace {
 
 // Tiles that come back from the shelf with one update: so many are read in a few milliseconds.
 constexpr std::size_t kTilesPerUpdate = 8;
-
-// Rays of scans less than this apart say nearly the same of what they pass [s] …
-constexpr double kSeenThroughIntervalS = 0.3;
-// … so that the map is looked through in up to so many parts, one with each scan.
-constexpr double kMostParts = 4.0;
-
-std::size_t parts_at(double elapsed_s) {
-  return elapsed_s > 0.0 ? static_cast<std::size_t>(
-                               std::lround(std::clamp(kSeenThroughIntervalS / elapsed_s, 1.0, kMostParts)))
-                         : 1;
-}
 
 // True if a plane is known in the cube of 4 x 4 x 4 cells around `place`.
 bool plane_in_cube(const MapBlock& block, int place) {
@@ -45,7 +33,8 @@ LocalMap::LocalMap(const MapConfig& config, const Eigen::Isometry3d& T_base_lida
       cell_m_(static_cast<float>(config.cell_m)),
       T_base_lidar_(T_base_lidar),
       shelf_(shelf),
-      fitter_(config, [this](const TileKey& key) { return find_tile(key); }) {}
+      fitter_(config, [this](const TileKey& key) { return find_tile(key); }),
+      seen_through_(config, T_base_lidar) {}
 
 bool LocalMap::wants(const PoseEstimate& pose) const {
   if (!started_) {
@@ -78,7 +67,7 @@ bool LocalMap::update(const RegisteredScan& scan) {
   bring_back_stored();
   insert(scan);
   if (config_.see_through_limit > 0 && scan.pose.mode == PoseMode::kRegistered) {
-    remove_seen_through(scan, parts_at(elapsed_s));
+    remove_seen_through(scan, elapsed_s);
   }
   refit_stale();
   publish();
@@ -112,10 +101,6 @@ LocalMap::Tile* LocalMap::restore(const TileKey& key) {
   const bool good = shelf_->take(key, bytes_) && tile->cells.restore(bytes_, cell_m_);
   lost_tile_count_ += good ? 0 : 1;
   return tile;
-}
-
-Eigen::Vector3d LocalMap::centre_map(const TileKey& key) const {
-  return (Eigen::Vector3d(key.x, key.y, key.z).array() + 0.5) * tile_m();
 }
 
 void LocalMap::insert(const RegisteredScan& scan) {
@@ -176,79 +161,23 @@ void LocalMap::observe_landings(std::size_t count, PoseMode mode) {
   }
 }
 
-void LocalMap::remove_seen_through(const RegisteredScan& scan, std::size_t parts) {
-  ++looks_;
-  const Eigen::Isometry3d T_lidar_base = T_base_lidar_.inverse();
-  free_space_.set_scan(scan, T_lidar_base);
-  const LocalFrame frame(scan.pose.T_map_base.translation(), cell_m_);
-  const Eigen::Isometry3d T_lidar_map = T_lidar_base * scan.pose.T_map_base.inverse();
-  const Eigen::Isometry3f T_lidar_local =
-      (T_lidar_map * Eigen::Translation3d(frame.origin_map)).cast<float>();
-  const Eigen::Vector3f p_local_lidar = T_lidar_local.inverse().translation();
-  const auto reach = static_cast<float>(config_.see_through_range_m);
-  const float block_reach = reach + 0.87F * kBlockCells * cell_m_;  // half a block's diagonal
+void LocalMap::remove_seen_through(const RegisteredScan& scan, double elapsed_s) {
+  const auto limit = static_cast<std::uint8_t>(config_.see_through_limit);
+  seen_through_.set_scan(scan, elapsed_s);
   for (auto& [key, tile] : tiles_) {
-    if ((centre_map(key) - scan.pose.T_map_base.translation()).norm() > reach + tile_m()) {
+    if (!seen_through_.reaches(key)) {
       continue;
     }
     for (std::size_t b = 0; b < kBlocksPerTile; ++b) {
       MapBlock* block = tile->cells.block(b);
-      if (block == nullptr || (key.hash() + b + looks_) % parts != 0) continue;
-      const Eigen::Vector3f centre_local = block_centre_local(frame, first_cell(key, b));
-      if ((centre_local - p_local_lidar).norm() > block_reach) continue;
-      if (count_seen_through(T_lidar_local, centre_local, *block)) {
-        const bool listed = block->stale();
-        seen_through_count_ +=
-            block->remove_seen_through(static_cast<std::uint8_t>(config_.see_through_limit));
-        if (block->stale() && !listed) {
-          stale_.push_back({tile.get(), b});
-        }
+      if (block == nullptr || !seen_through_.count(key, b, *block)) continue;
+      const bool listed = block->stale();
+      seen_through_count_ += block->remove_seen_through(limit);
+      if (block->stale() && !listed) {
+        stale_.push_back({tile.get(), b});
       }
     }
   }
-}
-
-// Counts the rays that passed cells of a block; true if one has been seen through often enough.
-bool LocalMap::count_seen_through(const Eigen::Isometry3f& T_lidar_local, const Eigen::Vector3f& centre_local,
-                                  MapBlock& block) const {
-  const auto margin = static_cast<float>(config_.see_through_margin_m);
-  const auto limit = static_cast<std::uint8_t>(config_.see_through_limit);
-  constexpr std::uint8_t kMost = std::numeric_limits<std::uint8_t>::max();
-  const Eigen::Vector3f first_centre = centre_local.array() + 0.5F * (1 - kBlockCells) * cell_m_;
-  std::vector<MapCell>& cells = block.cells();
-  bool any = false;
-  FreeSpace::Points p_lidar;
-  FreeSpace::Ranges shortest_m;
-  for (std::size_t first = 0; first < cells.size(); first += FreeSpace::Points::kMost) {
-    const std::size_t count = std::min(FreeSpace::Points::kMost, cells.size() - first);
-    for (std::size_t i = 0; i < count; ++i) {
-      const MapCell& cell = cells[first + i];
-      const CellIndex offset = offset_of(cell.slot % kPlacesPerBlock);
-      const Eigen::Vector3f p_local =
-          first_centre + offset.cast<float>() * cell_m_ + cell.moments.mean_m(cell_m_);
-      const Eigen::Vector3f p = T_lidar_local * p_local;
-      p_lidar.x_m[i] = p.x();
-      p_lidar.y_m[i] = p.y();
-      p_lidar.z_m[i] = p.z();
-    }
-    free_space_.shortest_around(p_lidar, count, shortest_m);
-    for (std::size_t i = 0; i < count; ++i) {
-      MapCell& cell = cells[first + i];
-      const Eigen::Vector3f p(p_lidar.x_m[i], p_lidar.y_m[i], p_lidar.z_m[i]);
-      const float beyond_m = shortest_m[i] - margin;
-      // Whatever the normal; which is most often so.
-      if (cell.seen_through == kMost || !(beyond_m > 0.0F) || p.squaredNorm() > beyond_m * beyond_m) {
-        continue;
-      }
-      const PackedPlane* plane = block.plane_at(cell.slot);
-      Eigen::Vector3f normal = Eigen::Vector3f::Zero();
-      if (plane != nullptr) normal = T_lidar_local.linear() * plane->unit_normal();
-      if (FreeSpace::passes_through(p, normal, shortest_m[i], margin)) {
-        any = ++cell.seen_through > limit || any;
-      }
-    }
-  }
-  return any;
 }
 
 void LocalMap::refit_stale() {
@@ -263,7 +192,7 @@ void LocalMap::refit_stale() {
 void LocalMap::evict(const Eigen::Vector3d& p_map_base) {
   std::vector<TileKey> far;
   for (const auto& [key, tile] : tiles_) {
-    if ((centre_map(key) - p_map_base).norm() > config_.radius_m + tile_m()) {
+    if ((centre_of(key, cell_m_) - p_map_base).norm() > config_.radius_m + tile_m()) {
       far.push_back(key);
     }
   }
@@ -290,7 +219,7 @@ void LocalMap::look_for_stored(const Eigen::Vector3d& p_map_base) {
     for (std::int32_t y = at.y - reach; y <= at.y + reach; ++y) {
       for (std::int32_t z = at.z - reach; z <= at.z + reach; ++z) {
         const TileKey key{x, y, z};
-        if ((centre_map(key) - p_map_base).norm() <= config_.radius_m && !tiles_.contains(key) &&
+        if ((centre_of(key, cell_m_) - p_map_base).norm() <= config_.radius_m && !tiles_.contains(key) &&
             shelf_->contains(key)) {
           stored_.push_back(key);
         }
@@ -298,8 +227,8 @@ void LocalMap::look_for_stored(const Eigen::Vector3d& p_map_base) {
     }
   }
   const auto farther = [&](const TileKey& a, const TileKey& b) {
-    const double da = (centre_map(a) - p_map_base).squaredNorm();
-    const double db = (centre_map(b) - p_map_base).squaredNorm();
+    const double da = (centre_of(a, cell_m_) - p_map_base).squaredNorm();
+    const double db = (centre_of(b, cell_m_) - p_map_base).squaredNorm();
     return da > db || (da == db && a < b);
   };
   std::sort(stored_.begin(), stored_.end(), farther);

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "core/estimates.hpp"
-#include "core/map/free_space.hpp"
 #include "core/map/map_config.hpp"
 #include "core/map/map_point.hpp"
 #include "core/map/map_snapshot.hpp"
 #include "core/map/map_tile.hpp"
 #include "core/map/nearest_plane.hpp"
 #include "core/map/plane_fitter.hpp"
+#include "core/map/seen_through.hpp"
 #include "core/map/tile_shelf.hpp"
 
 namespace isobar {
@@ -81,9 +81,7 @@ class LocalMap {
   void insert(const RegisteredScan& scan);
   void observe_landings(std::size_t count, PoseMode mode);
   [[nodiscard]] Tile* recent_tile(const TileKey& key);
-  void remove_seen_through(const RegisteredScan& scan, std::size_t parts);
-  bool count_seen_through(const Eigen::Isometry3f& T_lidar_local, const Eigen::Vector3f& centre_local,
-                          MapBlock& block) const;
+  void remove_seen_through(const RegisteredScan& scan, double elapsed_s);
   void refit_stale();
   void evict(const Eigen::Vector3d& p_map_base);
   void look_for_stored(const Eigen::Vector3d& p_map_base);
@@ -92,7 +90,6 @@ class LocalMap {
   [[nodiscard]] Tile* tile_for_points(const TileKey& key);
   Tile* restore(const TileKey& key);
   [[nodiscard]] const MapTile* find_tile(const TileKey& key) const;
-  [[nodiscard]] Eigen::Vector3d centre_map(const TileKey& key) const;
   [[nodiscard]] double tile_m() const { return static_cast<double>(cell_m_) * kTileCells; }
 
   MapConfig config_;
@@ -108,10 +105,9 @@ class LocalMap {
   std::vector<TileKey> stored_;    // tiles of the shelf to bring back, the nearest last
   std::size_t restored_ = 0;       // in this update
   std::vector<std::byte> bytes_;   // scratch
-  FreeSpace free_space_;
+  SeenThrough seen_through_;
   PoseEstimate last_pose_;
   bool started_ = false;
-  std::uint64_t looks_ = 0;  // for what was seen through
   std::uint64_t seen_through_count_ = 0;
   std::uint64_t lost_tile_count_ = 0;
 };

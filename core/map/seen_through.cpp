@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/map/seen_through.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace isobar {
+
+namespace {
+
+// Rays of scans less than this apart say nearly the same of what they pass [s] …
+constexpr double kIntervalS = 0.3;
+// … so that the map is looked through in up to so many parts, one with each scan.
+constexpr double kMostParts = 4.0;
+
+std::size_t parts_at(double elapsed_s) {
+  return elapsed_s > 0.0
+             ? static_cast<std::size_t>(std::lround(std::clamp(kIntervalS / elapsed_s, 1.0, kMostParts)))
+             : 1;
+}
+
+}  // namespace
+
+SeenThrough::SeenThrough(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar)
+    : cell_m_(static_cast<float>(config.cell_m)),
+      reach_m_(static_cast<float>(config.see_through_range_m)),
+      margin_m_(static_cast<float>(config.see_through_margin_m)),
+      limit_(static_cast<std::uint8_t>(config.see_through_limit)),
+      T_lidar_base_(T_base_lidar.inverse()) {}
+
+void SeenThrough::set_scan(const RegisteredScan& scan, double elapsed_s) {
+  ++looks_;
+  parts_ = parts_at(elapsed_s);
+  free_space_.set_scan(scan, T_lidar_base_);
+  p_map_base_ = scan.pose.T_map_base.translation();
+  frame_ = LocalFrame(p_map_base_, cell_m_);
+  const Eigen::Isometry3d T_lidar_map = T_lidar_base_ * scan.pose.T_map_base.inverse();
+  T_lidar_local_ = (T_lidar_map * Eigen::Translation3d(frame_.origin_map)).cast<float>();
+  p_local_lidar_ = T_lidar_local_.inverse().translation();
+}
+
+bool SeenThrough::reaches(const TileKey& key) const {
+  const double tile_m = static_cast<double>(cell_m_) * kTileCells;
+  return (centre_of(key, cell_m_) - p_map_base_).norm() <= static_cast<double>(reach_m_) + tile_m;
+}
+
+bool SeenThrough::count(const TileKey& key, std::size_t index, MapBlock& block) const {
+  if ((key.hash() + index + looks_) % parts_ != 0) {
+    return false;
+  }
+  const Eigen::Vector3f centre_local = block_centre_local(frame_, first_cell(key, index));
+  const float block_reach_m = reach_m_ + 0.87F * kBlockCells * cell_m_;  // half a block's diagonal
+  return (centre_local - p_local_lidar_).norm() <= block_reach_m && count_cells(centre_local, block);
+}
+
+bool SeenThrough::count_cells(const Eigen::Vector3f& centre_local, MapBlock& block) const {
+  const Eigen::Vector3f first_centre = centre_local.array() + 0.5F * (1 - kBlockCells) * cell_m_;
+  const std::vector<MapCell>& cells = block.cells();
+  FreeSpace::Points p_lidar;
+  bool any = false;
+  for (std::size_t first = 0; first < cells.size(); first += FreeSpace::Points::kMost) {
+    const std::size_t count = std::min(FreeSpace::Points::kMost, cells.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      const MapCell& cell = cells[first + i];
+      const CellIndex offset = offset_of(cell.slot % kPlacesPerBlock);
+      const Eigen::Vector3f p_local =
+          first_centre + offset.cast<float>() * cell_m_ + cell.moments.mean_m(cell_m_);
+      const Eigen::Vector3f p = T_lidar_local_ * p_local;
+      p_lidar.x_m[i] = p.x();
+      p_lidar.y_m[i] = p.y();
+      p_lidar.z_m[i] = p.z();
+    }
+    any = count_up_to_64(p_lidar, first, count, block) || any;
+  }
+  return any;
+}
+
+// `p_lidar`: the means of the `count` cells from `first`.
+bool SeenThrough::count_up_to_64(const FreeSpace::Points& p_lidar, std::size_t first, std::size_t count,
+                                 MapBlock& block) const {
+  constexpr std::uint8_t kMost = std::numeric_limits<std::uint8_t>::max();
+  FreeSpace::Ranges shortest_m;
+  free_space_.shortest_around(p_lidar, count, shortest_m);
+  bool any = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    MapCell& cell = block.cells()[first + i];
+    const Eigen::Vector3f p(p_lidar.x_m[i], p_lidar.y_m[i], p_lidar.z_m[i]);
+    const float beyond_m = shortest_m[i] - margin_m_;
+    // Whatever the normal; most often so.
+    if (cell.seen_through == kMost || !(beyond_m > 0.0F) || p.squaredNorm() > beyond_m * beyond_m) {
+      continue;
+    }
+    Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+    if (const PackedPlane* plane = block.plane_at(cell.slot)) {
+      normal = T_lidar_local_.linear() * plane->unit_normal();
+    }
+    if (FreeSpace::passes_through(p, normal, shortest_m[i], margin_m_)) {
+      any = ++cell.seen_through > limit_ || any;
+    }
+  }
+  return any;
+}
+
+}  // namespace isobar
