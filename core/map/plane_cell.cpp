@@ -63,20 +63,6 @@ void Moments::add(const Eigen::Vector3f& p_centre) {
       Eigen::Vector3f(p_centre.x() * p_centre.y(), p_centre.x() * p_centre.z(), p_centre.y() * p_centre.z());
 }
 
-void Moments::add(const Moments& other, const Eigen::Vector3f& offset) {
-  // sum (p + d)(p + d)^T = sum p p^T + s d^T + d s^T + n d d^T
-  const Eigen::Vector3f& s = other.sum;
-  const Eigen::Vector3f& d = offset;
-  const float n = other.count;
-  outer_diagonal += other.outer_diagonal + 2.0F * s.cwiseProduct(d) + n * d.cwiseProduct(d);
-  outer_off_diagonal +=
-      other.outer_off_diagonal + Eigen::Vector3f(s.x() * d.y() + s.y() * d.x() + n * d.x() * d.y(),
-                                                 s.x() * d.z() + s.z() * d.x() + n * d.x() * d.z(),
-                                                 s.y() * d.z() + s.z() * d.y() + n * d.y() * d.z());
-  sum += s + n * d;
-  count += n;
-}
-
 bool fit_plane(const Moments& moments, const PlaneCriteria& criteria, Plane& plane) {
   if (moments.count < kFewestPoints) {
     return false;

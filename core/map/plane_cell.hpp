@@ -15,8 +15,6 @@ struct Moments {
   Eigen::Vector3f outer_off_diagonal = Eigen::Vector3f::Zero();  ///< xy, xz, yz
 
   void add(const Eigen::Vector3f& p_centre);
-  /// Adds moments taken about a centre that lies at `offset` from this one's.
-  void add(const Moments& other, const Eigen::Vector3f& offset);
   [[nodiscard]] Eigen::Vector3f mean() const { return sum / count; }
 };
 

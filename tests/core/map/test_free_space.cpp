@@ -34,7 +34,8 @@ std::unique_ptr<RegisteredScan> scan_of_sphere() {
   return scan;
 }
 
-bool passes_through(const FreeSpace& free_space, const Eigen::Vector3f& p_lidar, const Eigen::Vector3f& normal) {
+bool passes_through(const FreeSpace& free_space, const Eigen::Vector3f& p_lidar,
+                    const Eigen::Vector3f& normal) {
   FreeSpace::Points points;
   FreeSpace::Ranges shortest_m{};
   points.x_m[0] = p_lidar.x();

@@ -200,6 +200,20 @@ TEST_CASE("the most points at the corner of a cell do not overflow") {
   }
 }
 
+TEST_CASE("sums over as many full cells as a cube of both sides has do not overflow") {
+  CellMoments full;
+  for (int i = 0; i < CellMoments::kMostPoints; ++i) full.add(Eigen::Vector3f::Ones());
+  isobar::MomentSum sum;
+  for (int cell = 0; cell < 128; ++cell) sum.add(full, {4, -4, 4});
+  const Moments moments = sum.in_metres(kCellM);
+  CHECK(moments.count == 128.0F * CellMoments::kMostPoints);
+  // All points at one place: 4.5 cells from the centre, and -3.5. Exact but for the rounding of a float.
+  const Eigen::Vector3f place = Eigen::Vector3f(4.5F, -3.5F, 4.5F) * kCellM;
+  CHECK((moments.mean() - place).norm() < 1e-6F);
+  CHECK(moments.outer_diagonal.y() / moments.count == doctest::Approx(place.y() * place.y()));
+  CHECK(moments.outer_off_diagonal.z() / moments.count == doctest::Approx(place.y() * place.z()));
+}
+
 TEST_CASE("a packed plane is the plane to 31 um and 0.002 degrees") {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> place(-1.1F, 1.1F);
