@@ -45,7 +45,8 @@ class PlaneFitter::Surroundings {
   // The block that begins at `first`, null where nothing was seen. It must touch the centre or be it.
   const MapBlock* block_at(const CellIndex& first) {
     const CellIndex step = (first - first_) / kBlockCells;
-    const auto at = static_cast<std::size_t>(((step.z() + 1) * 3 + step.y() + 1) * 3 + step.x() + 1);
+    const int number = ((step.z() + 1) * 3 + step.y() + 1) * 3 + step.x() + 1;
+    const auto at = static_cast<std::size_t>(number);
     if (!known_.test(at)) {
       const TileKey key = tile_of(first);
       const MapTile* in = key == tile_.key() ? &tile_ : find_tile_(key);
