@@ -172,9 +172,10 @@ const Pose* first_registered(const std::vector<Pose>& poses, std::int64_t receiv
 void held_registration(const ChildProcess& isobard, Tap& tap) {
   tap.forget();
   tap.gather(500ms);
-  const std::int64_t held_ns = RobotClock::now_ns();
+  std::int64_t held_ns = 0;
   {
     const StoppedThread held(isobard.pid(), "registration");
+    held_ns = RobotClock::now_ns();
     tap.gather(800ms);  // eight scans, of which the queue holds four
   }
   const std::int64_t resumed_ns = RobotClock::now_ns();
