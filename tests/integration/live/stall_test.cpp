@@ -146,14 +146,16 @@ void check_one_pose_a_scan(const Tap& tap) {
   }
 }
 
-/// In order of time, and never farther apart than a robot drives.
-void check_steady(const std::vector<Pose>& poses) {
+/// In order of time, and never farther apart than a robot drives and `correction_m`, by which a registration
+/// may put a prior right.
+void check_steady(const std::vector<Pose>& poses, double correction_m) {
   for (std::size_t i = 1; i < poses.size(); ++i) {
     const PoseEstimate& before = poses[i - 1].estimate;
     const PoseEstimate& now = poses[i].estimate;
     CHECK(now.stamp_ns > before.stamp_ns);
     const double elapsed_s = static_cast<double>(now.stamp_ns - before.stamp_ns) * 1e-9;
-    CHECK((now.T_map_base.translation() - before.T_map_base.translation()).norm() < 0.1 + 2.0 * elapsed_s);
+    CHECK((now.T_map_base.translation() - before.T_map_base.translation()).norm() <
+          correction_m + 2.0 * elapsed_s);
   }
 }
 
@@ -192,7 +194,7 @@ void held_registration(const ChildProcess& isobard, Tap& tap) {
   }
   CHECK(from_prior >= 5);
   check_one_pose_a_scan(tap);
-  check_steady(tap.poses);
+  check_steady(tap.poses, 0.1);
   REQUIRE(tap.entry("registration/dropped") != nullptr);
   CHECK(tap.entry("registration/dropped")->value == from_prior);
   REQUIRE(tap.entry("registration/deadline") != nullptr);
@@ -212,7 +214,9 @@ void held_process(const ChildProcess& isobard, Tap& tap) {
   }
   REQUIRE(fresh != nullptr);
   CHECK(fresh->received_ns < resumed_ns + 600 * kMs);
-  check_steady(tap.poses);
+  // Most of the IMU's samples of these two seconds are lost: the prior is right to a metre, as in
+  // live_test.sh.
+  check_steady(tap.poses, 1.0);
   CHECK(first_registered(tap.poses, resumed_ns, resumed_ns) != nullptr);
 }
 
