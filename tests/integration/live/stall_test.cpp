@@ -187,18 +187,21 @@ void held_registration(const ChildProcess& isobard, Tap& tap) {
   REQUIRE(first != nullptr);
   // The newest scan that was there: at most a revolution old, and what a loaded machine adds.
   CHECK(first->estimate.stamp_ns > resumed_ns - 150 * kMs);
-  int from_prior = 0;
+  int from_prior_in_hold = 0;
   for (const Pose& pose : tap.poses) {
-    from_prior += pose.estimate.mode == PoseMode::kPriorOnly ? 1 : 0;
-    if (pose.estimate.mode == PoseMode::kPriorOnly) CHECK(pose.estimate.stamp_ns < first->estimate.stamp_ns);
+    const bool in_hold =
+        pose.estimate.stamp_ns > held_ns && pose.estimate.stamp_ns < first->estimate.stamp_ns;
+    if (in_hold) CHECK(pose.estimate.mode == PoseMode::kPriorOnly);
+    from_prior_in_hold += in_hold ? 1 : 0;
   }
-  CHECK(from_prior >= 5);
+  CHECK(from_prior_in_hold >= 5);
   check_one_pose_a_scan(tap);
   check_steady(tap.poses, 0.1);
   REQUIRE(tap.entry("registration/dropped") != nullptr);
-  CHECK(tap.entry("registration/dropped")->value == from_prior);
+  // More where a loaded machine dropped some before or after.
+  CHECK(tap.entry("registration/dropped")->value >= from_prior_in_hold);
   REQUIRE(tap.entry("registration/deadline") != nullptr);
-  CHECK(tap.entry("registration/deadline")->value >= from_prior);
+  CHECK(tap.entry("registration/deadline")->value >= from_prior_in_hold);
 }
 
 void held_process(const ChildProcess& isobard, Tap& tap) {
