@@ -66,15 +66,12 @@ void FreeSpace::set_scan(const RegisteredScan& scan, const Eigen::Isometry3d& T_
     const std::size_t count = std::min<std::size_t>(Points::kMost, scan.point_count - first);
     for (std::size_t i = 0; i < count; ++i) {
       const ScanPoint& point = scan.points[first + i];
-      const Eigen::Vector3f p_lidar = T * Eigen::Vector3f(point.x_m, point.y_m, point.z_m);
-      batch.x_m[i] = p_lidar.x();
-      batch.y_m[i] = p_lidar.y();
-      batch.z_m[i] = p_lidar.z();
+      batch.set(i, T * Eigen::Vector3f(point.x_m, point.y_m, point.z_m));
     }
     pixels_of(batch, count, pixels);
     for (std::size_t i = 0; i < count; ++i) {
       float& shortest = shortest_m_[static_cast<std::size_t>(pixels[i])];
-      shortest = std::min(shortest, Eigen::Vector3f(batch.x_m[i], batch.y_m[i], batch.z_m[i]).norm());
+      shortest = std::min(shortest, batch.at(i).norm());
     }
   }
   spread_to_neighbours();

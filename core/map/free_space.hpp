@@ -23,6 +23,13 @@ class FreeSpace {
     std::array<float, kMost> x_m{};
     std::array<float, kMost> y_m{};
     std::array<float, kMost> z_m{};
+
+    void set(std::size_t i, const Eigen::Vector3f& p) {
+      x_m[i] = p.x();
+      y_m[i] = p.y();
+      z_m[i] = p.z();
+    }
+    [[nodiscard]] Eigen::Vector3f at(std::size_t i) const { return {x_m[i], y_m[i], z_m[i]}; }
   };
   using Ranges = std::array<float, Points::kMost>;
 

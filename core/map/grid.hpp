@@ -48,10 +48,12 @@ template <typename Real>
   return {key.x * kTileCells, key.y * kTileCells, key.z * kTileCells};
 }
 
+/// Edge of a tile [m]; `cell_m`: edge of a cell.
+[[nodiscard]] inline double tile_m(float cell_m) { return static_cast<double>(cell_m) * kTileCells; }
+
 /// Centre of a tile in the map's frame [m]; `cell_m`: edge of a cell.
 [[nodiscard]] inline Eigen::Vector3d centre_of(const TileKey& key, float cell_m) {
-  const double tile_m = static_cast<double>(cell_m) * kTileCells;
-  return (Eigen::Vector3d(key.x, key.y, key.z).array() + 0.5) * tile_m;
+  return (Eigen::Vector3d(key.x, key.y, key.z).array() + 0.5) * tile_m(cell_m);
 }
 
 /// First cell of block `block` of a tile.
@@ -81,11 +83,11 @@ struct LocalFrame {
   LocalFrame() = default;
   /// `p_map`: near what will be looked at, |p_map| < 1e8 m; `cell_m`: 0.1 … 1.
   LocalFrame(const Eigen::Vector3d& p_map, float cell_edge_m) : cell_m(cell_edge_m) {
-    const double tile_m = static_cast<double>(cell_m) * kTileCells;
-    const CellIndex tile(floor_int(p_map.x() / tile_m), floor_int(p_map.y() / tile_m),
-                         floor_int(p_map.z() / tile_m));
+    const double edge_m = tile_m(cell_m);
+    const CellIndex tile(floor_int(p_map.x() / edge_m), floor_int(p_map.y() / edge_m),
+                         floor_int(p_map.z() / edge_m));
     origin_cell = tile * kTileCells;
-    origin_map = tile.cast<double>() * tile_m;
+    origin_map = tile.cast<double>() * edge_m;
   }
 
   [[nodiscard]] Eigen::Vector3f to_local(const Eigen::Vector3d& p_map) const {

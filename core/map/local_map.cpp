@@ -155,9 +155,7 @@ void LocalMap::observe_landings(std::size_t count, PoseMode mode) {
     }
     const bool listed = landing.block->stale();
     landing.block->observe(landing.place, landing.observation);
-    if (landing.block->stale() && !listed) {
-      stale_.push_back({landing.tile, landing.block_index});
-    }
+    list_if_stale({landing.tile, landing.block_index}, listed);
   }
 }
 
@@ -173,10 +171,15 @@ void LocalMap::remove_seen_through(const RegisteredScan& scan, double elapsed_s)
       if (block == nullptr || !seen_through_.count(key, b, *block)) continue;
       const bool listed = block->stale();
       seen_through_count_ += block->remove_seen_through(limit);
-      if (block->stale() && !listed) {
-        stale_.push_back({tile.get(), b});
-      }
+      list_if_stale({tile.get(), b}, listed);
     }
+  }
+}
+
+// A block that was stale before its change is `listed`.
+void LocalMap::list_if_stale(const StaleBlock& changed, bool listed) {
+  if (!listed && changed.tile->cells.block(changed.block)->stale()) {
+    stale_.push_back(changed);
   }
 }
 
@@ -192,7 +195,7 @@ void LocalMap::refit_stale() {
 void LocalMap::evict(const Eigen::Vector3d& p_map_base) {
   std::vector<TileKey> far;
   for (const auto& [key, tile] : tiles_) {
-    if ((centre_of(key, cell_m_) - p_map_base).norm() > config_.radius_m + tile_m()) {
+    if ((centre_of(key, cell_m_) - p_map_base).norm() > config_.radius_m + tile_m(cell_m_)) {
       far.push_back(key);
     }
   }
@@ -212,7 +215,7 @@ void LocalMap::look_for_stored(const Eigen::Vector3d& p_map_base) {
   if (shelf_ == nullptr) {
     return;
   }
-  const auto reach = static_cast<std::int32_t>(std::ceil(config_.radius_m / tile_m()));
+  const auto reach = static_cast<std::int32_t>(std::ceil(config_.radius_m / tile_m(cell_m_)));
   const CellIndex robot = LocalFrame(p_map_base, cell_m_).origin_cell;
   const TileKey at = tile_of(robot);
   for (std::int32_t x = at.x - reach; x <= at.x + reach; ++x) {

@@ -82,6 +82,7 @@ class LocalMap {
   void observe_landings(std::size_t count, PoseMode mode);
   [[nodiscard]] Tile* recent_tile(const TileKey& key);
   void remove_seen_through(const RegisteredScan& scan, double elapsed_s);
+  void list_if_stale(const StaleBlock& changed, bool listed);
   void refit_stale();
   void evict(const Eigen::Vector3d& p_map_base);
   void look_for_stored(const Eigen::Vector3d& p_map_base);
@@ -90,7 +91,6 @@ class LocalMap {
   [[nodiscard]] Tile* tile_for_points(const TileKey& key);
   Tile* restore(const TileKey& key);
   [[nodiscard]] const MapTile* find_tile(const TileKey& key) const;
-  [[nodiscard]] double tile_m() const { return static_cast<double>(cell_m_) * kTileCells; }
 
   MapConfig config_;
   float cell_m_;

@@ -42,8 +42,7 @@ void SeenThrough::set_scan(const RegisteredScan& scan, double elapsed_s) {
 }
 
 bool SeenThrough::reaches(const TileKey& key) const {
-  const double tile_m = static_cast<double>(cell_m_) * kTileCells;
-  return (centre_of(key, cell_m_) - p_map_base_).norm() <= static_cast<double>(reach_m_) + tile_m;
+  return (centre_of(key, cell_m_) - p_map_base_).norm() <= static_cast<double>(reach_m_) + tile_m(cell_m_);
 }
 
 bool SeenThrough::count(const TileKey& key, std::size_t index, MapBlock& block) const {
@@ -67,10 +66,7 @@ bool SeenThrough::count_cells(const Eigen::Vector3f& centre_local, MapBlock& blo
       const CellIndex offset = offset_of(cell.slot % kPlacesPerBlock);
       const Eigen::Vector3f p_local =
           first_centre + offset.cast<float>() * cell_m_ + cell.moments.mean_m(cell_m_);
-      const Eigen::Vector3f p = T_lidar_local_ * p_local;
-      p_lidar.x_m[i] = p.x();
-      p_lidar.y_m[i] = p.y();
-      p_lidar.z_m[i] = p.z();
+      p_lidar.set(i, T_lidar_local_ * p_local);
     }
     any = count_up_to_64(p_lidar, first, count, block) || any;
   }
@@ -86,7 +82,7 @@ bool SeenThrough::count_up_to_64(const FreeSpace::Points& p_lidar, std::size_t f
   bool any = false;
   for (std::size_t i = 0; i < count; ++i) {
     MapCell& cell = block.cells()[first + i];
-    const Eigen::Vector3f p(p_lidar.x_m[i], p_lidar.y_m[i], p_lidar.z_m[i]);
+    const Eigen::Vector3f p = p_lidar.at(i);
     const float beyond_m = shortest_m[i] - margin_m_;
     // Whatever the normal; most often so.
     if (cell.seen_through == kMost || !(beyond_m > 0.0F) || p.squaredNorm() > beyond_m * beyond_m) {

@@ -38,9 +38,7 @@ bool passes_through(const FreeSpace& free_space, const Eigen::Vector3f& p_lidar,
                     const Eigen::Vector3f& normal) {
   FreeSpace::Points points;
   FreeSpace::Ranges shortest_m{};
-  points.x_m[0] = p_lidar.x();
-  points.y_m[0] = p_lidar.y();
-  points.z_m[0] = p_lidar.z();
+  points.set(0, p_lidar);
   free_space.shortest_around(points, 1, shortest_m);
   return FreeSpace::passes_through(p_lidar, normal, shortest_m[0], 0.3F);
 }
