@@ -43,18 +43,30 @@ class HeaderText {
     }
   }
 
-  template <typename Number>
-  Number number(const char* key, Number lowest, Number highest, const std::string& rule) const {
-    const toml::node* node = table_.get(key);
-    if (node == nullptr) throw DataError(file_ + ": " + key + ": is missing; " + rule);
-    const auto value = node->value<Number>();
-    if (!value || !(*value >= lowest && *value <= highest)) {
-      throw DataError(place(node->source()) + key + ": " + rule);
-    }
+  [[nodiscard]] std::int64_t whole(const char* key, std::int64_t only, const std::string& rule) const {
+    const toml::node& node = entry(key, rule);
+    // value_exact: value would first cast a float to an integer, which is undefined for 1e72.
+    const auto value = node.value_exact<std::int64_t>();
+    if (!value || *value != only) fail(node, key, rule);
+    return *value;
+  }
+
+  [[nodiscard]] double number(const char* key, double lowest, double highest, const std::string& rule) const {
+    const toml::node& node = entry(key, rule);
+    const auto value = node.value<double>();
+    if (!value || !(*value >= lowest && *value <= highest)) fail(node, key, rule);
     return *value;
   }
 
  private:
+  [[nodiscard]] const toml::node& entry(const char* key, const std::string& rule) const {
+    const toml::node* node = table_.get(key);
+    if (node == nullptr) throw DataError(file_ + ": " + key + ": is missing; " + rule);
+    return *node;
+  }
+  [[noreturn]] void fail(const toml::node& node, const char* key, const std::string& rule) const {
+    throw DataError(place(node.source()) + key + ": " + rule);
+  }
   [[nodiscard]] std::string place(const toml::source_region& at) const {
     return file_ + ":" + std::to_string(at.begin.line) + ":" + std::to_string(at.begin.column) + ": ";
   }
@@ -83,14 +95,12 @@ std::string holder_of(const fs::path& lock_file) {
 
 MapHeader read_map_header(const fs::path& directory) {
   const HeaderText text(directory / "map.toml");
-  text.number<std::int64_t>(
-      "format", MapHeader::kFormat, MapHeader::kFormat,
-      "must be " + std::to_string(MapHeader::kFormat) + ": this program reads no other format of map");
+  static_cast<void>(text.whole(
+      "format", MapHeader::kFormat,
+      "must be " + std::to_string(MapHeader::kFormat) + ": this program reads no other format of map"));
   MapHeader header;
-  header.tile_m =
-      text.number<double>("tile_m", 1e-3, kLargestTileM, "must be a number within 0.001 … 1000 m");
-  header.cell_m =
-      text.number<double>("cell_m", 1e-3, header.tile_m, "must be a number within 0.001 m … tile_m");
+  header.tile_m = text.number("tile_m", 1e-3, kLargestTileM, "must be a number within 0.001 … 1000 m");
+  header.cell_m = text.number("cell_m", 1e-3, header.tile_m, "must be a number within 0.001 m … tile_m");
   return header;
 }
 

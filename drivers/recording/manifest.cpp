@@ -122,7 +122,8 @@ std::optional<LidarEntry> read_lidar(const toml::table& root, ManifestText& text
   lidar.model = *model->value<std::string>();
   lidar.file = text.file_name(*table, "lidar");
   if (const toml::node* port = table->get("port"); port != nullptr) {
-    const auto value = port->value<std::int64_t>();
+    // value_exact: value would first cast a float to an integer, which is undefined for 1e72.
+    const auto value = port->value_exact<std::int64_t>();
     if (!value || *value < 1 || *value > 65'535) {
       text.fail(*port, "lidar.port", "must be a whole number within 1 … 65535");
     }
@@ -217,7 +218,7 @@ Manifest parse_manifest(std::string_view content, const std::string& file,
       root, "",
       {"version", "description", "lidar", "imu", "barometer", "base_barometer", "wheel", "reference"});
   const toml::node* version = root.get("version");
-  if (version == nullptr || version->value<std::int64_t>() != 1) {
+  if (version == nullptr || version->value_exact<std::int64_t>() != 1) {
     text.fail(version == nullptr ? static_cast<const toml::node&>(root) : *version, "version", "must be 1");
   }
   Manifest manifest;

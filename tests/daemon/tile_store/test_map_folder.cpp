@@ -40,6 +40,11 @@ TEST_CASE("a header that breaks a rule is refused by file, place, key and rule")
   };
   const std::string file = (scratch.path() / "map.toml").string();
   CHECK(refusal("format = 2\ntile_m = 8.0\ncell_m = 0.25\n").starts_with(file + ":1:10: format: must be 1"));
+  for (const char* no_whole_number : {"8.3e+72", "1.0", "inf", "nan", "true", "\"1\""}) {
+    CAPTURE(no_whole_number);
+    CHECK(refusal(std::string("format = ") + no_whole_number + "\n")
+              .starts_with(file + ":1:10: format: must be 1"));
+  }
   CHECK(refusal("tile_m = 8.0\ncell_m = 0.25\n").starts_with(file + ": format: is missing"));
   CHECK(refusal("format = 1\ntile_m = -8\ncell_m = 0.25\n").starts_with(file + ":2:10: tile_m: must be"));
   CHECK(refusal("format = 1\ntile_m = nan\ncell_m = 0.25\n").starts_with(file + ":2:10: tile_m: must be"));

@@ -72,6 +72,7 @@ TEST_CASE("Every rule of recording.toml is checked with file, line and key; unkn
   };
   fails("", "version: must be 1");
   fails("version = 2\n", "recording.toml:1: version: must be 1");
+  fails("version = 8.3e+72\n", "recording.toml:1: version: must be 1");
   fails("version = 1\nversion = 1\n", "recording.toml:2: ");
   fails("version = 1\nimu = 3\n", "recording.toml:2: imu: must be a section");
   fails("version = 1\n[imu]\n", "recording.toml:2: imu.file: missing");
@@ -83,6 +84,8 @@ TEST_CASE("Every rule of recording.toml is checked with file, line and key; unkn
   fails("version = 1\n[imu]\nfile = \"i\"\nrpy_deg = [0, 0, 361]\n", "imu.rpy_deg");
   fails("version = 1\n[lidar]\nfile = \"l\"\n", "lidar.model");
   fails("version = 1\n[lidar]\nmodel = \"VLP-16\"\nfile = \"l\"\nport = 70000\n",
+        "recording.toml:5: lidar.port");
+  fails("version = 1\n[lidar]\nmodel = \"VLP-16\"\nfile = \"l\"\nport = 8.3e+72\n",
         "recording.toml:5: lidar.port");
   scratch.write("recording.toml", "version = 1\ncolour = 3\n[imu]\nfile = \"i\"\nmood = 1\n[gps]\n");
   std::vector<std::string> warnings;
