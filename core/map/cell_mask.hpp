@@ -14,15 +14,26 @@ namespace isobar {
 /// Sides of a cell: a wall thinner than a cell has two.
 inline constexpr int kSides = 2;
 
-/// A set of slots 0 … 1023 of a block: side * 512 + place. Finding a member's rank takes one popcount.
+/// A set of slots 0 … 1023 of a block: side * 512 + place. 64 slots a word.
+struct SlotSet {
+  static constexpr int kSlots = kPlacesPerBlock * kSides;
+  std::array<std::uint64_t, kSlots / 64> words{};
+
+  void insert(int slot) {
+    const auto at = static_cast<unsigned>(slot);
+    words[at / 64] |= std::uint64_t{1} << at % 64;
+  }
+};
+
+/// The same with the number of members below each: finding a member's rank takes one popcount.
 class CellMask {
  public:
-  static constexpr int kSlots = kPlacesPerBlock * kSides;
+  static constexpr int kSlots = SlotSet::kSlots;
   static constexpr std::size_t kWords = kSlots / 64;
 
   friend bool operator==(const CellMask&, const CellMask&) = default;
 
-  [[nodiscard]] bool has(int slot) const { return (word(slot) >> bit(slot) & 1U) != 0; }
+  [[nodiscard]] bool has(int slot) const { return (words_[index(slot)] >> bit(slot) & 1U) != 0; }
 
   /// Begins to fetch what has() and rank() of a slot read.
   void prefetch(int slot) const {
@@ -32,7 +43,7 @@ class CellMask {
 
   /// Number of members below `slot`: its index in a list of the members in order.
   [[nodiscard]] std::size_t rank(int slot) const {
-    const std::uint64_t below = word(slot) & ((std::uint64_t{1} << bit(slot)) - 1);
+    const std::uint64_t below = words_[index(slot)] & ((std::uint64_t{1} << bit(slot)) - 1);
     return ranks_[index(slot)] + static_cast<std::size_t>(std::popcount(below));
   }
 
@@ -59,10 +70,13 @@ class CellMask {
     return words_[static_cast<std::size_t>(at)];
   }
 
+  /// The slots 64 i … 64 i + 63 as bits. Ranks are wrong after set_word() until count_ranks().
+  [[nodiscard]] std::uint64_t word(std::size_t i) const { return words_[i]; }
+  void set_word(std::size_t i, std::uint64_t members) { words_[i] = members; }
+
  private:
   [[nodiscard]] static std::size_t index(int slot) { return static_cast<std::size_t>(slot) / 64; }
   [[nodiscard]] static unsigned bit(int slot) { return static_cast<unsigned>(slot) % 64; }
-  [[nodiscard]] std::uint64_t word(int slot) const { return words_[index(slot)]; }
 
   void update_ranks() {
     std::uint16_t sum = 0;

@@ -153,9 +153,8 @@ void LocalMap::observe_landings(std::size_t count, PoseMode mode) {
     if (mode == PoseMode::kPriorOnly && plane_in_cube(*landing.block, landing.place)) {
       continue;
     }
-    const bool listed = landing.block->stale();
-    landing.block->observe(landing.place, landing.observation);
-    list_if_stale({landing.tile, landing.block_index}, listed);
+    const int slot = landing.block->observe(landing.place, landing.observation);
+    if (slot != MapBlock::kNoSlot) waiting_in(*landing.tile, landing.block_index).insert(slot);
   }
 }
 
@@ -169,25 +168,27 @@ void LocalMap::remove_seen_through(const RegisteredScan& scan, double elapsed_s)
     for (std::size_t b = 0; b < kBlocksPerTile; ++b) {
       MapBlock* block = tile->cells.block(b);
       if (block == nullptr || !seen_through_.count(key, b, *block)) continue;
-      const bool listed = block->stale();
       seen_through_count_ += block->remove_seen_through(limit);
-      list_if_stale({tile.get(), b}, listed);
+      waiting_in(*tile, b);
     }
   }
 }
 
-// A block that was stale before its change is `listed`.
-void LocalMap::list_if_stale(const StaleBlock& changed, bool listed) {
-  if (!listed && changed.tile->cells.block(changed.block)->stale()) {
-    stale_.push_back(changed);
+// Lists a block to be refitted.
+SlotSet& LocalMap::waiting_in(Tile& tile, std::size_t block) {
+  std::int32_t& index = tile.cells.block(block)->list_index;
+  if (index == MapBlock::kNotListed) {
+    index = static_cast<std::int32_t>(stale_.size());
+    stale_.push_back({&tile, block, {}});
   }
+  return stale_[static_cast<std::size_t>(index)].waiting;
 }
 
 void LocalMap::refit_stale() {
-  for (std::size_t i = 0; i < stale_.size(); ++i) {
-    if (i + 1 < stale_.size()) stale_[i + 1].tile->cells.block(stale_[i + 1].block)->prefetch_cells();
-    Tile& tile = *stale_[i].tile;
-    tile.changed = fitter_.refit(tile.cells, stale_[i].block) || tile.changed;
+  for (const StaleBlock& stale : stale_) {
+    Tile& tile = *stale.tile;
+    tile.changed = fitter_.refit(tile.cells, stale.block, stale.waiting) || tile.changed;
+    tile.cells.block(stale.block)->list_index = MapBlock::kNotListed;
   }
   stale_.clear();
 }

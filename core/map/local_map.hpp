@@ -62,9 +62,11 @@ class LocalMap {
     std::shared_ptr<const TileTree> tree;  // of cells.planes(), where the matcher wants one
     bool changed = true;                   // since cells.publish()
   };
+  // A block whose planes may be out of date, and its cells that wait for a fit.
   struct StaleBlock {
     Tile* tile = nullptr;
     std::size_t block = 0;
+    SlotSet waiting;
   };
 
   // A point on its way into the map. Cells lie all over the memory: for many points at once the block, then
@@ -82,7 +84,7 @@ class LocalMap {
   void observe_landings(std::size_t count, PoseMode mode);
   [[nodiscard]] Tile* recent_tile(const TileKey& key);
   void remove_seen_through(const RegisteredScan& scan, double elapsed_s);
-  void list_if_stale(const StaleBlock& changed, bool listed);
+  SlotSet& waiting_in(Tile& tile, std::size_t block);
   void refit_stale();
   void evict(const Eigen::Vector3d& p_map_base);
   void look_for_stored(const Eigen::Vector3d& p_map_base);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -20,8 +21,7 @@ namespace isobar {
 struct MapCell {
   CellMoments moments;
   std::uint32_t occupied_sub_cells = 0;  ///< one bit each of 3 x 3 x 3, x fastest
-  std::uint16_t slot : 15 = 0;           ///< in the block, see CellMask
-  std::uint16_t waiting : 1 = 0;         ///< for a fit
+  std::uint16_t slot = 0;                ///< in the block, see CellMask
   std::array<std::int8_t, 3> toward{};   ///< direction to its first observer, times 127
   std::uint8_t fitted_count = 0;         ///< moments.count() when a plane was last looked for
   std::uint8_t seen_through = 0;         ///< rays that passed, less observations
@@ -43,21 +43,20 @@ class MapBlock {
     std::uint8_t intensity = 0;
     int freeze = 0;  ///< see MapConfig::freeze_observations
   };
-  /// Observes a point in place `place` (0 … 511).
-  void observe(int place, const Observation& observation);
+  /// Observes a point in place `place` (0 … 511). Returns the slot whose plane should be fitted for it, or
+  /// kNoSlot.
+  int observe(int place, const Observation& observation);
+  static constexpr int kNoSlot = -1;
 
-  /// Begin to fetch from memory: what find() of a place reads first, then its cell; all cells.
+  /// Begin to fetch from memory: what find() of a place reads first, then its cell.
   void prefetch_mask(int place) const {
     mask_.prefetch(place);
     __builtin_prefetch(&cells_);
   }
-  void prefetch_cell(int place) const { __builtin_prefetch(cells_.data() + mask_.rank(place)); }
-  void prefetch_cells() const {
-    constexpr std::size_t kLine = 64;
-    const char* bytes = reinterpret_cast<const char*>(cells_.data());
-    for (std::size_t at = 0; at < cells_.size() * sizeof(MapCell); at += kLine) {
-      __builtin_prefetch(bytes + at);
-    }
+  void prefetch_cell(int place) const {
+    const char* bytes = reinterpret_cast<const char*>(cells_.data() + mask_.rank(place));
+    __builtin_prefetch(bytes);  // a cell lies in two lines of the cache more often than in one
+    __builtin_prefetch(bytes + sizeof(MapCell) - 1);
   }
 
   [[nodiscard]] const MapCell* find(int slot) const {
@@ -75,13 +74,14 @@ class MapBlock {
   /// Takes out cells whose seen_through is above `limit`; returns how many.
   std::size_t remove_seen_through(std::uint8_t limit);
 
-  /// True if planes() may be out of date: refit() is due.
-  [[nodiscard]] bool stale() const { return stale_; }
-
-  /// Asks `fit(cell, plane)` for the planes of the cells that wait for it, false where there is none, and
-  /// makes planes() anew if they are others than before. Returns true if so. `scratch` is overwritten.
+  /// Asks `fit(cell, plane)` for the planes of the cells in `waiting`, false where there is none, and makes
+  /// planes() anew if they are others than before. Returns true if so. `scratch` is overwritten.
   template <typename Fit>
-  bool refit(Fit fit, std::vector<PackedPlane>& scratch);
+  bool refit(const SlotSet& waiting, Fit fit, std::vector<PackedPlane>& scratch);
+
+  /// Its owner's: where the block stands in a list of those to refit, kNotListed where it does not.
+  std::int32_t list_index = kNotListed;
+  static constexpr std::int32_t kNotListed = -1;
 
   /// Immutable; null where no cell has a plane.
   [[nodiscard]] const std::shared_ptr<const PlaneBlock>& planes() const { return planes_; }
@@ -94,34 +94,44 @@ class MapBlock {
  private:
   MapCell& find_or_add(int slot);
   [[nodiscard]] bool is_other_side(int place, const Eigen::Vector3f& toward) const;
-  bool replace_planes(const CellMask& mask, const std::vector<PackedPlane>& planes);
+  void replace_planes(const CellMask& mask, const std::vector<PackedPlane>& planes);
 
   CellMask mask_;
   std::vector<MapCell> cells_;
   std::shared_ptr<const PlaneBlock> planes_;
-  bool stale_ = false;
 };
 
+// Cells that do not wait keep their planes and are not even read: they would come from far away in memory.
 template <typename Fit>
-bool MapBlock::refit(Fit fit, std::vector<PackedPlane>& scratch) {
-  stale_ = false;
+bool MapBlock::refit(const SlotSet& waiting, Fit fit, std::vector<PackedPlane>& scratch) {
   scratch.clear();
+  bool changed = false;
   CellMask mask;
-  for (MapCell& cell : cells_) {
-    const PackedPlane* plane = plane_at(cell.slot);
-    PackedPlane fitted;
-    if (cell.waiting != 0) {
-      plane = fit(std::as_const(cell), fitted) ? &fitted : nullptr;
-      cell.waiting = 0;
-      cell.fitted_count = static_cast<std::uint8_t>(cell.moments.count());
+  const PackedPlane* next_old = planes_ ? planes_->planes.data() : nullptr;
+  for (std::size_t i = 0; i < CellMask::kWords; ++i) {
+    const std::uint64_t had = planes_ ? planes_->mask.word(i) : 0;
+    const std::uint64_t due = waiting.words[i] & mask_.word(i);
+    std::uint64_t has = had & mask_.word(i);
+    changed = changed || has != had;  // the cell was seen through
+    for (std::uint64_t left = had | due; left != 0; left &= left - 1) {
+      const std::uint64_t bit = left & -left;
+      const PackedPlane* old = (had & bit) != 0 ? next_old++ : nullptr;
+      PackedPlane plane;
+      if ((due & bit) != 0) {
+        MapCell& cell = cells_[mask_.rank(static_cast<int>(64 * i) + std::countr_zero(bit))];
+        cell.fitted_count = static_cast<std::uint8_t>(cell.moments.count());
+        const bool fitted = fit(std::as_const(cell), plane);
+        changed = changed || fitted != (old != nullptr) || (fitted && plane != *old);
+        has = fitted ? has | bit : has & ~bit;
+      } else if (old != nullptr) {
+        plane = *old;
+      }
+      if ((has & bit) != 0) scratch.push_back(plane);
     }
-    if (plane != nullptr) {
-      mask.mark(cell.slot);
-      scratch.push_back(*plane);
-    }
+    mask.set_word(i, has);
   }
-  mask.count_ranks();
-  return replace_planes(mask, scratch);
+  if (changed) replace_planes(mask, scratch);
+  return changed;
 }
 
 }  // namespace isobar

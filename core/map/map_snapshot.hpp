@@ -23,8 +23,13 @@ struct PlaneMatch {
   Eigen::Vector3f q_local = Eigen::Vector3f::Zero();  ///< a point on the plane
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();   ///< unit normal towards the observer
   bool found = false;
-  bool in_own_cell = false;            ///< the matcher's: found by the cell alone
-  CellIndex cell = CellIndex::Zero();  ///< the matcher's: cell of the point then
+
+  // What a matcher keeps for its next call.
+  bool in_own_cell = false;                              ///< found by the cell alone
+  bool nearest_known = false;                            ///< the plane is the nearest to p_searched
+  CellIndex cell = CellIndex::Zero();                    ///< of the point then
+  Eigen::Vector3f p_searched = Eigen::Vector3f::Zero();  ///< the point when planes around it were looked for
+  float clear_m = 0.0F;  ///< there was no other plane within this distance of p_searched
 };
 
 /// A map that does not change. This class is the empty one. Any number of threads may read it at once.

@@ -65,10 +65,10 @@ class PlaneFitter::Surroundings {
   std::bitset<27> known_;
 };
 
-bool PlaneFitter::refit(const MapTile& tile, std::size_t block_index) {
+bool PlaneFitter::refit(const MapTile& tile, std::size_t block_index, const SlotSet& waiting) {
   Surroundings around(tile, block_index, find_tile_);
-  return tile.block(block_index)
-      ->refit([&](const MapCell& cell, PackedPlane& plane) { return fit(around, cell, plane); }, scratch_);
+  const auto fit_cell = [&](const MapCell& cell, PackedPlane& plane) { return fit(around, cell, plane); };
+  return tile.block(block_index)->refit(waiting, fit_cell, scratch_);
 }
 
 Moments PlaneFitter::neighbourhood(Surroundings& around, const MapCell& centre) const {

@@ -21,9 +21,8 @@ class PlaneFitter {
 
   PlaneFitter(const MapConfig& config, FindTile find_tile);
 
-  /// Fits the planes of the cells of block `block` of `tile` that wait for it. True if the block's planes
-  /// changed.
-  bool refit(const MapTile& tile, std::size_t block);
+  /// Fits the planes of the cells `waiting` of block `block` of `tile`. True if the block's planes changed.
+  bool refit(const MapTile& tile, std::size_t block, const SlotSet& waiting);
 
  private:
   // A cell's own plane must be this much better than required, else its neighbours help.

@@ -15,8 +15,22 @@ namespace {
 // it is asked seldom.
 constexpr float kOwnCellResidualM = 0.05F;
 
-bool belongs(const PlaneMatch& match, const Eigen::Vector3f& p_local) {
-  return std::abs(match.normal.dot(p_local - match.q_local)) < kOwnCellResidualM;
+bool belongs(const Eigen::Vector3f& p_local, const Eigen::Vector3f& q_local, const Eigen::Vector3f& normal) {
+  return std::abs(normal.dot(p_local - q_local)) < kOwnCellResidualM;
+}
+
+// True if what PlaneHash::Search::around() found, or did not find, from p_searched is the answer from here
+// too; `match.found` then says whether it lies within `limit_m`. By the triangle inequality all other planes
+// are farther than what was clear less the way since.
+bool still_nearest(const Eigen::Vector3f& p_local, float limit_m, PlaneMatch& match) {
+  const float clear_m = match.clear_m - (p_local - match.p_searched).norm();
+  if (!match.nearest_known) {
+    match.found = false;
+    return clear_m >= limit_m;
+  }
+  const float distance_m = (match.q_local - p_local).norm();
+  match.found = distance_m < limit_m;
+  return distance_m <= clear_m;
 }
 
 std::size_t count_planes(const std::vector<std::shared_ptr<const PlaneTile>>& tiles) {
@@ -37,7 +51,7 @@ class PlaneHash::Search {
         query_(query),
         squared_limit_m2_(query.max_distance_m * query.max_distance_m) {}
 
-  // The plane of the point's own cell.
+  // The plane of the point's own cell, if the point belongs to it.
   bool own_cell(const CellIndex& cell, const Eigen::Vector3f& p_local, PlaneMatch& match) {
     const PlaneBlock* block = find_block(cell);
     if (block == nullptr) {
@@ -46,10 +60,15 @@ class PlaneHash::Search {
     const int place = place_of(cell);
     const Eigen::Vector3f centre_local = block_centre_local(query_.frame, first_of_block(cell));
     for (int side = 0; side < kSides; ++side) {
-      float squared_m2 = squared_limit_m2_;
-      const PackedPlane* plane = block->find(side * kPlacesPerBlock + place);
-      if (plane != nullptr && take_if_nearer(*plane, centre_local, p_local, squared_m2, match)) {
-        return belongs(match, p_local);
+      const PackedPlane* packed = block->find(side * kPlacesPerBlock + place);
+      if (packed == nullptr) continue;
+      const Eigen::Vector3f q_local = centre_local + packed->q_block(query_.frame.cell_m);
+      const Eigen::Vector3f normal = packed->unit_normal();
+      if ((q_local - p_local).squaredNorm() < squared_limit_m2_ && faces(normal, q_local)) {
+        if (!belongs(p_local, q_local, normal)) return false;
+        match.q_local = q_local;
+        match.normal = normal;
+        return true;
       }
     }
     return false;
@@ -59,8 +78,7 @@ class PlaneHash::Search {
   bool around(const Eigen::Vector3f& p_local, PlaneMatch& match) {
     const CellIndex first = query_.frame.cell_of(p_local.array() - query_.max_distance_m);
     const CellIndex last = query_.frame.cell_of(p_local.array() + query_.max_distance_m);
-    float squared_m2 = squared_limit_m2_;
-    bool found = false;
+    TwoNearest nearest{squared_limit_m2_, squared_limit_m2_};
     for_each_block(first, last,
                    [&](const CellIndex& block_first, const CellIndex& low, const CellIndex& high) {
                      const PlaneBlock* block = find_block(block_first);
@@ -69,14 +87,22 @@ class PlaneHash::Search {
                      for (int side = 0; side < kSides; ++side) {
                        for_each_in_window(block->mask, side, low, high, [&](int slot) {
                          const PackedPlane& plane = block->planes[block->mask.rank(slot)];
-                         found = take_if_nearer(plane, centre_local, p_local, squared_m2, match) || found;
+                         take_if_nearer(plane, centre_local, p_local, nearest, match);
                        });
                      }
                    });
-    return found;
+    match.p_searched = p_local;
+    match.clear_m = std::sqrt(nearest.second_m2);
+    match.nearest_known = nearest.first_m2 < squared_limit_m2_;
+    return match.nearest_known;
   }
 
  private:
+  // Squared distances of the nearest planes [m^2]; the limit where there is none.
+  struct TwoNearest {
+    float first_m2, second_m2;
+  };
+
   const PlaneBlock* find_block(const CellIndex& cell) {
     const TileKey key = tile_of(cell);
     if (!known_ || key != key_) {
@@ -87,21 +113,28 @@ class PlaneHash::Search {
     return tile_ != nullptr ? tile_->blocks[block_of(cell)].get() : nullptr;
   }
 
-  bool take_if_nearer(const PackedPlane& plane, const Eigen::Vector3f& centre_local,
-                      const Eigen::Vector3f& p_local, float& squared_m2, PlaneMatch& match) const {
+  [[nodiscard]] bool faces(const Eigen::Vector3f& normal, const Eigen::Vector3f& q_local) const {
+    return normal.dot(query_.viewpoint_local - q_local) > 0.0F;
+  }
+
+  void take_if_nearer(const PackedPlane& plane, const Eigen::Vector3f& centre_local,
+                      const Eigen::Vector3f& p_local, TwoNearest& nearest, PlaneMatch& match) const {
     const Eigen::Vector3f q_local = centre_local + plane.q_block(query_.frame.cell_m);
     const float distance2 = (q_local - p_local).squaredNorm();
-    if (!(distance2 < squared_m2)) {
-      return false;
+    if (!(distance2 < nearest.second_m2)) {
+      return;
     }
     const Eigen::Vector3f normal = plane.unit_normal();
-    if (!(normal.dot(query_.viewpoint_local - q_local) > 0.0F)) {
-      return false;
+    if (!faces(normal, q_local)) {
+      return;
     }
-    squared_m2 = distance2;
+    if (!(distance2 < nearest.first_m2)) {
+      nearest.second_m2 = distance2;
+      return;
+    }
+    nearest = {distance2, nearest.first_m2};
     match.q_local = q_local;
     match.normal = normal;
-    return true;
   }
 
   const TileDirectory<PlaneTile>& directory_;
@@ -123,14 +156,21 @@ void PlaneHash::match(const MatchQuery& query, std::span<const Eigen::Vector3f> 
     PlaneMatch& match = matches[i];
     const CellIndex cell = query.frame.cell_of(p_local[i]);
     // A point that stays in its cell keeps its plane.
-    if (match.in_own_cell && match.cell == cell) {
-      match.found =
-          (match.q_local - p_local[i]).squaredNorm() < squared_limit_m2 && belongs(match, p_local[i]);
-      if (match.found) continue;
+    if (match.in_own_cell && match.cell == cell &&
+        (match.q_local - p_local[i]).squaredNorm() < squared_limit_m2 &&
+        belongs(p_local[i], match.q_local, match.normal)) {
+      match.found = true;
+      continue;
     }
     match.cell = cell;
     match.in_own_cell = search.own_cell(cell, p_local[i], match);
-    match.found = match.in_own_cell || search.around(p_local[i], match);
+    if (match.in_own_cell) {
+      match.found = true;
+      match.nearest_known = false;
+      match.clear_m = 0.0F;
+    } else if (!still_nearest(p_local[i], query.max_distance_m, match)) {
+      match.found = search.around(p_local[i], match);
+    }
   }
 }
 

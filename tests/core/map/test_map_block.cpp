@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 #include <random>
 #include <set>
 #include <vector>
@@ -21,11 +22,18 @@ using isobar::MapCell;
 using isobar::MapTile;
 using isobar::Moments;
 using isobar::PackedPlane;
+using isobar::SlotSet;
 
 constexpr float kCellM = 0.25F;
 
 MapBlock::Observation observation_at(const Eigen::Vector3f& fraction) {
   return {fraction, Eigen::Vector3f::UnitX(), 40, 80};
+}
+
+SlotSet all_slots() {
+  SlotSet all;
+  all.words.fill(~std::uint64_t{0});
+  return all;
 }
 
 // A tile with a few hundred cells, of which two thirds have planes.
@@ -44,7 +52,7 @@ MapTile random_tile(std::mt19937& random) {
       plane = PackedPlane::of({0.1F, 0.2F, fraction(random)}, Eigen::Vector3f::UnitX(), kCellM);
       return cell.slot % 3 != 0;
     };
-    tile.block_or_add(i).refit(two_thirds, scratch);
+    tile.block_or_add(i).refit(all_slots(), two_thirds, scratch);
   }
   tile.publish();
   return tile;
@@ -236,26 +244,89 @@ TEST_CASE("published planes stay as they are while the block goes on") {
     fitted = plane;
     return cell.slot < isobar::kPlacesPerBlock;
   };
-  CHECK_FALSE(block.stale());
   block.observe(77, observation_at({0.5F, 0.5F, 0.5F}));
-  CHECK(block.stale());
-  CHECK(block.refit(on_this_side, scratch));
-  CHECK_FALSE(block.stale());
+  CHECK(block.refit(all_slots(), on_this_side, scratch));
   const auto published = block.planes();
   REQUIRE(published->planes.size() == 1);
-  block.observe(77, observation_at({0.5F, 0.5F, 0.5F}));
-  CHECK(block.stale());
-  CHECK_FALSE(block.refit(on_this_side, scratch));  // the same plane again: nothing to hand over
+  CHECK_FALSE(block.refit(all_slots(), on_this_side, scratch));  // the same plane again: nothing to hand over
   CHECK(block.planes() == published);
   // From the other side it is another cell: a thin wall has two.
   MapBlock::Observation behind = observation_at({0.5F, 0.5F, 0.5F});
   behind.toward = -behind.toward;
-  block.observe(77, behind);
+  CHECK(block.observe(77, behind) == 77 + isobar::kPlacesPerBlock);
   CHECK(block.find(77 + isobar::kPlacesPerBlock) != nullptr);
-  block.observe(77, observation_at({0.5F, 0.5F, 0.5F}));
-  CHECK(block.refit([](const MapCell&, PackedPlane&) { return false; }, scratch));
+  CHECK(block.refit(
+      all_slots(), [](const MapCell&, PackedPlane&) { return false; }, scratch));
   CHECK(block.planes() == nullptr);
   CHECK(published->find(77)->q == plane.q);
+}
+
+TEST_CASE("a cell asks for a fit whenever twice as much is known of it, and when it freezes") {
+  MapBlock block;
+  std::vector<PackedPlane> scratch;
+  const auto no_plane = [](const MapCell&, PackedPlane&) { return false; };
+  std::vector<int> asked_at;
+  for (int count = 1; count <= 100; ++count) {
+    if (const int slot = block.observe(300, observation_at({0.5F, 0.5F, 0.5F})); slot != MapBlock::kNoSlot) {
+      CHECK(slot == 300);
+      asked_at.push_back(count);
+      SlotSet waiting;
+      waiting.insert(slot);
+      CHECK_FALSE(block.refit(waiting, no_plane, scratch));
+    }
+  }
+  CHECK(asked_at == std::vector{1, 2, 4, 8, 16, 32, 64, 80});
+}
+
+TEST_CASE(
+    "a refit gives the cells that wait their new planes, keeps the others, drops those without a cell") {
+  std::mt19937 random(8);
+  std::uniform_int_distribution<int> place(0, isobar::kPlacesPerBlock - 1);
+  std::uniform_int_distribution<int> chance(0, 3);
+  MapBlock block;
+  std::vector<PackedPlane> scratch;
+  std::map<int, PackedPlane> expected;
+  for (int round = 0; round < 60; ++round) {
+    SlotSet waiting;
+    std::set<int> due;
+    for (int i = 0; i < 20; ++i) {
+      const int at = place(random);
+      block.observe(at, observation_at({0.5F, 0.5F, 0.5F}));
+      if (chance(random) != 0) {
+        waiting.insert(at);
+        due.insert(at);
+      }
+    }
+    for (MapCell& cell : block.cells()) {
+      cell.seen_through = chance(random) == 0 ? 9 : 0;
+      if (cell.seen_through > 0) {
+        due.erase(cell.slot);
+        expected.erase(cell.slot);
+      }
+    }
+    block.remove_seen_through(5);
+    std::set<int> asked;
+    const auto fit = [&](const MapCell& cell, PackedPlane& plane) {
+      asked.insert(cell.slot);
+      const auto q = static_cast<float>(round);
+      plane = PackedPlane::of({0.01F * q, 0.0F, 0.0F}, Eigen::Vector3f::UnitX(), kCellM);
+      const bool is_plane = (cell.slot + round) % 3 != 0;
+      if (is_plane) {
+        expected[cell.slot] = plane;
+      } else {
+        expected.erase(cell.slot);
+      }
+      return is_plane;
+    };
+    block.refit(waiting, fit, scratch);
+    CHECK(asked == due);
+    for (int slot = 0; slot < CellMask::kSlots; ++slot) {
+      const PackedPlane* plane = block.plane_at(slot);
+      REQUIRE((plane != nullptr) == expected.contains(slot));
+      if (plane != nullptr) CHECK(*plane == expected.at(slot));
+    }
+  }
+  CHECK(expected.size() > 20);
 }
 
 TEST_CASE("a tile comes back from its bytes as it was, and goes on as it would have") {
@@ -314,7 +385,7 @@ TEST_CASE("a cell of 0.25 m costs at most 64 bytes with its plane") {
       plane = PackedPlane::of({0.0F, 0.0F, 0.0F}, Eigen::Vector3f::UnitY(), kCellM);
       return true;
     };
-    if (MapBlock* block = tile.block(i)) block->refit(wall, scratch);
+    if (MapBlock* block = tile.block(i)) block->refit(all_slots(), wall, scratch);
   }
   tile.publish();
   CHECK(tile.memory_bytes() <= 64 * tile.cell_count() + 8 * 1024);
