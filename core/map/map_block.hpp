@@ -54,7 +54,9 @@ class MapBlock {
     __builtin_prefetch(&cells_);
   }
   void prefetch_cell(int place) const {
-    const char* bytes = reinterpret_cast<const char*>(cells_.data() + mask_.rank(place));
+    const std::size_t at = mask_.rank(place);
+    if (at >= cells_.size()) return;
+    const char* bytes = reinterpret_cast<const char*>(&cells_[at]);
     __builtin_prefetch(bytes);  // a cell lies in two lines of the cache more often than in one
     __builtin_prefetch(bytes + sizeof(MapCell) - 1);
   }
