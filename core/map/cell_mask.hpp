@@ -23,6 +23,7 @@ struct SlotSet {
     const auto at = static_cast<unsigned>(slot);
     words[at / 64] |= std::uint64_t{1} << at % 64;
   }
+  friend bool operator==(const SlotSet&, const SlotSet&) = default;
 };
 
 /// The same with the number of members below each: finding a member's rank takes one popcount.
@@ -33,46 +34,46 @@ class CellMask {
 
   friend bool operator==(const CellMask&, const CellMask&) = default;
 
-  [[nodiscard]] bool has(int slot) const { return (words_[index(slot)] >> bit(slot) & 1U) != 0; }
+  [[nodiscard]] bool has(int slot) const { return (members_.words[index(slot)] >> bit(slot) & 1U) != 0; }
 
   /// Begins to fetch what has() and rank() of a slot read.
   void prefetch(int slot) const {
-    __builtin_prefetch(&words_[index(slot)]);
+    __builtin_prefetch(&members_.words[index(slot)]);
     __builtin_prefetch(&ranks_[index(slot)]);
   }
 
   /// Number of members below `slot`: its index in a list of the members in order.
   [[nodiscard]] std::size_t rank(int slot) const {
-    const std::uint64_t below = words_[index(slot)] & ((std::uint64_t{1} << bit(slot)) - 1);
+    const std::uint64_t below = members_.words[index(slot)] & ((std::uint64_t{1} << bit(slot)) - 1);
     return ranks_[index(slot)] + static_cast<std::size_t>(std::popcount(below));
   }
 
   [[nodiscard]] std::size_t count() const {
-    return ranks_[kWords - 1] + static_cast<std::size_t>(std::popcount(words_[kWords - 1]));
+    return ranks_[kWords - 1] + static_cast<std::size_t>(std::popcount(members_.words[kWords - 1]));
   }
 
   void insert(int slot) {
-    words_[index(slot)] |= std::uint64_t{1} << bit(slot);
+    members_.insert(slot);
     update_ranks();
   }
   void erase(int slot) {
-    words_[index(slot)] &= ~(std::uint64_t{1} << bit(slot));
+    members_.words[index(slot)] &= ~(std::uint64_t{1} << bit(slot));
     update_ranks();
   }
 
   /// As insert(), but ranks are wrong until count_ranks().
-  void mark(int slot) { words_[index(slot)] |= std::uint64_t{1} << bit(slot); }
+  void mark(int slot) { members_.insert(slot); }
   void count_ranks() { update_ranks(); }
 
   /// Members of layer z (0 … 7) of a side: bit y * 8 + x.
   [[nodiscard]] std::uint64_t layer(int side, int z) const {
     const int at = side * kBlockCells + z;
-    return words_[static_cast<std::size_t>(at)];
+    return members_.words[static_cast<std::size_t>(at)];
   }
 
   /// The slots 64 i … 64 i + 63 as bits. Ranks are wrong after set_word() until count_ranks().
-  [[nodiscard]] std::uint64_t word(std::size_t i) const { return words_[i]; }
-  void set_word(std::size_t i, std::uint64_t members) { words_[i] = members; }
+  [[nodiscard]] std::uint64_t word(std::size_t i) const { return members_.words[i]; }
+  void set_word(std::size_t i, std::uint64_t members) { members_.words[i] = members; }
 
  private:
   [[nodiscard]] static std::size_t index(int slot) { return static_cast<std::size_t>(slot) / 64; }
@@ -82,11 +83,11 @@ class CellMask {
     std::uint16_t sum = 0;
     for (std::size_t i = 0; i < kWords; ++i) {
       ranks_[i] = sum;
-      sum = static_cast<std::uint16_t>(sum + std::popcount(words_[i]));
+      sum = static_cast<std::uint16_t>(sum + std::popcount(members_.words[i]));
     }
   }
 
-  std::array<std::uint64_t, kWords> words_{};
+  SlotSet members_;
   std::array<std::uint16_t, kWords> ranks_{};
 };
 

@@ -13,8 +13,7 @@ namespace {
 constexpr float kOtherSide = -0.15F;
 // Planes are fitted again when twice as much is known. Over four sizes of the sample and 24 recordings this
 // is as accurate as after an eighth more.
-constexpr int kRefitNumerator = 2;
-constexpr int kRefitDenominator = 1;
+constexpr int kRefitFactor = 2;
 
 std::uint32_t sub_cell_bit(const Eigen::Vector3f& fraction) {
   const auto third = [](float f) {
@@ -81,8 +80,7 @@ int MapBlock::observe(int place, const Observation& observation) {
       static_cast<std::uint8_t>((cell.intensity * count + observation.intensity + count / 2) / (count + 1));
   cell.moments.add(observation.fraction);
   // A cell without a plane is tried again after as much.
-  const bool enough = (count + 1) * kRefitDenominator >= cell.fitted_count * kRefitNumerator ||
-                      count + 1 >= observation.freeze;
+  const bool enough = count + 1 >= cell.fitted_count * kRefitFactor || count + 1 >= observation.freeze;
   return enough ? slot : kNoSlot;
 }
 
@@ -94,16 +92,6 @@ std::size_t MapBlock::remove_seen_through(std::uint8_t limit) {
   }
   std::erase_if(cells_, gone);
   return before - cells_.size();
-}
-
-void MapBlock::replace_planes(const CellMask& mask, const std::vector<PackedPlane>& planes) {
-  if (planes.empty()) {
-    planes_ = nullptr;
-    return;
-  }
-  auto next = std::make_shared<PlaneBlock>(mask, planes);
-  next->mask.count_ranks();
-  planes_ = std::move(next);
 }
 
 void MapBlock::restore(std::vector<MapCell> cells, std::shared_ptr<const PlaneBlock> planes) {

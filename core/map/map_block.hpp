@@ -96,7 +96,6 @@ class MapBlock {
  private:
   MapCell& find_or_add(int slot);
   [[nodiscard]] bool is_other_side(int place, const Eigen::Vector3f& toward) const;
-  void replace_planes(const CellMask& mask, const std::vector<PackedPlane>& planes);
 
   CellMask mask_;
   std::vector<MapCell> cells_;
@@ -132,7 +131,10 @@ bool MapBlock::refit(const SlotSet& waiting, Fit fit, std::vector<PackedPlane>& 
     }
     mask.set_word(i, has);
   }
-  if (changed) replace_planes(mask, scratch);
+  if (changed) {
+    mask.count_ranks();
+    planes_ = scratch.empty() ? nullptr : std::make_shared<const PlaneBlock>(mask, scratch);
+  }
   return changed;
 }
 

@@ -43,12 +43,11 @@ class HeaderText {
     }
   }
 
-  [[nodiscard]] std::int64_t whole(const char* key, std::int64_t only, const std::string& rule) const {
+  void must_be(const char* key, std::int64_t only, const std::string& rule) const {
     const toml::node& node = entry(key, rule);
     // value_exact: value would first cast a float to an integer, which is undefined for 1e72.
     const auto value = node.value_exact<std::int64_t>();
     if (!value || *value != only) fail(node, key, rule);
-    return *value;
   }
 
   [[nodiscard]] double number(const char* key, double lowest, double highest, const std::string& rule) const {
@@ -95,9 +94,9 @@ std::string holder_of(const fs::path& lock_file) {
 
 MapHeader read_map_header(const fs::path& directory) {
   const HeaderText text(directory / "map.toml");
-  static_cast<void>(text.whole(
+  text.must_be(
       "format", MapHeader::kFormat,
-      "must be " + std::to_string(MapHeader::kFormat) + ": this program reads no other format of map"));
+      "must be " + std::to_string(MapHeader::kFormat) + ": this program reads no other format of map");
   MapHeader header;
   header.tile_m = text.number("tile_m", 1e-3, kLargestTileM, "must be a number within 0.001 … 1000 m");
   header.cell_m = text.number("cell_m", 1e-3, header.tile_m, "must be a number within 0.001 m … tile_m");
