@@ -28,14 +28,14 @@ Prior ignorant_prior(std::int64_t stamp_ns) {
 
 class CloudSet : public DataSet {
  public:
-  CloudSet(const std::filesystem::path& folder, double stop_after_s) : files_(cloud_files(folder)) {
+  CloudSet(const std::filesystem::path& folder, const DataSetOptions& options) : files_(cloud_files(folder)) {
     if (files_.empty()) {
       throw DataError(folder.string() + ": holds no recording.toml, no *.pcd and no *.bin");
     }
-    const double most = stop_after_s * 1e9 / static_cast<double>(kStepNs) + 1.0;
+    const double most = options.stop_after_s * 1e9 / static_cast<double>(kStepNs) + 1.0;
     if (most < static_cast<double>(files_.size())) files_.resize(static_cast<std::size_t>(most));
     name_ = folder.filename().string();
-    settings_ = stage_settings(Config{});
+    settings_ = stage_settings(options.config);
     settings_.method = Method::k6Dof;
     settings_.T_base_lidar = Eigen::Isometry3d::Identity();
   }
@@ -60,8 +60,8 @@ class CloudSet : public DataSet {
 
 }  // namespace
 
-std::unique_ptr<DataSet> open_clouds(const std::filesystem::path& folder, double stop_after_s) {
-  return std::make_unique<CloudSet>(folder, stop_after_s);
+std::unique_ptr<DataSet> open_clouds(const std::filesystem::path& folder, const DataSetOptions& options) {
+  return std::make_unique<CloudSet>(folder, options);
 }
 
 }  // namespace isobar::bench

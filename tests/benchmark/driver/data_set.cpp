@@ -38,11 +38,10 @@ std::unique_ptr<DataSet> open_data_set(const std::string& what, const DataSetOpt
   std::filesystem::path path = std::filesystem::path(what).lexically_normal();
   if (path.filename().empty()) path = path.parent_path();  // "folder/"
   if (std::filesystem::is_directory(path)) {
-    return std::filesystem::exists(path / recording::kManifestFile)
-               ? open_recording(path, options.stop_after_s)
-               : open_clouds(path, options.stop_after_s);
+    return std::filesystem::exists(path / recording::kManifestFile) ? open_recording(path, options)
+                                                                    : open_clouds(path, options);
   }
-  return open_recording(simulated(what, options), options.stop_after_s);
+  return open_recording(simulated(what, options), options);
 }
 
 }  // namespace isobar::bench

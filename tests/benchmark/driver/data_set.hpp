@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "config/config.hpp"
 #include "core/estimates.hpp"
 #include "core/evaluation/trajectory.hpp"
 #include "core/samples.hpp"
@@ -47,13 +48,14 @@ struct DataSetOptions {
   std::uint64_t seed = 1;  ///< of scenarios
   double stop_after_s = std::numeric_limits<double>::infinity();
   std::filesystem::path cache = "build/benchmark/data";  ///< where recordings of scenarios are kept
+  Config config;                                         ///< sensors and mounts come from the recording
 };
 
 /// `what`: a folder with recording.toml, a folder with *.pcd or *.bin, else the name of a scenario, which is
 /// simulated once and kept. Throws DataError, UsageError.
 std::unique_ptr<DataSet> open_data_set(const std::string& what, const DataSetOptions& options);
 
-std::unique_ptr<DataSet> open_recording(const std::filesystem::path& folder, double stop_after_s);
-std::unique_ptr<DataSet> open_clouds(const std::filesystem::path& folder, double stop_after_s);
+std::unique_ptr<DataSet> open_recording(const std::filesystem::path& folder, const DataSetOptions& options);
+std::unique_ptr<DataSet> open_clouds(const std::filesystem::path& folder, const DataSetOptions& options);
 
 }  // namespace isobar::bench

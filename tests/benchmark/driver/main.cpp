@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "config/config_io.hpp"
 #include "core/errors.hpp"
 #include "tests/benchmark/driver/compare.hpp"
 #include "tests/benchmark/driver/driver.hpp"
@@ -21,7 +22,8 @@ void write_json(const std::string& file, const Json& value) {
   if (!stream.flush()) throw DataError(file + ": cannot be written");
 }
 
-void add_run(CLI::App& app, DriverOptions& options, std::string& out, std::string& micro) {
+void add_run(CLI::App& app, DriverOptions& options, std::string& config, std::string& out,
+             std::string& micro) {
   CLI::App* run = app.add_subcommand("run", "Measure on recordings, scenarios and clouds");
   run->add_option("DATA", options.data, "recording folder, folder of *.pcd or *.bin, or scenario")
       ->required();
@@ -30,6 +32,8 @@ void add_run(CLI::App& app, DriverOptions& options, std::string& out, std::strin
       ->check(CLI::PositiveNumber);
   run->add_option("--cache", options.data_options.cache, "folder for recordings of scenarios")
       ->capture_default_str();
+  run->add_option("--config", config, "TOML file; sensors and mounts come from the recording")
+      ->check(CLI::ExistingFile);
   run->add_option("--repeat", options.repeat, "passes; of each figure of a scan the median is taken")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
@@ -42,6 +46,7 @@ void add_run(CLI::App& app, DriverOptions& options, std::string& out, std::strin
       ->check(CLI::ExistingFile);
   run->add_option("--out", out, "file for the result as JSON");
   run->callback([&] {
+    if (!config.empty()) options.data_options.config = load_config(config);
     Json result = run_benchmark(options);
     if (!micro.empty()) result["micro"] = read_json(micro)["benchmarks"];
     print_tables(result);
@@ -67,11 +72,12 @@ int main_with_errors(int argc, char** argv) {
   CLI::App app{"isobar_benchmark: what registration and map cost a scan. Times are CPU times of the thread."};
   app.require_subcommand(1);
   DriverOptions options;
+  std::string config;
   std::string out;
   std::string micro;
   std::vector<std::string> a;
   std::vector<std::string> b;
-  add_run(app, options, out, micro);
+  add_run(app, options, config, out, micro);
   add_compare(app, a, b, out);
   try {
     app.parse(argc, argv);

@@ -142,11 +142,11 @@ evaluation::Trajectory reference_of(const std::filesystem::path& folder,
 
 class RecordingSet : public DataSet {
  public:
-  RecordingSet(std::filesystem::path folder, double stop_after_s)
-      : folder_(std::move(folder)), stop_after_s_(stop_after_s) {
+  RecordingSet(std::filesystem::path folder, const DataSetOptions& options)
+      : folder_(std::move(folder)), stop_after_s_(options.stop_after_s) {
     name_ = folder_.filename().string();
     const recording::RecordingReader reader(folder_);
-    settings_ = stage_settings(with_sensors_of(reader.manifest(), Config{}));
+    settings_ = stage_settings(with_sensors_of(reader.manifest(), options.config));
     reference_ = reference_of(folder_, reader.manifest());
   }
 
@@ -170,8 +170,8 @@ class RecordingSet : public DataSet {
 
 }  // namespace
 
-std::unique_ptr<DataSet> open_recording(const std::filesystem::path& folder, double stop_after_s) {
-  return std::make_unique<RecordingSet>(folder, stop_after_s);
+std::unique_ptr<DataSet> open_recording(const std::filesystem::path& folder, const DataSetOptions& options) {
+  return std::make_unique<RecordingSet>(folder, options);
 }
 
 }  // namespace isobar::bench
