@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The grid of the map: cells, blocks of 8 x 8 x 8 cells, tiles of 4 x 4 x 4 blocks. With cells of 0.25 m a
-// block is 2 m and a tile 8 m wide.
+// The grid of the map: cells, blocks of 8 x 8 x 8 cells, tiles of 4 x 4 x 4 blocks. With cells of 0.275 m a
+// block is 2.2 m and a tile 8.8 m wide.
 #pragma once
 
 #include <Eigen/Core>

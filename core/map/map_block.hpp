@@ -22,14 +22,17 @@ struct MapCell {
   CellMoments moments;
   std::uint32_t occupied_sub_cells = 0;  ///< one bit each of 3 x 3 x 3, x fastest
   std::uint16_t slot = 0;                ///< in the block, see CellMask
-  std::array<std::int8_t, 3> toward{};   ///< direction to its first observer, times 127
-  std::uint8_t fitted_count = 0;         ///< moments.count() when a plane was last looked for
+  std::array<std::int8_t, 3> facing{};   ///< its plane's normal, before there is one the way to its first
+                                         ///< observer; unit, times 127
+  std::uint8_t fitted_count : 7 = 0;     ///< moments.count() when a plane was last looked for
+  std::uint8_t has_plane : 1 = 0;        ///< as of the last look
   std::uint8_t seen_through = 0;         ///< rays that passed, less observations
   std::uint8_t intensity = 0;            ///< mean of the points' reflectivity
 
-  [[nodiscard]] Eigen::Vector3f toward_vector() const {
-    return Eigen::Vector3f(toward[0], toward[1], toward[2]) / 127.0F;
+  [[nodiscard]] Eigen::Vector3f facing_vector() const {
+    return Eigen::Vector3f(facing[0], facing[1], facing[2]) * (1.0F / 127.0F);
   }
+  void set_facing(const Eigen::Vector3f& unit);
 };
 static_assert(sizeof(MapCell) == 44);
 
@@ -95,7 +98,6 @@ class MapBlock {
 
  private:
   MapCell& find_or_add(int slot);
-  [[nodiscard]] bool is_other_side(int place, const Eigen::Vector3f& toward) const;
 
   CellMask mask_;
   std::vector<MapCell> cells_;
@@ -120,8 +122,10 @@ bool MapBlock::refit(const SlotSet& waiting, Fit fit, std::vector<PackedPlane>& 
       PackedPlane plane;
       if ((due & bit) != 0) {
         MapCell& cell = cells_[mask_.rank(static_cast<int>(64 * i) + std::countr_zero(bit))];
-        cell.fitted_count = static_cast<std::uint8_t>(cell.moments.count());
+        cell.fitted_count = static_cast<std::uint8_t>(cell.moments.count()) & 0x7FU;
         const bool fitted = fit(std::as_const(cell), plane);
+        cell.has_plane = fitted ? 1 : 0;
+        if (fitted) cell.set_facing(plane.unit_normal());
         changed = changed || fitted != (old != nullptr) || (fitted && plane != *old);
         has = fitted ? has | bit : has & ~bit;
       } else if (old != nullptr) {

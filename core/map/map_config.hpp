@@ -18,7 +18,7 @@ struct MapConfig {
   Matcher matcher = Matcher::kPlaneHash;
   /// Edge of a plane cell [m], 0.1 … 1. Smaller follows finer indoor detail, larger needs fewer cells
   /// outdoors.
-  double cell_m = 0.25;
+  double cell_m = 0.275;
   /// Tiles whose centre is farther than this from the robot leave memory [m], 20 … 200. Beyond the reach of
   /// the registration nothing is matched.
   double radius_m = 70.0;

@@ -21,7 +21,7 @@ PlaneCriteria criteria_of(const MapConfig& config) {
 
 // Seen from the same side.
 bool same_way(const MapCell& a, const MapCell& b) {
-  return a.toward[0] * b.toward[0] + a.toward[1] * b.toward[1] + a.toward[2] * b.toward[2] > 0;
+  return a.facing[0] * b.facing[0] + a.facing[1] * b.facing[1] + a.facing[2] * b.facing[2] > 0;
 }
 
 }  // namespace
@@ -120,7 +120,7 @@ bool PlaneFitter::fit(Surroundings& around, const MapCell& cell, PackedPlane& pa
   const Eigen::Vector3f q_cell = mean - off_plane * plane.normal;
   const CellIndex offset = offset_of(cell.slot % kPlacesPerBlock);
   const Eigen::Vector3f centre_block = (offset.cast<float>().array() + 0.5F * (1 - kBlockCells)) * cell_m_;
-  const bool away = plane.normal.dot(cell.toward_vector()) < 0.0F;
+  const bool away = plane.normal.dot(cell.facing_vector()) < 0.0F;
   packed = PackedPlane::of(centre_block + q_cell, away ? (-plane.normal).eval() : plane.normal, cell_m_);
   return true;
 }

@@ -261,7 +261,7 @@ TEST_CASE("published planes stay as they are while the block goes on") {
   CHECK(published->find(77)->q == plane.q);
 }
 
-TEST_CASE("a cell asks for a fit whenever twice as much is known of it, and when it freezes") {
+TEST_CASE("a cell asks for a fit whenever four times as much is known of it, and when it freezes") {
   MapBlock block;
   std::vector<PackedPlane> scratch;
   const auto no_plane = [](const MapCell&, PackedPlane&) { return false; };
@@ -275,7 +275,7 @@ TEST_CASE("a cell asks for a fit whenever twice as much is known of it, and when
       CHECK_FALSE(block.refit(waiting, no_plane, scratch));
     }
   }
-  CHECK(asked_at == std::vector{1, 2, 4, 8, 16, 32, 64, 80});
+  CHECK(asked_at == std::vector{1, 4, 16, 64, 80});
 }
 
 TEST_CASE(
