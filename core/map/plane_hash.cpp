@@ -15,6 +15,10 @@ namespace {
 // it is asked seldom.
 constexpr float kOwnCellResidualM = 0.05F;
 
+// Half of all points that have a plane around them have it this near [m], so that it is looked for there
+// first: a ball of twice the radius touches twice as many blocks.
+constexpr float kNearM = 0.35F;
+
 bool belongs(const Eigen::Vector3f& p_local, const Eigen::Vector3f& q_local, const Eigen::Vector3f& normal) {
   return std::abs(normal.dot(p_local - q_local)) < kOwnCellResidualM;
 }
@@ -74,11 +78,23 @@ class PlaneHash::Search {
     return false;
   }
 
-  // The plane whose point is nearest, among the cells that a ball of max_distance_m touches.
+  // The plane whose point is nearest, if within max_distance_m.
   bool around(const Eigen::Vector3f& p_local, PlaneMatch& match) {
-    const CellIndex first = query_.frame.cell_of(p_local.array() - query_.max_distance_m);
-    const CellIndex last = query_.frame.cell_of(p_local.array() + query_.max_distance_m);
-    TwoNearest nearest{squared_limit_m2_, squared_limit_m2_};
+    return (query_.max_distance_m > kNearM && within(kNearM, p_local, match)) ||
+           within(query_.max_distance_m, p_local, match);
+  }
+
+ private:
+  // Squared distances of the nearest planes [m^2]; the limit where there is none.
+  struct TwoNearest {
+    float first_m2, second_m2;
+  };
+
+  // The plane whose point is nearest, among the cells that a ball of `limit_m` touches.
+  bool within(float limit_m, const Eigen::Vector3f& p_local, PlaneMatch& match) {
+    const CellIndex first = query_.frame.cell_of(p_local.array() - limit_m);
+    const CellIndex last = query_.frame.cell_of(p_local.array() + limit_m);
+    TwoNearest nearest{limit_m * limit_m, limit_m * limit_m};
     for_each_block(first, last,
                    [&](const CellIndex& block_first, const CellIndex& low, const CellIndex& high) {
                      const PlaneBlock* block = find_block(block_first);
@@ -93,15 +109,9 @@ class PlaneHash::Search {
                    });
     match.p_searched = p_local;
     match.clear_m = std::sqrt(nearest.second_m2);
-    match.nearest_known = nearest.first_m2 < squared_limit_m2_;
+    match.nearest_known = nearest.first_m2 < limit_m * limit_m;
     return match.nearest_known;
   }
-
- private:
-  // Squared distances of the nearest planes [m^2]; the limit where there is none.
-  struct TwoNearest {
-    float first_m2, second_m2;
-  };
 
   const PlaneBlock* find_block(const CellIndex& cell) {
     const TileKey key = tile_of(cell);

@@ -26,10 +26,7 @@ std::span<const Pair> Correspondences::find(const MapSnapshot& map, std::span<co
     p_robot_[count] = R_map_base * p_base[i];
     p_local_[count] = t_local + p_robot_[count];
   }
-  if (stride != stride_) {  // other points than those that the matches are of
-    std::fill_n(matches_.begin(), count, PlaneMatch{});
-    stride_ = stride;
-  }
+  if (stride != stride_) keep_matches_of_common_points(stride, count);
   MatchQuery query;
   query.frame = frame_;
   query.viewpoint_local = frame_.to_local(T_map_base * p_base_lidar);
@@ -44,6 +41,15 @@ std::span<const Pair> Correspondences::find(const MapSnapshot& map, std::span<co
     }
   }
   return pairs_;
+}
+
+void Correspondences::keep_matches_of_common_points(std::size_t stride, std::size_t count) {
+  const bool among_them = stride_ != 0 && stride_ % stride == 0;
+  const std::size_t ratio = among_them ? stride_ / stride : 1;
+  for (std::size_t i = count; i-- > 0;) {  // from the last: what is read lies before what is written
+    matches_[i] = among_them && i % ratio == 0 ? matches_[i / ratio] : PlaneMatch{};
+  }
+  stride_ = stride;
 }
 
 }  // namespace isobar

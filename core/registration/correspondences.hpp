@@ -36,6 +36,10 @@ class Correspondences {
                              const Eigen::Vector3d& p_base_lidar, double max_distance_m);
 
  private:
+  /// Makes matches_ those of every `stride`-th point, `count` of them: where the ones before were every
+  /// sixth, say, and these are every second, each third has its match already.
+  void keep_matches_of_common_points(std::size_t stride, std::size_t count);
+
   LocalFrame frame_;
   std::size_t stride_ = 0;                // of the last find(); 0 after start()
   std::vector<Eigen::Vector3f> p_robot_;  // sizes are fixed in the constructor

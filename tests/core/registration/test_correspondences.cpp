@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/registration/correspondences.hpp"
+
+namespace {
+
+using namespace isobar;  // NOLINT(google-build-using-namespace)
+
+// Finds each point on a plane through itself, and notes which points it had found before.
+class NotingMap final : public MapSnapshot {
+ public:
+  NotingMap() : MapSnapshot(0.25F, 1, 1) {}
+
+  void match(const MatchQuery& /*query*/, std::span<const Eigen::Vector3f> p_local,
+             std::span<PlaneMatch> matches) const override {
+    known_.clear();
+    for (std::size_t i = 0; i < p_local.size(); ++i) {
+      known_.push_back(matches[i].found && matches[i].p_searched == p_local[i]);
+      matches[i].found = true;
+      matches[i].p_searched = matches[i].q_local = p_local[i];
+      matches[i].normal = Eigen::Vector3f::UnitZ();
+    }
+  }
+  [[nodiscard]] const std::vector<bool>& known() const { return known_; }
+
+ private:
+  mutable std::vector<bool> known_;  // by the points of the last call
+};
+
+}  // namespace
+
+TEST_CASE("points of a coarse look bring what was found of them into the fine one, all others come new") {
+  for (const std::size_t count : {std::size_t{1}, std::size_t{3}, std::size_t{100}, std::size_t{101}}) {
+    std::vector<Eigen::Vector3f> p_base;
+    for (std::size_t i = 0; i < count; ++i) p_base.emplace_back(static_cast<float>(i), 1.0F, 2.0F);
+    const NotingMap map;
+    Correspondences correspondences(count);
+    correspondences.start(map, Eigen::Vector3d::Zero());
+    const auto look = [&](std::size_t stride) {
+      const auto pairs = correspondences.find(map, p_base, stride, Eigen::Isometry3d::Identity(),
+                                              Eigen::Vector3d::Zero(), 1.0);
+      REQUIRE(pairs.size() == (count + stride - 1) / stride);
+      return map.known();
+    };
+    const auto every = [&](std::size_t n) {
+      std::vector<bool> members;
+      for (std::size_t i = 0; i < count; ++i) members.push_back(i % n == 0);
+      return members;
+    };
+    CHECK(look(6) == std::vector<bool>((count + 5) / 6, false));
+    CHECK(look(6) == std::vector<bool>((count + 5) / 6, true));
+    look(3);
+    CHECK(look(1) == every(3));
+    CHECK(look(1) == std::vector<bool>(count, true));
+    // The other way round nothing is kept, nor from scan to scan.
+    CHECK(look(3) == std::vector<bool>((count + 2) / 3, false));
+    correspondences.start(map, Eigen::Vector3d::Zero());
+    CHECK(look(3) == std::vector<bool>((count + 2) / 3, false));
+  }
+}
