@@ -86,6 +86,7 @@ class LocalMap {
   void remove_seen_through(const RegisteredScan& scan, double elapsed_s);
   SlotSet& waiting_in(Tile& tile, std::size_t block);
   void refit_stale();
+  void shelve(const TileKey& key);
   void evict(const Eigen::Vector3d& p_map_base);
   void look_for_stored(const Eigen::Vector3d& p_map_base);
   void bring_back_stored();

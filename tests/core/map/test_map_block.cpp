@@ -261,6 +261,43 @@ TEST_CASE("published planes stay as they are while the block goes on") {
   CHECK(published->find(77)->q == plane.q);
 }
 
+TEST_CASE(
+    "a look at a surface from behind goes to the cell's other side, by its plane and not by its first "
+    "observer") {
+  MapBlock block;
+  std::vector<PackedPlane> scratch;
+  // Seen along x first, but the surface faces between x and y.
+  const Eigen::Vector3f normal = Eigen::Vector3f(1.0F, 1.0F, 0.0F).normalized();
+  const auto facing_normal = [&](const MapCell& /*cell*/, PackedPlane& plane) {
+    plane = PackedPlane::of({0.1F, 0.2F, 0.3F}, normal, kCellM);
+    return true;
+  };
+  const auto side_seen_along = [&](const Eigen::Vector3f& toward) {
+    MapBlock::Observation look = observation_at({0.5F, 0.5F, 0.5F});
+    look.toward = toward.normalized();
+    block.observe(77, look);
+    const MapCell* behind = block.find(77 + isobar::kPlacesPerBlock);
+    return behind != nullptr && behind->moments.count() == 1 ? 1 : 0;
+  };
+  CHECK(side_seen_along({1.0F, 0.0F, 0.0F}) == 0);
+  CHECK(side_seen_along({-1.0F, 0.0F, 0.0F}) == 0);  // without a plane a cell has one side
+  REQUIRE(block.refit(all_slots(), facing_normal, scratch));
+  CHECK(side_seen_along({-0.5F, 1.0F, 0.0F}) == 0);   // away from the first observer, but in front
+  CHECK(side_seen_along({-1.0F, 0.95F, 0.0F}) == 0);  // grazing
+  MapBlock again = block;
+  CHECK(side_seen_along({0.5F, -1.0F, 0.0F}) == 1);  // before the first observer, but behind
+
+  // Files of earlier versions hold the way to the first observer, and not whether there is a plane.
+  std::vector<MapCell> stored = again.cells();
+  for (MapCell& cell : stored) {
+    cell.set_facing(Eigen::Vector3f::UnitX());
+    cell.has_plane = 0;
+  }
+  block.restore(stored, again.planes());
+  CHECK(side_seen_along({-0.5F, 1.0F, 0.0F}) == 0);
+  CHECK(side_seen_along({0.5F, -1.0F, 0.0F}) == 1);
+}
+
 TEST_CASE("a cell asks for a fit whenever four times as much is known of it, and when it freezes") {
   MapBlock block;
   std::vector<PackedPlane> scratch;
