@@ -17,7 +17,7 @@ struct MapConfig {
   /// How points are matched to planes.
   Matcher matcher = Matcher::kPlaneHash;
   /// Edge of a plane cell [m], 0.1 … 1. Smaller follows finer indoor detail, larger needs fewer cells
-  /// outdoors.
+  /// outdoors. 0.275 was the most accurate of 0.25 … 0.3 over the short scenarios.
   double cell_m = 0.275;
   /// Tiles whose centre is farther than this from the robot leave memory [m], 20 … 200. Beyond the reach of
   /// the registration nothing is matched.

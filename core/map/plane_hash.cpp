@@ -15,8 +15,8 @@ namespace {
 // it is asked seldom.
 constexpr float kOwnCellResidualM = 0.05F;
 
-// Half of all points that have a plane around them have it this near [m], so that it is looked for there
-// first: a ball of twice the radius touches twice as many blocks.
+// A plane around a point is looked for this near [m] first: what is found there is the nearest of all, and a
+// ball of 0.8 m, which the first iteration asks for, touches twice as many blocks.
 constexpr float kNearM = 0.35F;
 
 bool belongs(const Eigen::Vector3f& p_local, const Eigen::Vector3f& q_local, const Eigen::Vector3f& normal) {
