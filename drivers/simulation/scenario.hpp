@@ -50,5 +50,6 @@ struct Scenario {
 [[nodiscard]] Scenario make_stairs_demo(std::uint64_t seed, bool short_form);
 [[nodiscard]] Scenario make_city(std::uint64_t seed, bool short_form);
 [[nodiscard]] Scenario make_city_10km(std::uint64_t seed, bool short_form);
+[[nodiscard]] Scenario make_city_hour(std::uint64_t seed, bool short_form);
 
 }  // namespace isobar::simulation

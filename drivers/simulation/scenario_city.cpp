@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scenarios in the streets of a city: `city`, 2 km, and `city-10km`, a map that has to grow without end.
+// Scenarios in the streets of a city: `city`, 2 km, `city-10km`, a map that has to grow without end, and
+// `city-hour`, as long as a battery lasts.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -80,6 +81,13 @@ Scenario make_city_10km(std::uint64_t seed, bool short_form) {
   Scenario scenario = make("city-10km", seed, short_form ? kShort : CityWayWish{13, 9'000.0, 1'000.0});
   scenario.description = short_form ? "city-10km, short form: some streets"
                                     : "10 km of hilly streets, 9 km of them new, then back through old ones";
+  return scenario;
+}
+
+Scenario make_city_hour(std::uint64_t seed, bool short_form) {
+  Scenario scenario = make("city-hour", seed, short_form ? kShort : CityWayWish{20, 18'600.0, 1'000.0});
+  scenario.description = short_form ? "city-hour, short form: some streets"
+                                    : "an hour in hilly streets, 20 km, the last one seen before";
   return scenario;
 }
 

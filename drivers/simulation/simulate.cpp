@@ -39,6 +39,7 @@ constexpr std::array kEntries{
     Entry{"city", "wheeled robot, 2 km of hilly streets with traffic at 6 to 10 m/s", make_city},
     Entry{"city-10km", "the same over 10 km, nearly all of it through streets never seen before",
           make_city_10km},
+    Entry{"city-hour", "the same for an hour, 20 km: for runs in real time", make_city_hour},
 };
 
 const Entry& find_entry(const std::string& name) {
