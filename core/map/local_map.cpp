@@ -9,10 +9,17 @@
 
 #include "core/geometry.hpp"
 #include "core/map/plane_hash.hpp"
+#include "core/map/scan_parts.hpp"
 
 namespace isobar {
 
 namespace {
+
+// Points of scans less than this apart lie nearly where those of the scan before lay [s]: of 10 Hz each scan
+// gives half of its points. Over 24 recordings the poses are as good as with all of them.
+constexpr double kIntervalS = 0.2;
+// Where less of a scan than this found the map the place is new, and all of its points are wanted.
+constexpr double kNewPlaceOverlap = 0.5;
 
 // True if a plane is known in the cube of 4 x 4 x 4 cells around `place`.
 bool plane_in_cube(const MapBlock& block, int place) {
@@ -54,7 +61,8 @@ bool LocalMap::update(const RegisteredScan& scan) {
   const Eigen::Vector3d p_map_base = scan.pose.T_map_base.translation();
   const bool new_tile = !started_ || LocalFrame(p_map_base, cell_m_).origin_cell !=
                                          LocalFrame(last_pose_.T_map_base.translation(), cell_m_).origin_cell;
-  const double elapsed_s = static_cast<double>(scan.pose.stamp_ns - last_pose_.stamp_ns) * 1e-9;
+  const double elapsed_s =
+      started_ ? static_cast<double>(scan.pose.stamp_ns - last_pose_.stamp_ns) * 1e-9 : 0.0;
   last_pose_ = scan.pose;
   started_ = true;
   if (new_tile) {
@@ -62,7 +70,7 @@ bool LocalMap::update(const RegisteredScan& scan) {
     look_for_stored(p_map_base);
   }
   bring_back_stored();
-  insert(scan);
+  insert(scan, elapsed_s);
   if (config_.see_through_limit > 0 && scan.pose.mode == PoseMode::kRegistered) {
     remove_seen_through(scan, elapsed_s);
   }
@@ -76,7 +84,9 @@ const MapTile* LocalMap::find_tile(const TileKey& key) const {
   return found == tiles_.end() ? nullptr : &found->second->cells;
 }
 
-void LocalMap::insert(const RegisteredScan& scan) {
+void LocalMap::insert(const RegisteredScan& scan, double elapsed_s) {
+  const bool known_place = scan.pose.mode == PoseMode::kRegistered && scan.pose.overlap >= kNewPlaceOverlap;
+  const std::size_t parts = known_place ? parts_at(elapsed_s, kIntervalS) : 1;
   const LocalFrame frame(scan.pose.T_map_base.translation(), cell_m_);
   Eigen::Isometry3f T_local_base = scan.pose.T_map_base.cast<float>();
   T_local_base.translation() = frame.to_local(scan.pose.T_map_base.translation());
@@ -84,7 +94,7 @@ void LocalMap::insert(const RegisteredScan& scan) {
   const auto radius = static_cast<float>(config_.radius_m);
   recent_.fill(nullptr);
   std::size_t count = 0;
-  for (std::uint32_t i = 0; i < scan.point_count; ++i) {
+  for (std::size_t i = ++insert_count_ % parts; i < scan.point_count; i += parts) {
     const ScanPoint& point = scan.points[i];
     const Eigen::Vector3f p_local = T_local_base * Eigen::Vector3f(point.x_m, point.y_m, point.z_m);
     const Eigen::Vector3f ray = p_local_lidar - p_local;

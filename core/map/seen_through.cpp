@@ -2,24 +2,18 @@
 #include "core/map/seen_through.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <vector>
+
+#include "core/map/scan_parts.hpp"
 
 namespace isobar {
 
 namespace {
 
-// Rays of scans less than this apart say nearly the same of what they pass [s] …
+// Rays of scans less than this apart say nearly the same of what they pass [s]: each scan looks through a
+// part of the map.
 constexpr double kIntervalS = 0.3;
-// … so that the map is looked through in up to so many parts, one with each scan.
-constexpr double kMostParts = 4.0;
-
-std::size_t parts_at(double elapsed_s) {
-  return elapsed_s > 0.0
-             ? static_cast<std::size_t>(std::lround(std::clamp(kIntervalS / elapsed_s, 1.0, kMostParts)))
-             : 1;
-}
 
 }  // namespace
 
@@ -32,7 +26,7 @@ SeenThrough::SeenThrough(const MapConfig& config, const Eigen::Isometry3d& T_bas
 
 void SeenThrough::set_scan(const RegisteredScan& scan, double elapsed_s) {
   ++looks_;
-  parts_ = parts_at(elapsed_s);
+  parts_ = parts_at(elapsed_s, kIntervalS);
   free_space_.set_scan(scan, T_lidar_base_);
   p_map_base_ = scan.pose.T_map_base.translation();
   frame_ = LocalFrame(p_map_base_, cell_m_);

@@ -122,6 +122,48 @@ TEST_CASE("a robot that stands still does not make the map grow") {
   CHECK(points_within(map, Eigen::Vector3d::Zero(), 100.0) == once);
 }
 
+TEST_CASE(
+    "of scans that follow each other closely each gives half, in turns; where it matters a scan is whole") {
+  MapConfig config;
+  config.update_distance_m = 0.0;  // every scan is taken
+  config.see_through_limit = 0;
+  auto scan = std::make_unique<RegisteredScan>();
+  // Cells after the first scan in an empty map, and `count` of another place `interval_ns` apart.
+  const auto cells_after = [&](int count, std::int64_t interval_ns, PoseMode mode, double overlap) {
+    LocalMap map(config, Eigen::Isometry3d::Identity());
+    fill_scan(*scan, 0.0, 0, range_to_walls);
+    map.update(*scan);
+    for (int i = 1; i <= count; ++i) {
+      fill_scan(*scan, 50.0, i * interval_ns, range_to_walls);
+      // Where a point stands, none other does: in the room of 10 m they share cells, in one of 60 m few do.
+      for (ScanPoint& p : std::span(scan->points).first(scan->point_count)) {
+        p = {6 * p.x_m, 6 * p.y_m, 6 * p.z_m, 0, 0, 0};
+      }
+      scan->pose.mode = mode;
+      scan->pose.overlap = overlap;
+      map.update(*scan);
+    }
+    return map.cell_count();
+  };
+  constexpr std::int64_t kMs = 1'000'000;
+  const std::size_t first = cells_after(0, 0, PoseMode::kRegistered, 0.9);
+  const std::size_t whole = cells_after(1, 1000 * kMs, PoseMode::kRegistered, 0.9) - first;
+  const std::size_t half = cells_after(1, 100 * kMs, PoseMode::kRegistered, 0.9) - first;
+  const std::size_t quarter = cells_after(1, 50 * kMs, PoseMode::kRegistered, 0.9) - first;
+  REQUIRE(whole > 5'000);
+  // Some cells hold two points or three, so that half of the points fill more than half of the cells.
+  CHECK(half < 7 * whole / 10);
+  CHECK(half > 4 * whole / 10);
+  CHECK(quarter < half);
+  CHECK(cells_after(2, 100 * kMs, PoseMode::kRegistered, 0.9) - first == whole);
+  CHECK(cells_after(4, 50 * kMs, PoseMode::kRegistered, 0.9) - first == whole);
+  // A new place, and one of which the prior alone says where it is.
+  CHECK(cells_after(1, 100 * kMs, PoseMode::kRegistered, 0.3) - first == whole);
+  CHECK(cells_after(1, 100 * kMs, PoseMode::kPriorOnly, 0.9) - first == whole);
+  // Time that goes back, after a clock was set.
+  CHECK(cells_after(1, -100 * kMs, PoseMode::kRegistered, 0.9) - first == whole);
+}
+
 TEST_CASE("what rays pass through leaves the map; the walls stay") {
   LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
   auto scan = std::make_unique<RegisteredScan>();
