@@ -99,7 +99,8 @@ void add_map_settings(MapConfig& map, std::vector<Setting>& settings) {
   s.add("update_interval_s", &map.update_interval_s, "s", 0.1, 60.0,
         "… or this long ago: things move while the robot stands …");
   s.add("update_overlap", &map.update_overlap, "", 0.0, 1.0,
-        "… or when less than this share of the scan found the map: the place is new.");
+        "… or when less than this share of the scan found the map: the place is new. Of scans less than "
+        "0.2 s apart each gives a part of its points, in turns, if at least half of it found the map.");
   s.add("freeze_observations", &map.freeze_observations, "", 8, CellMoments::kMostPoints,
         "Observations after which a cell's plane no longer changes: the oldest pose counts, which keeps "
         "drift out.");
