@@ -14,7 +14,7 @@
 #include "core/registration/registration_config.hpp"
 #include "drivers/dps310/settings.hpp"
 #include "drivers/iio/settings.hpp"
-#include "ipc/dds/dds_config.hpp"
+#include "ipc/dds_config.hpp"
 
 namespace isobar {
 

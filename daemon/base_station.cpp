@@ -27,8 +27,6 @@ namespace {
 
 using ipc::HealthLevel;
 
-constexpr std::int64_t kReportEveryNs = 1'000'000'000;
-
 /// What the threads said of themselves at one moment.
 struct StationSnapshot {
   std::int64_t now_ns = 0;

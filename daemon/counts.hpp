@@ -7,11 +7,11 @@
 
 #include "core/prior/prior_estimator.hpp"
 #include "core/time/base_station_stream.hpp"
-#include "daemon/run_output.hpp"
-#include "daemon/tile_store/file_tile_store.hpp"
 #include "drivers/barometer/barometer_device.hpp"
 #include "drivers/datagram/datagram.hpp"
 #include "drivers/velodyne/velodyne_decoder.hpp"
+#include "run/files/run_output.hpp"
+#include "run/tile_store/file_tile_store.hpp"
 
 namespace isobar {
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/health.hpp"
+#include "core/names.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -8,7 +9,7 @@
 
 #include "daemon/base_station_health.hpp"
 #include "daemon/health_entries.hpp"
-#include "tools/report/replay_output.hpp"
+#include "run/files/replay_output.hpp"
 
 namespace isobar {
 
@@ -16,8 +17,6 @@ namespace {
 
 using ipc::HealthLevel;
 using ipc::HealthReport;
-
-constexpr std::int64_t kReportEveryNs = 1'000'000'000;
 
 /// Where samples of this kind may come from.
 std::string input_of(const Config& config, datagram::Kind kind) {
@@ -181,7 +180,7 @@ void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& repor
              prior.attitude_valid ? "gravity found" : "gravity not found yet, it needs the IMU", 0.0);
   const bool height_good = prior.height_source == HeightSource::kDifferential;
   report.add("height", height_good ? HealthLevel::kOk : HealthLevel::kWarning,
-             fmt::format("source: {}, sd {:.3f} m", report::height_source_name(prior.height_source),
+             fmt::format("source: {}, sd {:.3f} m", height_source_name(prior.height_source),
                          std::sqrt(prior.height_variance_m2)),
              prior.height_m);
 
@@ -191,8 +190,8 @@ void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& repor
                             : good                  ? HealthLevel::kOk
                                                     : HealthLevel::kWarning;
   report.add("registration", level,
-             fmt::format("mode: {}, method: {}, overlap {:.2f}{}", report::mode_name(registration.mode),
-                         report::method_name(registration.effective_method), registration.overlap,
+             fmt::format("mode: {}, method: {}, overlap {:.2f}{}", mode_name(registration.mode),
+                         method_name(registration.effective_method), registration.overlap,
                          registration.degenerate ? ", degenerate" : ""),
              registration.overlap);
   report.add("registration/ms", HealthLevel::kOk, "CPU time of the last scan", registration.registration_ms);

@@ -15,6 +15,9 @@
 
 namespace isobar {
 
+/// Interval of the health report [ns]; a fault of the barometer is reported at once.
+inline constexpr std::int64_t kReportEveryNs = 1'000'000'000;
+
 /// A sensor that should send is silent after this [ns].
 inline constexpr std::int64_t kSilenceNs = 1'000'000'000;
 

@@ -18,8 +18,8 @@
 #include "core/prior/prior_estimator.hpp"
 #include "core/registration/registration.hpp"
 #include "daemon/silence.hpp"
-#include "drivers/recording/recording_reader.hpp"
 #include "drivers/velodyne/velodyne_decoder.hpp"
+#include "run/recording/recording_reader.hpp"
 
 namespace isobar {
 

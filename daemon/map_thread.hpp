@@ -10,9 +10,9 @@
 #include "daemon/deadline.hpp"
 #include "daemon/mailbox.hpp"
 #include "daemon/realtime.hpp"
-#include "daemon/tile_store/file_tile_store.hpp"
 #include "daemon/worker_watch.hpp"
 #include "ipc/shared_memory.hpp"
+#include "run/tile_store/file_tile_store.hpp"
 
 namespace isobar {
 

@@ -4,9 +4,9 @@
 #include <thread>
 
 #include "daemon/realtime.hpp"
-#include "daemon/run_output.hpp"
 #include "daemon/worker_watch.hpp"
 #include "ipc/shared_memory.hpp"
+#include "run/files/run_output.hpp"
 
 namespace isobar {
 

@@ -10,7 +10,7 @@
 #include "daemon/counts.hpp"
 #include "daemon/lock_step.hpp"
 #include "daemon/stage_settings.hpp"
-#include "drivers/recording/recording_reader.hpp"
+#include "run/recording/recording_reader.hpp"
 
 namespace isobar {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "config/config.hpp"
-#include "daemon/run_output.hpp"
+#include "run/files/run_output.hpp"
 
 namespace isobar {
 

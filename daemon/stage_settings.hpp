@@ -4,8 +4,8 @@
 
 #include "config/config.hpp"
 #include "daemon/lock_step.hpp"
-#include "daemon/tile_store/file_tile_store.hpp"
-#include "drivers/recording/manifest.hpp"
+#include "run/recording/manifest.hpp"
+#include "run/tile_store/file_tile_store.hpp"
 
 namespace isobar {
 

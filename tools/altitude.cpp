@@ -12,19 +12,19 @@
 #include <utility>
 #include <vector>
 
-#include "core/altitude/height_difference.hpp"
 #include "core/altitude/hypsometry.hpp"
-#include "core/altitude/stamp.hpp"
-#include "core/altitude/weather_smoother.hpp"
+#include "core/calibration/height_difference.hpp"
+#include "core/calibration/weather_smoother.hpp"
 #include "core/errors.hpp"
-#include "core/evaluation/trajectory.hpp"
-#include "drivers/recording/csv_writer.hpp"
-#include "drivers/recording/sample_csv.hpp"
+#include "core/stamp.hpp"
+#include "run/evaluation/trajectory.hpp"
+#include "run/files/text_file.hpp"
+#include "run/recording/csv_writer.hpp"
+#include "run/recording/sample_csv.hpp"
 #include "tools/commands.hpp"
 #include "tools/height_errors.hpp"
 #include "tools/inertial_heights.hpp"
 #include "tools/pressure_log.hpp"
-#include "tools/report/text_file.hpp"
 
 namespace isobar::tools {
 
@@ -134,7 +134,7 @@ void write_heights(const std::filesystem::path& file, const HeightSeries& series
 }
 
 void compare(const std::filesystem::path& file, const HeightSeries& series) {
-  const auto reference = evaluation::parse_tum(report::read_text_file(file), file.string());
+  const auto reference = evaluation::parse_tum(files::read_text_file(file), file.string());
   const HeightErrors errors = height_errors(series, reference);
   if (errors.count == 0) throw DataError(file.string() + ": no stamp of it is within the barometer's");
   std::printf(

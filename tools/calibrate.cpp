@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "config/config_io.hpp"
-#include "core/altitude/calibration.hpp"
+#include "core/calibration/calibration.hpp"
 #include "core/errors.hpp"
+#include "run/files/text_file.hpp"
 #include "tools/calibrate_logs.hpp"
 #include "tools/commands.hpp"
 #include "tools/progress.hpp"
 #include "tools/report/calibration_report.hpp"
 #include "tools/report/svg.hpp"
-#include "tools/report/text_file.hpp"
 #include "tools/typed_command.hpp"
 
 namespace isobar::tools {
@@ -93,8 +93,8 @@ void run(CalibrateOptions options, const std::string& command) {
   print_lines("warning: ", logs.warnings);
   print_lines("warning: ", calibration.warnings);
   if (!options.out.empty()) {
-    report::write_text_file(options.out, show_compensation(calibration.config(page.chosen),
-                                                           file_comment(options, calibration, page.chosen)));
+    files::write_text_file(options.out, show_compensation(calibration.config(page.chosen),
+                                                          file_comment(options, calibration, page.chosen)));
     std::printf("written: %s (%s)\n", options.out.c_str(), model_name(page.chosen));
   }
   if (options.report.empty()) return;
@@ -103,7 +103,7 @@ void run(CalibrateOptions options, const std::string& command) {
   page.recordings = logs.recordings;
   page.notes = logs.notes;
   page.warnings = logs.warnings;
-  report::write_text_file(options.report, report::render_calibration_report(page));
+  files::write_text_file(options.report, report::render_calibration_report(page));
   std::printf("report: %s\n", options.report.c_str());
 }
 

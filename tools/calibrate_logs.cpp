@@ -6,9 +6,9 @@
 #include <span>
 #include <utility>
 
-#include "core/altitude/calibration_pairs.hpp"
+#include "core/calibration/calibration_pairs.hpp"
 #include "core/errors.hpp"
-#include "core/evaluation/distribution.hpp"
+#include "core/statistics/distribution.hpp"
 #include "tools/report/svg.hpp"
 
 namespace isobar::tools {
@@ -73,7 +73,7 @@ double median_pa(std::span<const PressureLog> logs) {
   for (const PressureLog& log : logs) {
     for (const PressureSample& sample : log.samples) values.push_back(sample.pressure_pa);
   }
-  return evaluation::median(std::move(values));
+  return median(std::move(values));
 }
 
 void require_one_place(std::span<const PressureLog> sensor, std::span<const PressureLog> reference) {

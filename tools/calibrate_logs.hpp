@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "core/altitude/calibration.hpp"
-#include "core/altitude/clock_shift.hpp"
-#include "drivers/recording/pressure_log.hpp"
+#include "core/calibration/calibration.hpp"
+#include "core/calibration/clock_shift.hpp"
+#include "run/recording/pressure_log.hpp"
 
 namespace isobar::tools {
 

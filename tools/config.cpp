@@ -9,7 +9,7 @@
 #include "config/config_io.hpp"
 #include "config/setting.hpp"
 #include "daemon/stage_settings.hpp"
-#include "drivers/recording/manifest.hpp"
+#include "run/recording/manifest.hpp"
 #include "tools/commands.hpp"
 
 namespace isobar::tools {

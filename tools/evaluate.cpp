@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "core/errors.hpp"
+#include "run/files/text_file.hpp"
 #include "tools/commands.hpp"
 #include "tools/report/report.hpp"
-#include "tools/report/text_file.hpp"
 #include "tools/typed_command.hpp"
 
 namespace isobar::tools {
@@ -76,9 +76,9 @@ void run_evaluate(const EvaluateArguments& arguments) {
   input.title = arguments.title.empty() ? "Isobar evaluation" : arguments.title;
   input.command = typed_command(arguments);
   report::print_table(stdout, input.run);
-  if (!arguments.json.empty()) report::write_text_file(arguments.json, report::figures_json(input.run));
+  if (!arguments.json.empty()) files::write_text_file(arguments.json, report::figures_json(input.run));
   if (!arguments.picture.empty())
-    report::write_text_file(arguments.picture, report::render_overview_svg(input));
+    files::write_text_file(arguments.picture, report::render_overview_svg(input));
   if (arguments.report.empty()) return;
   report::write_report(arguments.report, input);
   std::printf("\nreport: %s\n", arguments.report.c_str());

@@ -14,15 +14,16 @@
 
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
+#include "core/names.hpp"
 #include "daemon/replay.hpp"
-#include "drivers/recording/manifest.hpp"
-#include "drivers/simulation/simulate.hpp"
+#include "run/files/text_file.hpp"
+#include "run/recording/manifest.hpp"
+#include "simulation/simulate.hpp"
 #include "tools/commands.hpp"
 #include "tools/method_option.hpp"
 #include "tools/progress.hpp"
 #include "tools/report/evaluated_run.hpp"
 #include "tools/report/report.hpp"
-#include "tools/report/text_file.hpp"
 
 namespace isobar::tools {
 
@@ -85,11 +86,11 @@ void replay_all(const ExperimentOptions& options, const std::filesystem::path& r
           for (const double f : fractions) sum += f;
           progress.update(sum / static_cast<double>(methods.size()));
         };
-        const ReplaySummary summary = replay(
-            recording, own, options.out / std::string(report::method_name(methods[i])), report_progress);
+        const ReplaySummary summary =
+            replay(recording, own, options.out / std::string(method_name(methods[i])), report_progress);
         const std::lock_guard lock(mutex);
         std::printf("%-14s %6.1f s of recording in %5.1f s (%zu at a time)\n",
-                    std::string(report::method_name(methods[i])).c_str(), summary.recorded_s, summary.wall_s,
+                    std::string(method_name(methods[i])).c_str(), summary.recorded_s, summary.wall_s,
                     std::min(options.jobs, methods.size()));
       } catch (...) {
         const std::lock_guard lock(mutex);
@@ -117,7 +118,7 @@ void evaluate_all(const ExperimentOptions& options, const std::filesystem::path&
                   const std::vector<Method>& methods) {
   std::vector<report::EstimateSource> sources;
   for (const Method method : methods) {
-    const std::string name(report::method_name(method));
+    const std::string name(method_name(method));
     sources.push_back({name, options.out / name});
   }
   report::ReportInput input;
@@ -130,8 +131,8 @@ void evaluate_all(const ExperimentOptions& options, const std::filesystem::path&
                   (options.short_form ? " --short" : "") + " --out " + options.out.string();
   report::print_table(stdout, input.run);
   report::write_report(options.out / "report.html", input);
-  report::write_text_file(options.out / "figures.json", report::figures_json(input.run));
-  report::write_text_file(options.out / "overview.svg", report::render_overview_svg(input));
+  files::write_text_file(options.out / "figures.json", report::figures_json(input.run));
+  files::write_text_file(options.out / "overview.svg", report::render_overview_svg(input));
   std::printf("written: %s/report.html figures.json overview.svg\n", options.out.c_str());
 }
 

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/altitude/height_difference.hpp"
-#include "core/altitude/stamp.hpp"
-#include "core/evaluation/trajectory.hpp"
+#include "core/calibration/height_difference.hpp"
+#include "core/stamp.hpp"
+#include "run/evaluation/trajectory.hpp"
 
 namespace isobar::tools {
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "core/altitude/height_difference.hpp"
+#include "core/calibration/height_difference.hpp"
 #include "core/estimates.hpp"
 #include "core/samples.hpp"
 

@@ -11,8 +11,8 @@
 
 #include "core/errors.hpp"
 #include "core/map/map_tile.hpp"
-#include "daemon/map_export.hpp"
-#include "daemon/tile_store/file_tile_store.hpp"
+#include "run/files/map_export.hpp"
+#include "run/tile_store/file_tile_store.hpp"
 #include "tools/commands.hpp"
 
 namespace isobar::tools {
@@ -104,7 +104,7 @@ void run_export(const std::filesystem::path& directory, const std::filesystem::p
     }
   }
   const Store store = open_map(directory);
-  report::PlyWriter ply(out);
+  files::PlyWriter ply(out);
   const MapExport done = export_map(*store, store->header(), box, ply);
   ply.close();
   print_faults(store->counters());

@@ -7,7 +7,8 @@
 #include <string_view>
 
 #include "core/estimates.hpp"
-#include "tools/report/replay_output.hpp"
+#include "core/names.hpp"
+#include "run/files/replay_output.hpp"
 
 namespace isobar::tools {
 
@@ -19,7 +20,7 @@ inline constexpr std::array<Method, 6> kAllMethods = {Method::k6Dof,     Method:
 /// The method of a name as the command line spells it; nothing for any other word.
 inline std::optional<Method> method_of(std::string_view name) {
   for (const Method method : kAllMethods) {
-    if (report::method_name(method) == name) return method;
+    if (method_name(method) == name) return method;
   }
   return std::nullopt;
 }
@@ -28,7 +29,7 @@ inline std::optional<Method> method_of(std::string_view name) {
 inline std::string method_names() {
   std::string names;
   for (const Method method : kAllMethods) {
-    names += (names.empty() ? "" : ", ") + std::string(report::method_name(method));
+    names += (names.empty() ? "" : ", ") + std::string(method_name(method));
   }
   return names;
 }

@@ -12,15 +12,15 @@
 #include <string>
 #include <vector>
 
-#include "core/altitude/filter_design.hpp"
 #include "core/altitude/hypsometry.hpp"
-#include "core/altitude/sensor_noise.hpp"
+#include "core/calibration/filter_design.hpp"
+#include "core/calibration/sensor_noise.hpp"
 #include "core/errors.hpp"
+#include "run/files/text_file.hpp"
 #include "tools/commands.hpp"
 #include "tools/pressure_log.hpp"
 #include "tools/report/noise_report.hpp"
 #include "tools/report/svg.hpp"
-#include "tools/report/text_file.hpp"
 
 namespace isobar::tools {
 
@@ -177,7 +177,7 @@ void run(const NoiseArguments& arguments) {
                            chosen,
                            std::move(result.times_s),
                            std::move(result.pressures_pa)};
-  report::write_text_file(arguments.report, report::render_noise_report(page));
+  files::write_text_file(arguments.report, report::render_noise_report(page));
   std::printf("\nreport: %s\n", arguments.report.c_str());
 }
 

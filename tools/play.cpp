@@ -7,12 +7,12 @@
 
 #include "core/errors.hpp"
 #include "drivers/datagram/datagram.hpp"
-#include "drivers/recording/recording_reader.hpp"
-#include "drivers/recording/reference.hpp"
+#include "run/files/text_file.hpp"
+#include "run/recording/recording_reader.hpp"
+#include "run/recording/reference.hpp"
 #include "tools/commands.hpp"
 #include "tools/player.hpp"
 #include "tools/progress.hpp"
-#include "tools/report/text_file.hpp"
 
 namespace isobar::tools {
 
@@ -37,7 +37,7 @@ void write_shifted_reference(const PlayOptions& options, const recording::Manife
   const auto segments_file = options.recording / recording::kSegmentsFile;
   if (!std::filesystem::exists(segments_file)) return;
   const auto segments = recording::read_segments(segments_file);
-  report::OutputFile file(options.reference_out / recording::kSegmentsFile);
+  files::OutputFile file(options.reference_out / recording::kSegmentsFile);
   file.write("t_start_ns,t_end_ns,label\n");
   for (const auto& segment : segments) {
     file.write(std::to_string(segment.start_ns + shift_ns) + "," + std::to_string(segment.end_ns + shift_ns) +

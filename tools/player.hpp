@@ -8,7 +8,7 @@
 
 #include "drivers/datagram/datagram.hpp"
 #include "drivers/datagram/udp.hpp"
-#include "drivers/recording/recording_reader.hpp"
+#include "run/recording/recording_reader.hpp"
 
 namespace isobar::tools {
 

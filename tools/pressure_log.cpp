@@ -3,10 +3,10 @@
 
 #include <sstream>
 
-#include "core/altitude/stamp.hpp"
 #include "core/errors.hpp"
 #include "core/plausibility.hpp"
-#include "drivers/recording/base_clock.hpp"
+#include "core/stamp.hpp"
+#include "run/recording/base_clock.hpp"
 
 namespace isobar::tools {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/samples.hpp"
-#include "drivers/recording/pressure_log.hpp"
+#include "run/recording/pressure_log.hpp"
 
 namespace isobar::tools {
 

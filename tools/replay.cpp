@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `isobar replay`: the pipeline over a recording, as fast as it goes.
 #include "daemon/replay.hpp"
+#include "core/names.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

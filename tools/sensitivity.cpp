@@ -12,14 +12,14 @@
 #include <vector>
 
 #include "core/altitude/hypsometry.hpp"
-#include "core/altitude/stamp.hpp"
 #include "core/errors.hpp"
-#include "drivers/simulation/sensitivity_rig.hpp"
+#include "core/stamp.hpp"
+#include "run/files/text_file.hpp"
+#include "simulation/sensitivity_rig.hpp"
 #include "tools/commands.hpp"
 #include "tools/pressure_log.hpp"
 #include "tools/report/sensitivity_report.hpp"
 #include "tools/report/svg.hpp"
-#include "tools/report/text_file.hpp"
 #include "tools/sensitivity_recording.hpp"
 #include "tools/sensitivity_study.hpp"
 
@@ -27,7 +27,6 @@ namespace isobar::tools {
 
 namespace {
 
-using evaluation::ErrorFigures;
 using report::ErrorRow;
 using report::SensitivityExperiment;
 
@@ -50,7 +49,7 @@ void add_errors(SensitivityExperiment& experiment, const SensorStudy& study) {
       row = experiment.rows.insert(row, ErrorRow{study.name, filtered, means, {}, {}});
     }
     row->errors_m.insert(row->errors_m.end(), errors_m.begin(), errors_m.end());
-    row->runs.push_back(evaluation::error_figures(errors_m));
+    row->runs.push_back(error_figures(errors_m));
   };
   add(false, false, study.raw_errors.samples_m);
   add(true, false, study.filtered_errors.samples_m);
@@ -199,8 +198,8 @@ void run(SensitivityArguments arguments) {
   page.command = typed_command(arguments);
   std::filesystem::create_directories(arguments.out);
   const std::filesystem::path file = arguments.out / "report.html";
-  report::write_text_file(file, render_sensitivity_report(page));
-  report::write_text_file(arguments.out / "errors.csv", errors_csv(page));
+  files::write_text_file(file, render_sensitivity_report(page));
+  files::write_text_file(arguments.out / "errors.csv", errors_csv(page));
   std::printf("\nwritten: %s errors.csv\n", file.c_str());
 }
 

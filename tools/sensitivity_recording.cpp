@@ -6,20 +6,18 @@
 #include <utility>
 
 #include "core/altitude/hypsometry.hpp"
-#include "core/altitude/stamp.hpp"
 #include "core/errors.hpp"
-#include "core/evaluation/segments.hpp"
-#include "core/evaluation/text_table.hpp"
-#include "drivers/recording/manifest.hpp"
+#include "core/stamp.hpp"
+#include "run/evaluation/segments.hpp"
+#include "run/evaluation/text_table.hpp"
+#include "run/files/text_file.hpp"
+#include "run/recording/manifest.hpp"
 #include "tools/pressure_log.hpp"
 #include "tools/report/svg.hpp"
-#include "tools/report/text_file.hpp"
 
 namespace isobar::tools {
 
 namespace {
-
-using evaluation::Plateau;
 
 /// Where a recording's two logs are.
 struct Files {
@@ -61,7 +59,7 @@ BarometerPair read_pair(const RecordedRigRequest& request, const Files& files,
 /// Levels that segments.csv names; a label that is a number is the level's true height in metres.
 std::vector<Plateau> named_plateaus(const std::filesystem::path& file, const BarometerPair& pair,
                                     const StudyOptions& options) {
-  auto segments = evaluation::parse_segments_csv(report::read_text_file(file), file.string());
+  auto segments = evaluation::parse_segments_csv(files::read_text_file(file), file.string());
   std::sort(segments.begin(), segments.end(),
             [](const auto& a, const auto& b) { return a.start_ns < b.start_ns; });
   if (segments.size() < 2) throw DataError(file.string() + ": names fewer than two levels");
@@ -96,11 +94,11 @@ double found_settle_s(const std::vector<double>& step_times_s) {
 /// Levels that the heights themselves show.
 std::vector<Plateau> found_plateaus(const RecordedRigRequest& request, const BarometerPair& pair,
                                     const StudyOptions& options, std::vector<std::string>& notes) {
-  const evaluation::HeightTrack track = raw_track(pair, options.air_temperature_k);
-  evaluation::StepSearch search;
+  const HeightTrack track = raw_track(pair, options.air_temperature_k);
+  StepSearch search;
   search.step_m = options.step_m;
   search.steps = request.steps;
-  const evaluation::FoundSteps found = find_steps(track, search);
+  const FoundSteps found = find_steps(track, search);
   constexpr double kTooUncertainS = 2.0;
   const std::string advice = "; name the levels with --segments (t_start_ns,t_end_ns,label)";
   if (found.uncertainty_s > kTooUncertainS) {

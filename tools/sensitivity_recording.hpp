@@ -32,7 +32,7 @@ struct RecordedRig {
   std::filesystem::path moved_file;
   std::filesystem::path standing_file;
   StudyOptions options;
-  std::vector<evaluation::Plateau> plateaus;
+  std::vector<Plateau> plateaus;
   std::vector<std::string> notes;  ///< how it was read, for a person
 };
 

@@ -4,15 +4,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/altitude/height_difference.hpp"
-#include "core/altitude/stamp.hpp"
+#include "core/calibration/height_difference.hpp"
+#include "core/stamp.hpp"
 
 namespace isobar::tools {
 
 namespace {
-
-using evaluation::HeightTrack;
-using evaluation::Plateau;
 
 // After this many lags a first-order low-pass has 2 % of a step left: 0.5 mm of 3 cm.
 constexpr double kSettledLags = 4.0;

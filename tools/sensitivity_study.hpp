@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/evaluation/staircase.hpp"
+#include "core/calibration/staircase.hpp"
 #include "core/samples.hpp"
 
 namespace isobar::tools {
@@ -28,23 +28,22 @@ struct StudyOptions {
 /// Times are seconds since the first sample of the moved barometer.
 struct SensorStudy {
   std::string name;
-  evaluation::HeightTrack raw;       ///< from sample to sample
-  evaluation::HeightTrack filtered;  ///< both pressures through equal low-passes, the delay taken off
-  double sigma_pa = 0.0;             ///< white noise of the moved barometer's samples
+  HeightTrack raw;        ///< from sample to sample
+  HeightTrack filtered;   ///< both pressures through equal low-passes, the delay taken off
+  double sigma_pa = 0.0;  ///< white noise of the moved barometer's samples
   double lag_s = 0.0;
   double output_sigma_pa = 0.0;  ///< white noise of the moved barometer after the low-pass
-  std::vector<evaluation::Plateau> plateaus;
-  evaluation::StaircaseErrors raw_errors;
-  evaluation::StaircaseErrors filtered_errors;
+  std::vector<Plateau> plateaus;
+  StaircaseErrors raw_errors;
+  StaircaseErrors filtered_errors;
 };
 
 /// Height from sample to sample alone: what steps are looked for in.
-evaluation::HeightTrack raw_track(const BarometerPair& pair, double air_temperature_k);
+HeightTrack raw_track(const BarometerPair& pair, double air_temperature_k);
 
 /// Levels between steps at known times, or levels that are known altogether.
 SensorStudy study_pair(const BarometerPair& pair, const std::vector<double>& step_times_s,
                        const StudyOptions& options);
-SensorStudy study_pair(const BarometerPair& pair, std::vector<evaluation::Plateau> plateaus,
-                       const StudyOptions& options);
+SensorStudy study_pair(const BarometerPair& pair, std::vector<Plateau> plateaus, const StudyOptions& options);
 
 }  // namespace isobar::tools

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `isobar simulate`: a scenario and a seed become a recording folder.
-#include "drivers/simulation/simulate.hpp"
+#include "simulation/simulate.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/altitude/stamp.hpp"
+#include "core/stamp.hpp"
 
 namespace isobar {
 namespace {

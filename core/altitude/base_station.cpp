@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/altitude/stamp.hpp"
 #include "core/squared.hpp"
+#include "core/stamp.hpp"
 
 namespace isobar {
 namespace {
@@ -16,8 +16,6 @@ constexpr double kSettlingS = 1.0;
 // Weather without a base station, see weather_sigma_pa.
 constexpr double kWeatherRatePaS = 0.025;
 constexpr double kWeatherWalkPaSqrtS = 0.2;
-// Noise memory in samples: some seconds of a 32 Hz barometer.
-constexpr double kNoiseMemorySamples = 200.0;
 // Nearer than this to the smoothed pressure is no jump: turbulence [Pa]. And so many sigmas of noise.
 constexpr double kStillPa = 4.0;
 constexpr double kNoiseSigmas = 6.0;
@@ -39,7 +37,8 @@ double weather_sigma_pa(double age_s) {
 BaseStation::BaseStation(const AltimeterConfig& config)
     : config_(config),
       monitor_(config),
-      noise_({config.initial_noise_pa, config.noise_floor_pa, config.noise_ceiling_pa, kNoiseMemorySamples}),
+      noise_({config.initial_noise_pa, config.noise_floor_pa, config.noise_ceiling_pa,
+              NoiseEstimator::kBarometerMemorySamples}),
       filter_(config.base_walk_pa_sqrt_s) {}
 
 double BaseStation::value() const { return std::log(filter_.pressure_pa()) - jump_log_; }

@@ -5,14 +5,12 @@
 #include <cmath>
 
 #include "core/altitude/hypsometry.hpp"
-#include "core/altitude/stamp.hpp"
 #include "core/squared.hpp"
+#include "core/stamp.hpp"
 
 namespace isobar {
 namespace {
 
-// Noise memory in samples: some seconds of a 32 Hz barometer.
-constexpr double kNoiseMemorySamples = 200.0;
 // Differences across a longer gap mean nothing.
 constexpr double kNoiseGapS = 1.0;
 
@@ -21,8 +19,8 @@ constexpr double kNoiseGapS = 1.0;
 DifferentialAltimeter::DifferentialAltimeter(const AltimeterConfig& config)
     : config_(config),
       robot_(config),
-      robot_noise_(
-          {config.initial_noise_pa, config.noise_floor_pa, config.noise_ceiling_pa, kNoiseMemorySamples}),
+      robot_noise_({config.initial_noise_pa, config.noise_floor_pa, config.noise_ceiling_pa,
+                    NoiseEstimator::kBarometerMemorySamples}),
       base_(config),
       air_(config.air) {}
 

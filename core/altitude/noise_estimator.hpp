@@ -13,6 +13,8 @@ namespace isobar {
 class NoiseEstimator {
  public:
   static constexpr std::size_t kMaxLag = 16;
+  /// Memory for a barometer, in samples: some seconds at 32 Hz.
+  static constexpr double kBarometerMemorySamples = 200.0;
 
   struct Options {
     double initial_sigma = 1.0;   ///< before enough samples have come, in the signal's unit

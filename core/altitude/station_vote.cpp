@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/altitude/base_station.hpp"
-#include "core/altitude/stamp.hpp"
+#include "core/stamp.hpp"
 
 namespace isobar {
 namespace {

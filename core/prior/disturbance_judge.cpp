@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/altitude/stamp.hpp"
 #include "core/squared.hpp"
+#include "core/stamp.hpp"
 
 namespace isobar {
 namespace {

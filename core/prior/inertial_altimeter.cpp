@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/altitude/stamp.hpp"
+#include "core/stamp.hpp"
 
 namespace isobar {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 constexpr double kGapS = 0.1;
 constexpr double kUnseenSpeed = 0.7;
 // A height further from the acceleration's time than this is not used [s].
-constexpr double kMaxDelayS = 1.0;
+constexpr double kMaxHeightDelayS = 1.0;
 
 }  // namespace
 
@@ -40,7 +40,7 @@ InertialAltimeter::Status InertialAltimeter::add_acceleration(std::int64_t stamp
 InertialAltimeter::Status InertialAltimeter::add_height(const AltimeterReading& reading) {
   if (!std::isfinite(reading.height_m) || !(reading.noise_variance_m2 > 0.0)) return Status::kBadValue;
   const double delay_s = seconds_between(reading.stamp_ns, stamp_ns_);
-  if (!started_ || std::abs(delay_s) > kMaxDelayS) return Status::kBadTime;
+  if (!started_ || std::abs(delay_s) > kMaxHeightDelayS) return Status::kBadTime;
   weather_moves_ = reading.source != HeightSource::kDifferential;
   if (reading.event == ReferenceEvent::kBaseJoined) filter_.fold_weather_into_offset();
   if (reading.event == ReferenceEvent::kBaseReturned) {

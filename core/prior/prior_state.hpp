@@ -4,7 +4,6 @@
 
 #include <limits>
 
-#include "core/altitude/stamp.hpp"
 #include "core/prior/attitude_filter.hpp"
 #include "core/prior/dead_reckoning.hpp"
 #include "core/prior/height_filter.hpp"
@@ -12,6 +11,7 @@
 #include "core/prior/imu_noise.hpp"
 #include "core/prior/prior_estimator.hpp"
 #include "core/prior/standstill.hpp"
+#include "core/stamp.hpp"
 
 namespace isobar {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "ipc/dds/dds_config.hpp"
+#include "ipc/dds_config.hpp"
 
 namespace CLI {
 class App;

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdio>
 
+#include "core/names.hpp"
+
 namespace isobar::dds {
 namespace {
 
@@ -88,7 +90,7 @@ void fill_altitude(const Prior& prior, const DdsConfig& names, AltitudeMessage& 
   fill_header(prior.stamp_ns, names.map_frame, message.header);
   message.height = prior.height_m;
   message.variance = prior.height_variance_m2;
-  message.source = text(name_of(prior.height_source));
+  message.source = text(height_source_name(prior.height_source).data());
 }
 
 void fill_transform(std::int64_t stamp_ns, const std::string& parent, const std::string& child,
@@ -97,20 +99,6 @@ void fill_transform(std::int64_t stamp_ns, const std::string& parent, const std:
   message.child_frame_id = text(child);
   fill_vector(T_parent_child.translation(), message.transform.translation);
   fill_rotation(T_parent_child, message.transform.rotation);
-}
-
-const char* name_of(HeightSource source) noexcept {
-  switch (source) {
-    case HeightSource::kDifferential:
-      return "differential";
-    case HeightSource::kSingleBarometer:
-      return "single_barometer";
-    case HeightSource::kHeld:
-      return "held";
-    case HeightSource::kNone:
-      break;
-  }
-  return "none";
 }
 
 CloudBuilder::CloudBuilder()

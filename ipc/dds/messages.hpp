@@ -8,8 +8,8 @@
 
 #include "core/estimates.hpp"
 #include "core/registration/pose_propagator.hpp"
-#include "ipc/dds/dds_config.hpp"
 #include "ipc/dds/topics.hpp"
+#include "ipc/dds_config.hpp"
 #include "ipc/topics.hpp"
 
 namespace isobar::dds {
@@ -33,9 +33,6 @@ void fill_pose(const PoseEstimate& pose, const DdsConfig& names, PoseMessage& me
 void fill_altitude(const Prior& prior, const DdsConfig& names, AltitudeMessage& message) noexcept;
 void fill_transform(std::int64_t stamp_ns, const std::string& parent, const std::string& child,
                     const Eigen::Isometry3d& T_parent_child, TransformStampedMessage& message) noexcept;
-
-/// differential | single_barometer | held | none
-[[nodiscard]] const char* name_of(HeightSource source) noexcept;
 
 /// Builds PointCloud2 messages over points that stay where they are: a ScanPoint is sent as its 16 bytes.
 /// Fields: x, y, z (float32, metres), intensity (uint8) and, for scans, ring (uint8).

@@ -9,9 +9,9 @@
 
 #include "core/estimates.hpp"
 #include "core/registration/pose_propagator.hpp"
-#include "ipc/dds/dds_config.hpp"
 #include "ipc/dds/endpoints.hpp"
 #include "ipc/dds/messages.hpp"
+#include "ipc/dds_config.hpp"
 #include "ipc/topics.hpp"
 
 namespace isobar::dds {

@@ -8,9 +8,10 @@
 
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
-#include "tests/tools/report/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
-namespace isobar {
+namespace isobar::test::test_compensation_settings {
+
 namespace {
 
 CompensationConfig calibrated() {
@@ -36,7 +37,7 @@ class Folder {
   }
 
  private:
-  report::test::TemporaryFolder folder_;
+  test::TemporaryFolder folder_;
 };
 
 std::string text_of(const CompensationConfig& config) { return show_compensation(config, ""); }
@@ -98,4 +99,4 @@ TEST_CASE("A calibration that cannot be used says where, which key and why") {
                        ConfigError);
 }
 
-}  // namespace isobar
+}  // namespace isobar::test::test_compensation_settings

@@ -16,7 +16,8 @@
 #include "config/value_text.hpp"
 #include "core/errors.hpp"
 
-namespace isobar {
+namespace isobar::test::test_config {
+
 namespace {
 
 void fails(const std::string& text, const std::string& words) {
@@ -120,7 +121,7 @@ TEST_CASE("Every number and switch of the algorithms' configuration structs has 
   const std::regex field(R"(\n  (?:double|bool|int|std::size_t|std::uint32_t|AirTemperatureMode) (\w+) = )");
   for (const char* header :
        {"core/altitude/altitude_config.hpp", "core/prior/prior_config.hpp", "core/map/map_config.hpp",
-        "core/registration/registration_config.hpp", "ipc/dds/dds_config.hpp"}) {
+        "core/registration/registration_config.hpp", "ipc/dds_config.hpp"}) {
     std::ifstream in(std::filesystem::path(ISOBAR_SOURCE_DIR) / header);
     const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
     std::size_t fields = 0;
@@ -225,4 +226,4 @@ TEST_CASE("Whole numbers serve as numbers") {
   CHECK(parse_config("[map]\ncell_m = 1\n", "c.toml").map.cell_m == 1.0);
 }
 
-}  // namespace isobar
+}  // namespace isobar::test::test_config

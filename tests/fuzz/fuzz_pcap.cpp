@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/errors.hpp"
-#include "drivers/recording/pcap_packets.hpp"
+#include "run/recording/pcap_packets.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const int memory = memfd_create("capture", MFD_CLOEXEC);

@@ -12,7 +12,7 @@
 
 #include "core/errors.hpp"
 #include "core/plausibility.hpp"
-#include "drivers/recording/pressure_log.hpp"
+#include "run/recording/pressure_log.hpp"
 
 namespace {
 

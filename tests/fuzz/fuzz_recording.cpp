@@ -13,8 +13,8 @@
 
 #include "core/errors.hpp"
 #include "core/plausibility.hpp"
-#include "drivers/recording/recording_reader.hpp"
-#include "drivers/recording/reference.hpp"
+#include "run/recording/recording_reader.hpp"
+#include "run/recording/reference.hpp"
 
 namespace {
 

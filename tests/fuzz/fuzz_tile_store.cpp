@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "core/errors.hpp"
-#include "daemon/tile_store/file_tile_store.hpp"
+#include "run/tile_store/file_tile_store.hpp"
 
 namespace {
 

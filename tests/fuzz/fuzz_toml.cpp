@@ -8,7 +8,7 @@
 
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
-#include "drivers/recording/manifest.hpp"
+#include "run/recording/manifest.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

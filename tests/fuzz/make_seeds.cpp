@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "config/config_io.hpp"
-#include "daemon/tile_store/file_tile_store.hpp"
-#include "drivers/recording/recording_writer.hpp"
+#include "run/recording/recording_writer.hpp"
+#include "run/tile_store/file_tile_store.hpp"
 #include "tests/drivers/velodyne/packet_builder.hpp"
 
 namespace {

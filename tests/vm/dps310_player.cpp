@@ -65,7 +65,7 @@ class Player {
     put(kProductId, chip_.id);
     put(kCoefficientSource, kExternalThermometer);
     for (std::size_t i = 0; i < kCoefficientBytes; ++i) {
-      put(static_cast<std::uint8_t>(kCoefficients + i), test::kKnownBytes[i]);
+      put(static_cast<std::uint8_t>(kCoefficients + i), dps310::kKnownBytes[i]);
     }
     shown_ = 0;
   }
@@ -106,7 +106,7 @@ class Player {
   }
 
   SmbusDevice stub_;
-  test::ChipModel chip_;
+  dps310::ChipModel chip_;
   std::int64_t start_ns_ = chip_.now_ns();
   Clock::time_point start_ = Clock::now();
   Clock::time_point shown_at_ = Clock::now();

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kRowHeight = 46.0;
 constexpr double kBoxHeight = 24.0;
-constexpr double kTop = 26.0;
-constexpr double kBottom = 50.0;
+constexpr double kBoxTopMargin = 26.0;
+constexpr double kBoxBottomMargin = 50.0;
 constexpr double kLogarithmicFrom = 25.0;
 
 bool is_drawn(const BoxPlot::Row& row) { return row.values.count > 0 && std::isfinite(row.values.median); }
@@ -38,7 +38,7 @@ Scale scale_of(const BoxPlot& plot, double px_low, double px_high) {
 
 void draw_row(Picture& picture, const BoxPlot::Row& row, const Axes& axes, double y) {
   const Scale& x = axes.x;
-  const evaluation::Distribution& d = row.values;
+  const Distribution& d = row.values;
   const Stroke stroke{row.colour, 1.6};
   picture.line({x.clamped(d.p05), y}, {x.clamped(d.q25), y}, stroke);
   picture.line({x.clamped(d.q75), y}, {x.clamped(d.p95), y}, stroke);
@@ -57,9 +57,11 @@ void draw_row(Picture& picture, const BoxPlot::Row& row, const Axes& axes, doubl
 Picture draw(const BoxPlot& plot) {
   double left = 60.0;
   for (const BoxPlot::Row& row : plot.rows) left = std::max(left, text_width(row.name, 14.0) + 18.0);
-  constexpr double kRight = 96.0;
-  Picture picture(plot.width, kTop + kRowHeight * static_cast<double>(plot.rows.size()) + kBottom);
-  const Box frame{left, kTop, plot.width - left - kRight, kRowHeight * static_cast<double>(plot.rows.size())};
+  constexpr double kBoxRightMargin = 96.0;
+  Picture picture(plot.width,
+                  kBoxTopMargin + kRowHeight * static_cast<double>(plot.rows.size()) + kBoxBottomMargin);
+  const Box frame{left, kBoxTopMargin, plot.width - left - kBoxRightMargin,
+                  kRowHeight * static_cast<double>(plot.rows.size())};
   const Axes axes{frame,
                   scale_of(plot, frame.x, frame.right()),
                   Scale::linear({0.0, 1.0}, frame.bottom(), frame.y, frame.height),
@@ -68,8 +70,8 @@ Picture draw(const BoxPlot& plot) {
                   false,
                   false};
   draw_axes(picture, axes);
-  picture.text({frame.right() + 10.0, kTop - 10.0}, "median", {12.0, "#4b5563"});
-  double y = kTop + 0.5 * kRowHeight;
+  picture.text({frame.right() + 10.0, kBoxTopMargin - 10.0}, "median", {12.0, "#4b5563"});
+  double y = kBoxTopMargin + 0.5 * kRowHeight;
   for (const BoxPlot::Row& row : plot.rows) {
     picture.text({left - 10.0, y + 5.0}, row.name, {14.0, "#1f2937", "end"});
     const std::string median =

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/evaluation/distribution.hpp"
+#include "core/statistics/distribution.hpp"
 #include "tools/report/scale.hpp"
 
 namespace isobar::report {
@@ -15,7 +15,7 @@ struct BoxPlot {
   struct Row {
     std::string name;
     std::string colour;
-    evaluation::Distribution values;
+    Distribution values;
   };
 
   std::string x_label;

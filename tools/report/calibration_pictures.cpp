@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/evaluation/distribution.hpp"
+#include "core/statistics/distribution.hpp"
 #include "tools/report/box_plot.hpp"
 #include "tools/report/scale.hpp"
 
@@ -54,7 +54,7 @@ std::vector<Point> medians_of(const Cloud& cloud) {
     std::vector<double> residuals;
     for (std::size_t k = begin; k < end; ++k) residuals.push_back(cloud.points[k].y);
     std::sort(residuals.begin(), residuals.end());
-    medians.push_back({cloud.points[(begin + end) / 2].x, evaluation::quantile(residuals, 0.5)});
+    medians.push_back({cloud.points[(begin + end) / 2].x, quantile(residuals, 0.5)});
   }
   return medians;
 }
@@ -66,7 +66,7 @@ Range residual_range(const std::vector<Cloud>& clouds) {
     for (const Point& point : cloud.points) residuals.push_back(point.y);
   }
   std::sort(residuals.begin(), residuals.end());
-  return padded({evaluation::quantile(residuals, 0.005), evaluation::quantile(residuals, 0.995)}, 0.06, 0.1);
+  return padded({quantile(residuals, 0.005), quantile(residuals, 0.995)}, 0.06, 0.1);
 }
 
 }  // namespace
@@ -84,8 +84,8 @@ Picture residual_boxes(const Calibration& calibration) {
   for (const ModelResult& result : calibration.models) {
     std::vector<double> absolutes;
     for (const double r : result.residuals_pa) absolutes.push_back(std::abs(r));
-    plot.rows.push_back({calibration_row_name(result.model), colour_of(result.model),
-                         evaluation::summarize(std::move(absolutes))});
+    plot.rows.push_back(
+        {calibration_row_name(result.model), colour_of(result.model), summarize(std::move(absolutes))});
   }
   return draw(plot);
 }

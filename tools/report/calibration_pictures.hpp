@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "core/altitude/calibration.hpp"
+#include "core/calibration/calibration.hpp"
 #include "tools/report/svg.hpp"
 
 namespace isobar::report {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/evaluation/distribution.hpp"
+#include "core/statistics/distribution.hpp"
 #include "tools/report/aligned_rows.hpp"
 #include "tools/report/calibration_pictures.hpp"
 #include "tools/report/html_page.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/altitude/calibration.hpp"
+#include "core/calibration/calibration.hpp"
 
 namespace isobar::report {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/errors.hpp"
-#include "tools/report/text_file.hpp"
+#include "run/files/text_file.hpp"
 
 namespace isobar::report {
 
@@ -30,23 +30,23 @@ bool needed_repair(const evaluation::StampRepairs& repairs) {
   return repairs.backwards + repairs.duplicates > 0;
 }
 
-std::vector<evaluation::HeightSigma> sigmas_of(const std::vector<StatusRow>& status) {
+std::vector<evaluation::HeightSigma> sigmas_of(const std::vector<files::StatusRow>& status) {
   std::vector<evaluation::HeightSigma> sigmas;
   sigmas.reserve(status.size());
-  for (const StatusRow& row : status) sigmas.push_back({row.stamp_ns, row.sd_z_m});
+  for (const files::StatusRow& row : status) sigmas.push_back({row.stamp_ns, row.sd_z_m});
   return sigmas;
 }
 
-ReplayOutput load_estimate(const fs::path& path) {
-  if (fs::is_directory(path)) return read_replay_output(path, kMaxMapPoints);
-  ReplayOutput output;
-  output.trajectory = evaluation::parse_tum(read_text_file(path), path.string());
+files::ReplayOutput load_estimate(const fs::path& path) {
+  if (fs::is_directory(path)) return files::read_replay_output(path, kMaxMapPoints);
+  files::ReplayOutput output;
+  output.trajectory = evaluation::parse_tum(files::read_text_file(path), path.string());
   return output;
 }
 
 EvaluatedMethod evaluate_one(const ReferenceData& reference, const EstimateSource& source,
                              const evaluation::EvaluationOptions& options) {
-  ReplayOutput output = load_estimate(source.path);
+  files::ReplayOutput output = load_estimate(source.path);
   EvaluatedMethod method{source.name,
                          source.path,
                          {},
@@ -92,10 +92,11 @@ ReferenceData load_reference(const fs::path& path, const std::optional<fs::path>
   const bool is_recording = fs::is_directory(path);
   reference.source = path;
   const fs::path trajectory_file = is_recording ? path / "reference.tum" : path;
-  reference.trajectory = evaluation::parse_tum(read_text_file(trajectory_file), trajectory_file.string());
+  reference.trajectory =
+      evaluation::parse_tum(files::read_text_file(trajectory_file), trajectory_file.string());
   std::optional<fs::path> file = segments_file;
   if (!file && is_recording && fs::exists(path / "segments.csv")) file = path / "segments.csv";
-  if (file) reference.segments = evaluation::parse_segments_csv(read_text_file(*file), file->string());
+  if (file) reference.segments = evaluation::parse_segments_csv(files::read_text_file(*file), file->string());
   if (needed_repair(reference.trajectory.repairs)) {
     reference.notes.push_back(repairs_note("The reference", reference.trajectory.repairs));
   }

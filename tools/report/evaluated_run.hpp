@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "core/evaluation/figures.hpp"
-#include "tools/report/replay_output.hpp"
+#include "run/evaluation/figures.hpp"
+#include "run/files/replay_output.hpp"
 
 namespace isobar::report {
 
@@ -38,7 +38,7 @@ struct EvaluatedMethod {
   std::string name;
   std::filesystem::path source;
   evaluation::Evaluation evaluation;
-  std::vector<StatusRow> status;  ///< empty for a .tum file
+  std::vector<files::StatusRow> status;  ///< empty for a .tum file
   std::vector<std::array<float, 3>>
       map_points;  ///< in the reference's frame [m]; thinned; empty for a .tum file
   std::uint64_t map_points_total = 0;

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "core/evaluation/figures.hpp"
+#include "run/evaluation/figures.hpp"
 
 namespace isobar::report {
 

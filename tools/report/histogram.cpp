@@ -4,15 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/evaluation/distribution.hpp"
+#include "core/statistics/distribution.hpp"
 
 namespace isobar::report {
 
 namespace {
 
-constexpr double kTop = 6.0;
-constexpr double kBottom = 50.0;
-constexpr double kRight = 150.0;
+constexpr double kHistogramTopMargin = 6.0;
+constexpr double kHistogramBottomMargin = 50.0;
+constexpr double kHistogramRightMargin = 150.0;
 constexpr std::size_t kBins = 80;
 
 std::vector<double> finite_ascending(const std::vector<double>& values) {
@@ -51,11 +51,11 @@ Picture draw(const HistogramChart& chart) {
   for (const HistogramChart::Row& row : chart.rows) {
     left = std::max(left, text_width(row.name, 14.0) + 18.0);
     sorted.push_back(finite_ascending(row.values));
-    if (!sorted.back().empty()) largest = std::max(largest, 1.3 * evaluation::quantile(sorted.back(), 0.99));
+    if (!sorted.back().empty()) largest = std::max(largest, 1.3 * quantile(sorted.back(), 0.99));
   }
   const double inner = chart.row_height * static_cast<double>(chart.rows.size());
-  Picture picture(chart.width, kTop + inner + kBottom);
-  const Box frame{left, kTop, chart.width - left - kRight, inner};
+  Picture picture(chart.width, kHistogramTopMargin + inner + kHistogramBottomMargin);
+  const Box frame{left, kHistogramTopMargin, chart.width - left - kHistogramRightMargin, inner};
   const Axes axes{frame,
                   Scale::linear({0.0, largest > 0.0 ? largest : 1.0}, frame.x, frame.right(), 90.0),
                   Scale::linear({0.0, 1.0}, frame.bottom(), frame.y, frame.height),
@@ -66,7 +66,7 @@ Picture draw(const HistogramChart& chart) {
   draw_axes(picture, axes);
   for (std::size_t i = 0; i < chart.rows.size(); ++i) {
     const HistogramChart::Row& row = chart.rows[i];
-    const double base = kTop + chart.row_height * static_cast<double>(i + 1);
+    const double base = kHistogramTopMargin + chart.row_height * static_cast<double>(i + 1);
     const double middle = base - 0.5 * chart.row_height;
     picture.line({frame.x, base}, {frame.right(), base}, {"#9ca3af"});
     picture.text({left - 10.0, middle + 5.0}, row.name, {14.0, "#1f2937", "end"});
@@ -75,8 +75,8 @@ Picture draw(const HistogramChart& chart) {
       continue;
     }
     draw_bars(picture, axes.x, base, chart.row_height - 12.0, sorted[i], row.colour);
-    const double median = evaluation::quantile(sorted[i], 0.5);
-    const double p99 = evaluation::quantile(sorted[i], 0.99);
+    const double median = quantile(sorted[i], 0.5);
+    const double p99 = quantile(sorted[i], 0.99);
     const double top = base - chart.row_height + 6.0;
     picture.line({axes.x(median), top}, {axes.x(median), base}, {"#111827", 1.6});
     picture.line({axes.x(p99), top}, {axes.x(p99), base}, {"#111827", 1.6, "4 3"});

@@ -9,9 +9,9 @@ namespace isobar::report {
 
 namespace {
 
-constexpr double kLeft = 68.0;
-constexpr double kRight = 14.0;
-constexpr double kBottom = 50.0;
+constexpr double kLineLeftMargin = 68.0;
+constexpr double kLineRightMargin = 14.0;
+constexpr double kLineBottomMargin = 50.0;
 constexpr double kLegendGap = 8.0;
 constexpr double kBandLabelHeight = 22.0;
 constexpr double kInvisiblePx = 0.15;
@@ -114,10 +114,10 @@ Picture draw(const LineChart& chart) {
   for (const Series& series : chart.series) {
     if (!series.name.empty()) legend.push_back({series.name, series.stroke});
   }
-  const double inner_width = chart.width - kLeft - kRight;
-  const double top = draw_legend(picture, {kLeft, 0.0}, inner_width, legend) +
+  const double inner_width = chart.width - kLineLeftMargin - kLineRightMargin;
+  const double top = draw_legend(picture, {kLineLeftMargin, 0.0}, inner_width, legend) +
                      (chart.bands.empty() ? kLegendGap : kBandLabelHeight);
-  const Box frame{kLeft, top, inner_width, chart.height - top - kBottom};
+  const Box frame{kLineLeftMargin, top, inner_width, chart.height - top - kLineBottomMargin};
   const Range x = chart.x_range.value_or(data_range(chart, &Series::x));
   const Range all_y = data_range(chart, &Series::y);
   const Range y = chart.y_range.value_or(chart.is_logarithmic ? Range{0.8 * all_y.low, 1.25 * all_y.high}

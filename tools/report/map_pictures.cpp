@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/evaluation/distribution.hpp"
+#include "core/statistics/distribution.hpp"
 #include "tools/report/map_view.hpp"
 #include "tools/report/method_style.hpp"
 #include "tools/report/report_pictures.hpp"
@@ -83,7 +83,7 @@ Range range_of_most(const std::vector<MapPoint>& points, float MapPoint::*coordi
   values.reserve(points.size());
   for (const MapPoint& point : points) values.push_back(static_cast<double>(point.*coordinate));
   std::sort(values.begin(), values.end());
-  return {evaluation::quantile(values, 0.002), evaluation::quantile(values, 0.998)};
+  return {quantile(values, 0.002), quantile(values, 0.998)};
 }
 
 Series seen_path(const EvaluatedRun& run, const EvaluatedMethod& method, const View& view) {

@@ -8,8 +8,8 @@ namespace isobar::report {
 
 namespace {
 
-constexpr double kLeft = 68.0;
-constexpr double kBottom = 50.0;
+constexpr double kMapLeftMargin = 68.0;
+constexpr double kMapBottomMargin = 50.0;
 constexpr double kShades = 48.0;
 constexpr double kImagePixelsPerPx = 1.5;  // sharp on denser screens and in print
 
@@ -69,13 +69,13 @@ Picture draw(const MapView& view) {
   for (const Series& path : view.paths) {
     if (view.legend && !path.name.empty()) legend.push_back({path.name, path.stroke});
   }
-  const double available = view.width - kLeft - margin;
+  const double available = view.width - kMapLeftMargin - margin;
   const double px_per_m = std::min(available / width_m, view.max_height / height_m);
   const double top = legend_height(available, legend) + 8.0;
-  const Box frame{kLeft + 0.5 * (available - px_per_m * width_m), top, px_per_m * width_m,
+  const Box frame{kMapLeftMargin + 0.5 * (available - px_per_m * width_m), top, px_per_m * width_m,
                   px_per_m * height_m};
-  Picture picture(view.width, top + frame.height + kBottom);
-  draw_legend(picture, {kLeft, 0.0}, available, legend);
+  Picture picture(view.width, top + frame.height + kMapBottomMargin);
+  draw_legend(picture, {kMapLeftMargin, 0.0}, available, legend);
   const Axes axes{frame, Scale::linear(view.u, frame.x, frame.right(), 90.0),
                   Scale::linear(view.v, frame.bottom(), frame.y, 44.0), view.u_label, view.v_label};
   draw_axes(picture, axes);

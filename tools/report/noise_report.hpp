@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/altitude/filter_design.hpp"
-#include "core/altitude/sensor_noise.hpp"
+#include "core/calibration/filter_design.hpp"
+#include "core/calibration/sensor_noise.hpp"
 
 namespace isobar::report {
 

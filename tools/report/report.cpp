@@ -5,11 +5,11 @@
 #include <cmath>
 #include <vector>
 
+#include "run/files/text_file.hpp"
 #include "tools/report/html_page.hpp"
 #include "tools/report/report_pictures.hpp"
 #include "tools/report/report_tables.hpp"
 #include "tools/report/svg.hpp"
-#include "tools/report/text_file.hpp"
 
 namespace isobar::report {
 
@@ -33,10 +33,10 @@ std::string tiles(const EvaluatedRun& run) {
   const EvaluatedMethod& method = main_method(run);
   const evaluation::MethodFigures& figures = method.evaluation.figures;
   std::vector<double> times_ms;
-  for (const StatusRow& row : method.status) {
+  for (const files::StatusRow& row : method.status) {
     if (std::isfinite(row.scan_ms)) times_ms.push_back(row.scan_ms);
   }
-  const evaluation::Distribution time = evaluation::summarize(std::move(times_ms));
+  const Distribution time = summarize(std::move(times_ms));
   std::string html = "<ul class=\"tiles\">\n";
   html += tile(display_name(method.name) + ": error on z, median",
                fixed(100.0 * figures.z_rpe.median, 2) + " %", z_rpe_comparison(run));
@@ -136,7 +136,7 @@ std::string render_report(const ReportInput& input) {
 }
 
 void write_report(const std::filesystem::path& file, const ReportInput& input) {
-  write_text_file(file, render_report(input));
+  files::write_text_file(file, render_report(input));
 }
 
 std::string render_overview_svg(const ReportInput& input) {

@@ -113,7 +113,7 @@ Picture z_rpe_picture(const EvaluatedRun& run, double width) {
   plot.unit = "%";
   plot.width = width;
   for (const EvaluatedMethod& method : run.methods) {
-    evaluation::Distribution d = method.evaluation.figures.z_rpe;
+    Distribution d = method.evaluation.figures.z_rpe;
     for (double* value : {&d.p05, &d.q25, &d.median, &d.q75, &d.p95, &d.p99, &d.max}) *value *= kPercent;
     plot.rows.push_back({display_name(method.name), method_stroke(run, method).colour, d});
   }
@@ -174,7 +174,7 @@ std::optional<Picture> scan_time_picture(const EvaluatedRun& run, double width) 
   bool any = false;
   for (const EvaluatedMethod& method : run.methods) {
     HistogramChart::Row row{display_name(method.name), method_stroke(run, method).colour, {}};
-    for (const StatusRow& status : method.status) row.values.push_back(status.scan_ms);
+    for (const files::StatusRow& status : method.status) row.values.push_back(status.scan_ms);
     if (row.values.empty()) continue;
     any = any || std::any_of(row.values.begin(), row.values.end(), [](double v) { return std::isfinite(v); });
     chart.rows.push_back(std::move(row));

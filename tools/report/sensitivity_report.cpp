@@ -12,10 +12,6 @@ namespace isobar::report {
 
 namespace {
 
-using evaluation::ErrorFigures;
-using evaluation::HeightTrack;
-using evaluation::Plateau;
-
 constexpr double kCm = 100.0;
 constexpr const char* kColours[] = {"#2563eb", "#b45309", "#15803d", "#7c3aed"};  // NOLINT: a table
 
@@ -67,7 +63,7 @@ Picture error_picture(const SensitivityExperiment& experiment) {
     for (const double error_m : row.errors_m) sizes.push_back(kCm * std::abs(error_m));
     plot.rows.push_back({row.sensor + ", " + row_name(row),
                          kColours[static_cast<std::size_t>(sensor - sensors.begin()) % std::size(kColours)],
-                         evaluation::summarize(std::move(sizes))});
+                         summarize(std::move(sizes))});
   }
   return draw(plot);
 }
@@ -96,7 +92,7 @@ std::string figures_table(const SensitivityExperiment& experiment) {
 OverRuns over_runs(const ErrorRow& row, double ErrorFigures::*figure) {
   std::vector<double> values;
   for (const ErrorFigures& run : row.runs) values.push_back(run.*figure);
-  const evaluation::Distribution distribution = evaluation::summarize(std::move(values));
+  const Distribution distribution = summarize(std::move(values));
   return {distribution.median, distribution.max};
 }
 

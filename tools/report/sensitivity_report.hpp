@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/evaluation/staircase.hpp"
+#include "core/calibration/staircase.hpp"
 
 namespace isobar::report {
 
@@ -15,15 +15,15 @@ struct ErrorRow {
   bool filtered = false;
   bool plateau_means = false;  ///< else every settled sample
   std::vector<double> errors_m;
-  std::vector<evaluation::ErrorFigures> runs;
+  std::vector<ErrorFigures> runs;
 };
 
 /// Height against time of one sensor pair in one run.
 struct HeightPicture {
   std::string sensor;
-  evaluation::HeightTrack raw;
-  evaluation::HeightTrack filtered;
-  std::vector<evaluation::Plateau> plateaus;
+  HeightTrack raw;
+  HeightTrack filtered;
+  std::vector<Plateau> plateaus;
   double lag_s = 0.0;
 };
 
@@ -46,7 +46,7 @@ struct OverRuns {
   double median_m = 0.0;
   double worst_m = 0.0;
 };
-OverRuns over_runs(const ErrorRow& row, double evaluation::ErrorFigures::*figure);
+OverRuns over_runs(const ErrorRow& row, double ErrorFigures::*figure);
 
 /// "filtered, every sample" and the like.
 std::string row_name(const ErrorRow& row);

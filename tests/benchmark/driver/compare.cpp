@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/errors.hpp"
-#include "core/evaluation/distribution.hpp"
+#include "core/statistics/distribution.hpp"
 
 namespace isobar::bench {
 
@@ -39,7 +39,7 @@ void collect(const Json& data, std::vector<std::pair<std::string, double>>& figu
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
-  return evaluation::quantile(values, 0.5);
+  return quantile(values, 0.5);
 }
 
 /// One figure over all pairs of runs.

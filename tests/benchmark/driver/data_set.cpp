@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "drivers/recording/manifest.hpp"
-#include "drivers/simulation/simulate.hpp"
+#include "run/recording/manifest.hpp"
+#include "simulation/simulate.hpp"
 
 namespace isobar::bench {
 

@@ -10,9 +10,9 @@
 
 #include "config/config.hpp"
 #include "core/estimates.hpp"
-#include "core/evaluation/trajectory.hpp"
 #include "core/samples.hpp"
 #include "daemon/lock_step.hpp"
+#include "run/evaluation/trajectory.hpp"
 
 namespace isobar::bench {
 

@@ -2,7 +2,7 @@
 #include "tests/benchmark/driver/passes.hpp"
 
 #include "daemon/cpu_time.hpp"
-#include "tests/core/registration/allocation_count.hpp"
+#include "tests/support/allocation_count.hpp"
 
 namespace isobar::bench {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/evaluation/trajectory.hpp"
+#include "run/evaluation/trajectory.hpp"
 #include "tests/benchmark/driver/data_set.hpp"
 #include "tests/benchmark/driver/hardware_counters.hpp"
 #include "tests/benchmark/driver/system_under_test.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/evaluation/trajectory.hpp"
+#include "run/evaluation/trajectory.hpp"
 #include "tests/benchmark/driver/data_set.hpp"
 #include "tests/benchmark/driver/peer.hpp"
 

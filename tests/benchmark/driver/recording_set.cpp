@@ -7,8 +7,8 @@
 #include "config/config.hpp"
 #include "daemon/cpu_time.hpp"
 #include "daemon/stage_settings.hpp"
-#include "drivers/recording/recording_reader.hpp"
-#include "drivers/recording/reference.hpp"
+#include "run/recording/recording_reader.hpp"
+#include "run/recording/reference.hpp"
 #include "tests/benchmark/driver/data_set.hpp"
 
 namespace isobar::bench {

@@ -10,22 +10,15 @@
 #include <string>
 #include <thread>
 
-#include "core/evaluation/distribution.hpp"
-#include "core/evaluation/figures.hpp"
+#include "core/statistics/distribution.hpp"
+#include "run/evaluation/figures.hpp"
 
 namespace isobar::bench {
 
 namespace {
 
-using evaluation::quantile;
-
 double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return quantile(values, 0.5);
 }
 
 /// `figure` of every scan, the median over the passes.

@@ -15,12 +15,12 @@
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
 #include "daemon/stage_settings.hpp"
-#include "drivers/recording/recording_reader.hpp"
+#include "run/files/text_file.hpp"
+#include "run/recording/recording_reader.hpp"
 #include "tests/benchmark/live/listeners.hpp"
 #include "tests/benchmark/live/report.hpp"
 #include "tests/benchmark/live/sender.hpp"
 #include "tests/ipc/child_process.hpp"
-#include "tools/report/text_file.hpp"
 
 namespace isobar::benchmark {
 namespace {
@@ -44,7 +44,7 @@ std::filesystem::path write_config(const Options& options, const recording::Mani
   Config config = with_sensors_of(manifest, Config{});
   config.realtime.enabled = !options.ordinary_scheduling;
   const auto file = std::filesystem::temp_directory_path() / "isobar-live-benchmark.toml";
-  report::write_text_file(file, show_config(config));
+  files::write_text_file(file, show_config(config));
   return file;
 }
 
@@ -86,7 +86,7 @@ int run(const Options& options) {
     throw ServiceError("isobard or isobar-dds ended during the run");
   if (sender.ended()) throw DataError(options.recording.string() + ": shorter than the measurement");
   fmt::print("{}", table(results));
-  if (!options.json.empty()) report::write_text_file(options.json, json(results));
+  if (!options.json.empty()) files::write_text_file(options.json, json(results));
   return options.check && !targets_met(results) ? 1 : 0;
 }
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/evaluation/distribution.hpp"
+#include "core/statistics/distribution.hpp"
 
 namespace isobar::bench {
 
@@ -14,8 +14,8 @@ namespace isobar::bench {
 inline void count_percentiles(benchmark::State& state, std::vector<double> values, const std::string& unit) {
   if (values.empty()) return;
   std::sort(values.begin(), values.end());
-  state.counters["median_" + unit] = evaluation::quantile(values, 0.5);
-  state.counters["p99_" + unit] = evaluation::quantile(values, 0.99);
+  state.counters["median_" + unit] = quantile(values, 0.5);
+  state.counters["p99_" + unit] = quantile(values, 0.99);
   state.counters["max_" + unit] = values.back();
 }
 

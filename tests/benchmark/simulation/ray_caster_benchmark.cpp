@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "drivers/simulation/lidar_model.hpp"
-#include "drivers/simulation/scenario.hpp"
+#include "simulation/lidar_model.hpp"
+#include "simulation/scenario.hpp"
 
 namespace {
 

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/tile_store/file_tile_store.hpp"
+#include "run/tile_store/file_tile_store.hpp"
 
 namespace {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "core/altitude/calibration.hpp"
+#include "core/calibration/calibration.hpp"
 
-namespace isobar::testing {
+namespace isobar::test {
 
 struct Chamber {
   Compensation hidden;  ///< true pressure of a raw one
@@ -55,4 +55,4 @@ struct Chamber {
   }
 };
 
-}  // namespace isobar::testing
+}  // namespace isobar::test

@@ -6,7 +6,7 @@
 
 #include "core/altitude/air_temperature.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_air_temperature {
 
 namespace {
 std::int64_t at(double t) { return static_cast<std::int64_t>(t * 1e9); }
@@ -94,3 +94,5 @@ TEST_CASE(
   for (double t = 0.0; t < 30.0; t += 0.1) tracker.add(0, at(t), 18.0);
   CHECK(tracker.temperature_c() == doctest::Approx(17.3));
 }
+
+}  // namespace isobar::test::test_air_temperature

@@ -6,7 +6,7 @@
 
 #include "core/altitude/barometer_monitor.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_barometer_monitor {
 
 namespace {
 
@@ -98,3 +98,5 @@ TEST_CASE("one spike is an accident, three are a habit that is forgotten again")
   sensor.run_well(40.0);
   CHECK(sensor.fault() == BarometerFault::kOk);
 }
+
+}  // namespace isobar::test::test_barometer_monitor

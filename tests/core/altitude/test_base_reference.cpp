@@ -11,7 +11,7 @@
 #include "core/altitude/differential_altimeter.hpp"
 #include "core/altitude/hypsometry.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_base_reference {
 
 namespace {
 
@@ -227,3 +227,5 @@ TEST_CASE("replayed and stale base samples are refused") {
   third.station = 2;
   CHECK(altimeter.add_base(third) == PressureStatus::kBadValue);
 }
+
+}  // namespace isobar::test::test_base_reference

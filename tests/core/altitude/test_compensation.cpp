@@ -5,7 +5,7 @@
 
 #include "core/altitude/compensation.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_compensation {
 
 namespace {
 
@@ -82,3 +82,5 @@ TEST_CASE("the paper's masks hold as many coefficients as its table") {
   CHECK(count(kMaskM) == 7);
   CHECK(count(kMaskFull) == 16);
 }
+
+}  // namespace isobar::test::test_compensation

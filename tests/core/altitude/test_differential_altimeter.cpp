@@ -9,7 +9,7 @@
 #include "core/altitude/differential_altimeter.hpp"
 #include "core/altitude/hypsometry.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_differential_altimeter {
 
 namespace {
 
@@ -151,3 +151,5 @@ TEST_CASE("readings scatter as their noise variance says") {
   }
   CHECK(sum == doctest::Approx(expected).epsilon(0.15));
 }
+
+}  // namespace isobar::test::test_differential_altimeter

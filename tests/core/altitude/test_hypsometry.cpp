@@ -5,7 +5,7 @@
 
 #include "core/altitude/hypsometry.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_hypsometry {
 
 TEST_CASE("heights of layers add up") {
   const double whole = hypsometric_height_m(101'325.0, 99'000.0, 288.0);
@@ -59,3 +59,5 @@ TEST_CASE("the integration converges with the fourth power of the steps") {
   CHECK(coarse / fine > 10.0);  // 16 in the limit
   CHECK(coarse / fine < 25.0);
 }
+
+}  // namespace isobar::test::test_hypsometry

@@ -7,7 +7,7 @@
 #include "core/altitude/noise_estimator.hpp"
 #include "core/altitude/pressure_filter.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_noise_and_filter {
 
 TEST_CASE("white noise is measured on top of a constant rate of change") {
   std::mt19937 random(1);
@@ -73,3 +73,5 @@ TEST_CASE("the pressure filter shrinks white noise as its variance says, and fol
   for (int i = 0; i < 400; ++i) filter.add(1e5 + 10.0, 1.0 / 32.0, 0.35 * 0.35);
   CHECK(filter.pressure_pa() > 1e5 + 9.7);
 }
+
+}  // namespace isobar::test::test_noise_and_filter

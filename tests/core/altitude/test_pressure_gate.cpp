@@ -5,7 +5,7 @@
 
 #include "core/altitude/pressure_gate.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_pressure_gate {
 
 namespace {
 PressureSample sample(double t, double pa) { return {static_cast<std::int64_t>(t * 1e9), pa, 20.0}; }
@@ -46,3 +46,5 @@ TEST_CASE("after a jump of the clock the next sample follows") {
   gate.restart_clock();
   CHECK(gate.check(sample(10.0, 1e5 + 1.0)) == PressureStatus::kAccepted);
 }
+
+}  // namespace isobar::test::test_pressure_gate

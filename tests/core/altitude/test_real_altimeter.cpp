@@ -12,7 +12,7 @@
 
 #include "core/altitude/differential_altimeter.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_real_altimeter {
 
 namespace {
 
@@ -73,3 +73,5 @@ TEST_CASE("a real DPS310, polled faster than it converts, follows the survey-gra
   // Wind and a minute of weather: 0.3 m is 3.5 Pa.
   CHECK(deviation < 0.3);
 }
+
+}  // namespace isobar::test::test_real_altimeter

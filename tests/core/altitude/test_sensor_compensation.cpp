@@ -6,7 +6,8 @@
 
 #include "core/altitude/sensor_compensation.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_sensor_compensation {
+
 using Result = SensorCompensation::Result;
 
 namespace {
@@ -126,3 +127,5 @@ TEST_CASE("a calibration that cannot be one is refused with the key and the rule
   CHECK(broken([](auto& c) { c.range.lowest_c = 50.0; }).find("lowest_temperature_c") != std::string::npos);
   CHECK(broken([](auto& c) { c = CompensationConfig{}; }).empty());
 }
+
+}  // namespace isobar::test::test_sensor_compensation

@@ -7,6 +7,8 @@
 
 #include "core/map/free_space.hpp"
 
+namespace isobar::test::test_free_space {
+
 namespace {
 
 using isobar::FreeSpace;
@@ -61,3 +63,5 @@ TEST_CASE("a surface that is only grazed is not passed, however far the rays go"
   // A floor 0.1 m under the rays, seen at one degree.
   CHECK_FALSE(passes_through(*free_space, ray(120.0F, -1.0F, 5.0F), Eigen::Vector3f::UnitZ()));
 }
+
+}  // namespace isobar::test::test_free_space

@@ -12,6 +12,8 @@
 
 #include "core/map/local_map.hpp"
 
+namespace isobar::test::test_local_map {
+
 namespace {
 
 using isobar::LocalMap;
@@ -329,3 +331,5 @@ TEST_CASE("a pose that is not finite does not reach the map") {
   CHECK_FALSE(map.update(*scan));
   CHECK(map.cell_count() == 0);
 }
+
+}  // namespace isobar::test::test_local_map

@@ -12,6 +12,8 @@
 #include "core/map/cell_moments.hpp"
 #include "core/map/map_tile.hpp"
 
+namespace isobar::test::test_map_block {
+
 namespace {
 
 using isobar::CellIndex;
@@ -429,3 +431,5 @@ TEST_CASE("a cell of 0.25 m costs at most 64 bytes with its plane") {
   MESSAGE("bytes a plane cell on a wall: " << static_cast<double>(tile.memory_bytes()) /
                                                   static_cast<double>(tile.cell_count()));
 }
+
+}  // namespace isobar::test::test_map_block

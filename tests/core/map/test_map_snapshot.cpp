@@ -12,6 +12,8 @@
 #include "core/map/nearest_plane.hpp"
 #include "core/map/plane_hash.hpp"
 
+namespace isobar::test::test_map_snapshot {
+
 namespace {
 
 using isobar::CellIndex;
@@ -221,3 +223,5 @@ TEST_CASE("an empty map matches nothing") {
   CHECK_FALSE(plane_hash_of({})->nearest(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 2.0, match));
   CHECK_FALSE(nearest_plane_of({})->nearest(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 2.0, match));
 }
+
+}  // namespace isobar::test::test_map_snapshot

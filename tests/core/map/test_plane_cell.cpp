@@ -8,6 +8,8 @@
 
 #include "core/map/plane_cell.hpp"
 
+namespace isobar::test::test_plane_cell {
+
 namespace {
 
 using isobar::fit_plane;
@@ -111,3 +113,5 @@ TEST_CASE(
   }
   CHECK(planes > 300);
 }
+
+}  // namespace isobar::test::test_plane_cell

@@ -8,6 +8,8 @@
 
 #include "core/map/snapshot_exchange.hpp"
 
+namespace isobar::test::test_snapshot_exchange {
+
 namespace {
 
 std::atomic<int> alive{0};
@@ -86,3 +88,5 @@ TEST_CASE("two readers beside a writer that swaps always see a whole and never a
   }
   CHECK(alive == 0);
 }
+
+}  // namespace isobar::test::test_snapshot_exchange

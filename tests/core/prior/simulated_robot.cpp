@@ -6,7 +6,7 @@
 #include "core/altitude/hypsometry.hpp"
 #include "core/prior/rotation.hpp"
 
-namespace isobar::testing {
+namespace isobar::test {
 namespace {
 
 constexpr double kStep = 1e-3;  // of numerical derivatives [s]
@@ -199,4 +199,4 @@ Figures figures_of(const std::vector<Comparison>& comparisons, double from_s) {
   return figures;
 }
 
-}  // namespace isobar::testing
+}  // namespace isobar::test

@@ -15,7 +15,7 @@
 #include "core/prior/prior_estimator.hpp"
 #include "core/samples.hpp"
 
-namespace isobar::testing {
+namespace isobar::test {
 
 struct Pose {
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
@@ -133,4 +133,4 @@ struct Figures {
 
 Figures figures_of(const std::vector<Comparison>& comparisons, double from_s = 5.0);
 
-}  // namespace isobar::testing
+}  // namespace isobar::test

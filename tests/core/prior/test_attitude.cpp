@@ -5,8 +5,7 @@
 #include "core/prior/rotation.hpp"
 #include "tests/core/prior/simulated_robot.hpp"
 
-using namespace isobar;
-using namespace isobar::testing;
+namespace isobar::test::test_attitude {
 
 namespace {
 
@@ -189,3 +188,5 @@ TEST_CASE("updates are consistent: the error stays within the filter's own varia
   const double error = std::abs(pitch_of(filter.q_world_base().toRotationMatrix()));
   CHECK(error < 3.0 * std::sqrt(filter.roll_pitch_variance_rad2()));
 }
+
+}  // namespace isobar::test::test_attitude

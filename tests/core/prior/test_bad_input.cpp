@@ -7,7 +7,7 @@
 
 #include "core/prior/prior_estimator.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_bad_input {
 
 namespace {
 
@@ -210,3 +210,5 @@ TEST_CASE(
   bench.stand(1.0);
   CHECK(bench.prior.attitude_valid);
 }
+
+}  // namespace isobar::test::test_bad_input

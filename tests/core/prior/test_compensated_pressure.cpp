@@ -7,7 +7,7 @@
 
 #include "core/prior/prior_estimator.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_compensated_pressure {
 
 namespace {
 
@@ -104,3 +104,5 @@ TEST_CASE("samples that the calibration does not know are used and counted") {
   CHECK(counters.pressure_without_temperature == 2'000);
   CHECK(counters.pressure_accepted > 1'900);
 }
+
+}  // namespace isobar::test::test_compensated_pressure

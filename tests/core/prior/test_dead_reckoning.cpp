@@ -6,8 +6,7 @@
 #include "core/prior/dead_reckoning.hpp"
 #include "tests/core/prior/simulated_robot.hpp"
 
-using namespace isobar;
-using namespace isobar::testing;
+namespace isobar::test::test_dead_reckoning {
 
 namespace {
 std::int64_t at(double t) { return static_cast<std::int64_t>(t * 1e9); }
@@ -75,3 +74,5 @@ TEST_CASE("dead reckoning follows stairs: path length and height from wheels and
   CHECK(std::abs(error.z()) < 0.06);
   CHECK(end.truth.p.z() < -3.0);
 }
+
+}  // namespace isobar::test::test_dead_reckoning

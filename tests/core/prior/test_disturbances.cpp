@@ -6,8 +6,7 @@
 
 #include "tests/core/prior/simulated_robot.hpp"
 
-using namespace isobar;
-using namespace isobar::testing;
+namespace isobar::test::test_disturbances {
 
 namespace {
 
@@ -195,3 +194,5 @@ TEST_CASE("a fault of the barometer is said within two seconds, and the poses na
   CHECK(comparisons.back().t > 25.9);
   CHECK(comparisons.back().prior.height_source == HeightSource::kHeld);
 }
+
+}  // namespace isobar::test::test_disturbances

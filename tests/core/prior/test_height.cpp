@@ -4,8 +4,7 @@
 
 #include "tests/core/prior/simulated_robot.hpp"
 
-using namespace isobar;
-using namespace isobar::testing;
+namespace isobar::test::test_height {
 
 namespace {
 
@@ -146,3 +145,5 @@ TEST_CASE("a hanging platform gets its height from pressure and acceleration") {
   // 26 m down: turbulence and warm-up 5 cm, self-heating's share of the scale a few millimetres.
   CHECK(figures.height_max_m < 0.15);
 }
+
+}  // namespace isobar::test::test_height

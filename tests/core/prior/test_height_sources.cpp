@@ -4,8 +4,7 @@
 
 #include "tests/core/prior/simulated_robot.hpp"
 
-using namespace isobar;
-using namespace isobar::testing;
+namespace isobar::test::test_height_sources {
 
 namespace {
 
@@ -134,3 +133,5 @@ TEST_CASE("a gap of the IMU is bridged and its uncertainty said") {
   CHECK(std::abs(end.pitch_error_rad) < 0.015);
   CHECK(figures_of(comparisons).height_max_m < 0.25);
 }
+
+}  // namespace isobar::test::test_height_sources

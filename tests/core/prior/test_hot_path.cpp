@@ -1,37 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
 
-#include <atomic>
-#include <cstdlib>
 #include <cstring>
 #include <new>
 
 #include "core/prior/prior_history.hpp"
 #include "tests/core/prior/simulated_robot.hpp"
+#include "tests/support/allocation_count.hpp"
 
-namespace {
-std::atomic<long> allocations{0};  // NOLINT: counted by the operators below
-}
-
-// Every way to allocate goes through these two.
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;  // NOLINT
-  throw std::bad_alloc();
-}
-void* operator new(std::size_t size, std::align_val_t alignment) {
-  ++allocations;
-  const auto align = static_cast<std::size_t>(alignment);
-  if (void* memory = std::aligned_alloc(align, (size + align - 1) / align * align)) return memory;  // NOLINT
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }                                 // NOLINT
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }                    // NOLINT
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }               // NOLINT
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }  // NOLINT
-
-using namespace isobar;
-using namespace isobar::testing;
+namespace isobar::test::test_hot_path {
 
 TEST_CASE("nothing is allocated after construction") {
   PriorConfig config;
@@ -43,7 +20,7 @@ TEST_CASE("nothing is allocated after construction") {
   PriorEstimator estimator{config};
   PriorHistory history(256);
   Prior prior;
-  const long before = allocations;
+  const std::size_t before = allocation_count();
   bool covered = true;
   for (int i = 0; i < 4000; ++i) {
     const std::int64_t stamp_ns = i * 5'000'000LL;
@@ -57,12 +34,12 @@ TEST_CASE("nothing is allocated after construction") {
     history.add(prior);
     covered = covered && history.at(stamp_ns - (i > 0 ? 1'000'000 : 0), prior);
   }
-  CHECK(allocations == before);
+  CHECK(allocation_count() == before);
   CHECK(covered);
   CHECK(estimator.counters().pressure_outside_calibration > 0);
-  const long counted = allocations;
+  const std::size_t counted = allocation_count();
   ::operator delete(::operator new(16));  // the counter counts: not a new-expression, which may be left out
-  CHECK(allocations == counted + 1);
+  CHECK(allocation_count() == counted + 1);
 }
 
 TEST_CASE("the same samples give the same bits") {
@@ -79,3 +56,5 @@ TEST_CASE("the same samples give the same bits") {
     CHECK(first[i].prior.height_variance_m2 == second[i].prior.height_variance_m2);
   }
 }
+
+}  // namespace isobar::test::test_hot_path

@@ -8,12 +8,12 @@
 #include <random>
 #include <vector>
 
-#include "core/altitude/filter_design.hpp"
 #include "core/altitude/hypsometry.hpp"
 #include "core/altitude/pressure_filter.hpp"
+#include "core/calibration/filter_design.hpp"
 #include "core/prior/inertial_altimeter.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_inertial_altimeter {
 
 namespace {
 
@@ -209,3 +209,5 @@ TEST_CASE("a gap in the acceleration is bridged by the pressure, and nonsense is
   stand(1.0, 9.0);
   CHECK(inertial.height_m() == doctest::Approx(4.0).epsilon(0.02).scale(0.0));
 }
+
+}  // namespace isobar::test::test_inertial_altimeter

@@ -6,7 +6,7 @@
 #include "core/prior/prior_history.hpp"
 #include "core/prior/rotation.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_prior_history {
 
 namespace {
 
@@ -85,3 +85,5 @@ TEST_CASE("between two priors the worse source and both flags count") {
   CHECK(middle.height_source == HeightSource::kHeld);
   CHECK_FALSE(middle.attitude_valid);
 }
+
+}  // namespace isobar::test::test_prior_history

@@ -5,7 +5,7 @@
 
 #include "core/prior/standstill.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_standstill {
 
 namespace {
 
@@ -64,3 +64,5 @@ TEST_CASE("one turning sample ends a standstill at once") {
   shaker.feed(detector, 0.005, 1.0, 0.0, 0.0);
   CHECK_FALSE(detector.standing());
 }
+
+}  // namespace isobar::test::test_standstill

@@ -6,7 +6,8 @@
 
 #include "core/prior/vertical_filter.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_vertical_filter {
+
 using V = VerticalFilter;
 
 TEST_CASE("the covariance is propagated as F P F^T + Q") {
@@ -154,3 +155,5 @@ TEST_CASE("a step takes all of a jump, and when it is over the offset is as sure
   CHECK(std::abs(filter.pressure_innovation(0.0, 0.0, 1e-4).value) < 1e-2);
   CHECK(filter.variance(V::kOffset) == doctest::Approx(offset_variance_m2).epsilon(1e-3));
 }
+
+}  // namespace isobar::test::test_vertical_filter

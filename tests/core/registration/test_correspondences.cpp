@@ -7,6 +7,8 @@
 
 #include "core/registration/correspondences.hpp"
 
+namespace isobar::test::test_correspondences {
+
 namespace {
 
 using namespace isobar;  // NOLINT(google-build-using-namespace)
@@ -63,3 +65,5 @@ TEST_CASE("points of a coarse look bring what was found of them into the fine on
     CHECK(look(3) == std::vector<bool>((count + 2) / 3, false));
   }
 }
+
+}  // namespace isobar::test::test_correspondences

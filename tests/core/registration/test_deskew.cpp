@@ -9,10 +9,11 @@
 #include "core/registration/deskew.hpp"
 #include "tests/core/registration/synthetic_world.hpp"
 
+namespace isobar::test::test_deskew {
+
 namespace {
 
-using namespace isobar;        // NOLINT(google-build-using-namespace)
-using namespace isobar::test;  // NOLINT(google-build-using-namespace)
+using namespace isobar;  // NOLINT(google-build-using-namespace)
 
 constexpr std::int64_t kStart = 1'700'000'000'000'000'000;
 
@@ -126,3 +127,5 @@ TEST_CASE("points out of range or not finite, absurd times and counts do no harm
   deskewer.deskew(*scan, PriorHistory(), motion, *out);
   CHECK(out->point_count == 1);
 }
+
+}  // namespace isobar::test::test_deskew

@@ -3,6 +3,8 @@
 
 #include "core/registration/method.hpp"
 
+namespace isobar::test::test_method {
+
 using isobar::HeightSource;
 using isobar::Method;
 using isobar::traits_of;
@@ -37,3 +39,5 @@ TEST_CASE("without any height a method runs as the one that needs none, and says
   CHECK(effective(Method::k6Dof) == Method::k6Dof);
   CHECK(effective(Method::kOdometry) == Method::kOdometry);
 }
+
+}  // namespace isobar::test::test_method

@@ -9,6 +9,8 @@
 
 #include "core/registration/point_to_plane.hpp"
 
+namespace isobar::test::test_point_to_plane {
+
 namespace {
 
 using namespace isobar;  // NOLINT(google-build-using-namespace)
@@ -148,3 +150,5 @@ TEST_CASE("the scale is that of the pairs, whatever their order; none at all giv
   CHECK(residual_scale_m(pairs, noise, 0.5F) == doctest::Approx(scale_m).epsilon(1e-4));
   CHECK(residual_scale_m({}, noise, 0.5F) == doctest::Approx(noise.noise_m));
 }
+
+}  // namespace isobar::test::test_point_to_plane

@@ -13,6 +13,8 @@
 #include "core/map/local_map.hpp"
 #include "core/registration/registration.hpp"
 
+namespace isobar::test::test_real_corridor {
+
 namespace {
 
 using namespace isobar;  // NOLINT(google-build-using-namespace)
@@ -82,3 +84,5 @@ TEST_CASE("eleven real scans of a corridor follow each other in steps of half a 
     before = now;
   }
 }
+
+}  // namespace isobar::test::test_real_corridor

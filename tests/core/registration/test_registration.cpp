@@ -7,13 +7,14 @@
 
 #include "core/map/local_map.hpp"
 #include "core/registration/registration.hpp"
-#include "tests/core/registration/allocation_count.hpp"
 #include "tests/core/registration/synthetic_world.hpp"
+#include "tests/support/allocation_count.hpp"
+
+namespace isobar::test::test_registration {
 
 namespace {
 
-using namespace isobar;        // NOLINT(google-build-using-namespace)
-using namespace isobar::test;  // NOLINT(google-build-using-namespace)
+using namespace isobar;  // NOLINT(google-build-using-namespace)
 
 constexpr std::int64_t kStart = 1'700'000'000'000'000'000;
 constexpr std::int64_t kScanNs = 100'000'000;
@@ -353,3 +354,5 @@ TEST_CASE("registering a scan allocates nothing") {
   }
   CHECK(allocation_count() > 0);  // the counter counts
 }
+
+}  // namespace isobar::test::test_registration

@@ -9,6 +9,8 @@
 
 #include "core/registration/sampling.hpp"
 
+namespace isobar::test::test_sampling {
+
 namespace {
 
 using isobar::RegisteredScan;
@@ -92,3 +94,5 @@ TEST_CASE("an empty scan and one that fills the memory are both thinned") {
   CHECK(scan->point_count == RegisteredScan::kMaxPoints);
   CHECK(sampler.sample().size() == 300);
 }
+
+}  // namespace isobar::test::test_sampling

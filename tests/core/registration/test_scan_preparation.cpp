@@ -9,10 +9,11 @@
 #include "core/registration/scan_preparation.hpp"
 #include "tests/core/registration/synthetic_world.hpp"
 
+namespace isobar::test::test_scan_preparation {
+
 namespace {
 
-using namespace isobar;        // NOLINT(google-build-using-namespace)
-using namespace isobar::test;  // NOLINT(google-build-using-namespace)
+using namespace isobar;  // NOLINT(google-build-using-namespace)
 
 constexpr std::int64_t kStart = 1'700'000'000'000'000'000;
 
@@ -88,3 +89,5 @@ TEST_CASE("a count beyond the memory of a scan is taken as its memory") {
   CHECK(out->point_count > 10'000);
   CHECK(out->point_count <= RegisteredScan::kMaxPoints);
 }
+
+}  // namespace isobar::test::test_scan_preparation

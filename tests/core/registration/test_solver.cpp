@@ -10,6 +10,8 @@
 #include "core/registration/point_to_plane.hpp"
 #include "core/registration/solver.hpp"
 
+namespace isobar::test::test_solver {
+
 namespace {
 
 using namespace isobar;  // NOLINT(google-build-using-namespace)
@@ -186,3 +188,5 @@ TEST_CASE("without pairs the prior is the answer; without either there is none")
   poisoned.gradient(3) = std::nan("");
   CHECK_FALSE(solve_step(poisoned, prior, basis_of(Method::k3Dof), SolverWeights{}).solved);
 }
+
+}  // namespace isobar::test::test_solver

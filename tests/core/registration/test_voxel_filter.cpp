@@ -9,6 +9,8 @@
 
 #include "core/registration/voxel_filter.hpp"
 
+namespace isobar::test::test_voxel_filter {
+
 namespace {
 
 using isobar::ScanPoint;
@@ -83,3 +85,5 @@ TEST_CASE("a full filter takes no more and still knows what it has") {
   filter.start();
   CHECK(filter.first(3'000));
 }
+
+}  // namespace isobar::test::test_voxel_filter

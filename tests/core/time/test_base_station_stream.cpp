@@ -8,7 +8,8 @@
 
 #include "core/time/base_station_stream.hpp"
 
-namespace isobar {
+namespace isobar::test::test_base_station_stream {
+
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -332,4 +333,4 @@ TEST_CASE("A slow base that is started again before its silence shows is no seco
   CHECK(robot.stream.status().rival_ns == 0);
 }
 
-}  // namespace isobar
+}  // namespace isobar::test::test_base_station_stream

@@ -8,7 +8,8 @@
 
 #include "core/time/clock_anchor.hpp"
 
-namespace isobar {
+namespace isobar::test::test_clock_anchor {
+
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -133,4 +134,4 @@ TEST_CASE("Five seconds of silence are no step") {
   CHECK(std::abs(anchor.to_host_ns(anchor.device_unwrapped_ns()) - device.true_host_ns(4'999)) < kMs);
 }
 
-}  // namespace isobar
+}  // namespace isobar::test::test_clock_anchor

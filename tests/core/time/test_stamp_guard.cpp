@@ -6,7 +6,8 @@
 
 #include "core/time/stamp_guard.hpp"
 
-namespace isobar {
+namespace isobar::test::test_stamp_guard {
+
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -63,4 +64,4 @@ TEST_CASE("A stream slower than the limit is recognised by its even steps") {
   CHECK(guard.check(180 * kSecond) == V::kAccept);
 }
 
-}  // namespace isobar
+}  // namespace isobar::test::test_stamp_guard

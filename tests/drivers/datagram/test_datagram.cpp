@@ -9,7 +9,10 @@
 
 #include "drivers/datagram/datagram.hpp"
 
-namespace isobar::datagram {
+namespace isobar::test::test_datagram {
+
+using namespace isobar::datagram;
+
 namespace {
 
 std::vector<Sample> parse_all(DatagramParser& parser, std::string_view text) {
@@ -124,4 +127,4 @@ TEST_CASE("Sequence numbers show loss, repetition, overtaking, wrap and restart,
   CHECK(parser.counters().lost[static_cast<std::size_t>(Kind::kImu)] == 0);
 }
 
-}  // namespace isobar::datagram
+}  // namespace isobar::test::test_datagram

@@ -9,7 +9,7 @@
 #include "core/errors.hpp"
 #include "drivers/datagram/udp.hpp"
 
-namespace isobar {
+namespace isobar::test::test_udp {
 
 TEST_CASE("Datagrams arrive whole, in order and stamped on the robot clock") {
   UdpReceiver receiver("127.0.0.1", 0);
@@ -63,4 +63,4 @@ TEST_CASE("Sending where nobody listens is no failure") {
   }
 }
 
-}  // namespace isobar
+}  // namespace isobar::test::test_udp

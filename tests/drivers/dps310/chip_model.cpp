@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace isobar::dps310::test {
+namespace isobar::dps310 {
 
 namespace {
 
@@ -183,4 +183,4 @@ void ChipModel::set_mode(std::uint8_t mode) {
   pressure_ = temperature_ = Conversion{now_ns_, 0};
 }
 
-}  // namespace isobar::dps310::test
+}  // namespace isobar::dps310

@@ -14,7 +14,7 @@
 #include "drivers/dps310/register_bus.hpp"
 #include "tests/drivers/dps310/known_sensor.hpp"
 
-namespace isobar::dps310::test {
+namespace isobar::dps310 {
 
 /// The chip and the air around it.
 class ChipModel {
@@ -109,4 +109,4 @@ class ModelBus final : public RegisterBus {
   ChipModel* chip_;
 };
 
-}  // namespace isobar::dps310::test
+}  // namespace isobar::dps310

@@ -4,7 +4,7 @@
 
 #include "drivers/dps310/compensation.hpp"
 
-namespace isobar::dps310::test {
+namespace isobar::dps310 {
 
 inline constexpr Coefficients kKnownCoefficients{220, -293, 78'668, -47'847, -2'565, 1'250, -7'393, 67, -852};
 
@@ -13,4 +13,4 @@ inline constexpr Coefficients kKnownCoefficients{220, -293, 78'668, -47'847, -2'
 inline constexpr CoefficientBytes kKnownBytes{0x0D, 0xCE, 0xDB, 0x13, 0x34, 0xCF, 0x45, 0x19, 0xF5,
                                               0xFB, 0x04, 0xE2, 0xE3, 0x1F, 0x00, 0x43, 0xFC, 0xAC};
 
-}  // namespace isobar::dps310::test
+}  // namespace isobar::dps310

@@ -9,6 +9,8 @@
 #include "drivers/dps310/settings.hpp"
 #include "tests/drivers/dps310/known_sensor.hpp"
 
+namespace isobar::test::test_compensation {
+
 using namespace isobar::dps310;
 
 namespace {
@@ -26,7 +28,7 @@ void set_field(CoefficientBytes& bytes, int first, int bits, std::int32_t value)
 }  // namespace
 
 TEST_CASE("the coefficients of a known sensor are read from their 18 bytes") {
-  CHECK(decode_coefficients(test::kKnownBytes) == test::kKnownCoefficients);
+  CHECK(decode_coefficients(dps310::kKnownBytes) == dps310::kKnownCoefficients);
 }
 
 TEST_CASE("every coefficient has its own bits: both ends of each range survive, and touch no other") {
@@ -47,9 +49,9 @@ TEST_CASE("every coefficient has its own bits: both ends of each range survive, 
   for (const Field& field : kFields) {
     const std::int32_t highest = (1 << (field.bits - 1)) - 1;
     for (const std::int32_t value : {highest, -highest - 1, -1, 0, 1}) {
-      CoefficientBytes bytes = test::kKnownBytes;
+      CoefficientBytes bytes = dps310::kKnownBytes;
       set_field(bytes, field.first, field.bits, value);
-      Coefficients expected = test::kKnownCoefficients;
+      Coefficients expected = dps310::kKnownCoefficients;
       expected.*field.member = value;
       CHECK(decode_coefficients(bytes) == expected);
     }
@@ -61,10 +63,10 @@ TEST_CASE("a memory that was not loaded and a dead bus are no coefficients") {
   CHECK(implausibility(bytes) != nullptr);
   bytes.fill(0xFF);
   CHECK(implausibility(bytes) != nullptr);
-  CHECK(implausibility(test::kKnownBytes) == nullptr);
-  Coefficients c = decode_coefficients(test::kKnownBytes);
+  CHECK(implausibility(dps310::kKnownBytes) == nullptr);
+  Coefficients c = decode_coefficients(dps310::kKnownBytes);
   CHECK(c.c10 != 0);
-  bytes = test::kKnownBytes;
+  bytes = dps310::kKnownBytes;
   set_field(bytes, 44, 20, 0);  // a sensor that does not feel pressure
   CHECK(implausibility(bytes) != nullptr);
 }
@@ -121,3 +123,5 @@ TEST_CASE("more oversampling never is noisier or faster, and the default setting
   greedy.pressure_oversampling = 32;  // 32 of 53.2 ms alone are 1.7 s
   CHECK(busy_time_s(greedy) > 1.0);
 }
+
+}  // namespace isobar::test::test_compensation

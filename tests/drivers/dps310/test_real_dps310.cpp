@@ -14,6 +14,8 @@
 
 #include "drivers/dps310/compensation.hpp"
 
+namespace isobar::test::test_real_dps310 {
+
 using namespace isobar::dps310;
 
 namespace {
@@ -108,3 +110,5 @@ TEST_CASE(
   CHECK(torn_rows == 59);
   CHECK(torn_pressures == 29);  // the 0.5 % of rows whose pressure is not that of their registers
 }
+
+}  // namespace isobar::test::test_real_dps310

@@ -11,13 +11,14 @@
 
 #include "drivers/dps310/sensor.hpp"
 #include "drivers/dps310/smbus.hpp"
-#include "tests/core/registration/allocation_count.hpp"
 #include "tests/drivers/dps310/chip_model.hpp"
+#include "tests/support/allocation_count.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_sensor {
+
 using namespace isobar::dps310;
-using isobar::dps310::test::ChipModel;
-using isobar::dps310::test::ModelBus;
+using isobar::dps310::ChipModel;
+using isobar::dps310::ModelBus;
 
 namespace {
 
@@ -312,7 +313,7 @@ TEST_CASE(
     const auto matches = [&](std::int32_t raw) {
       const double ts = (sample.temperature_c - 110.0) / -293.0;
       const RawResult result{raw, static_cast<std::int32_t>(std::lround(ts * scale_factor(1)))};
-      return std::abs(compensate(dps310::test::kKnownCoefficients, result, scale_factor(4), scale_factor(1))
+      return std::abs(compensate(dps310::kKnownCoefficients, result, scale_factor(4), scale_factor(1))
                           .pressure_pa -
                       sample.pressure_pa) < 1e-6;
     };
@@ -375,7 +376,7 @@ TEST_CASE("whatever bytes the bus delivers, every sample that comes out is finit
   std::uint64_t samples = 0;
   std::uint64_t implausible = 0;
   for (int run = 0; run < 300; ++run) {
-    CoefficientBytes coefficients = dps310::test::kKnownBytes;
+    CoefficientBytes coefficients = dps310::kKnownBytes;
     for (int flips = run % 3; flips > 0; --flips) coefficients[any() % kCoefficientBytes] = any();
     std::array<std::uint8_t, kResultBytes> results{};
     std::array<std::uint8_t, 256> written{};
@@ -425,7 +426,7 @@ TEST_CASE("neither samples nor faults nor new starts allocate memory") {
   const auto byte = [&](std::uint8_t address) -> std::uint8_t {
     const bool silent = ++accesses % 2'500 > 2'000;
     if (address >= kCoefficients && address < kCoefficients + kCoefficientBytes) {
-      return dps310::test::kKnownBytes[address - kCoefficients];
+      return dps310::kKnownBytes[address - kCoefficients];
     }
     switch (address) {
       case kProductId:
@@ -467,3 +468,5 @@ TEST_CASE("a bus of the kernel that is not there, or is none, is an error of the
   CHECK(none.read(kProductId, {&byte, 1}) == EBADF);
   CHECK(none.write(kReset, kSoftReset) == EBADF);
 }
+
+}  // namespace isobar::test::test_sensor

@@ -12,7 +12,8 @@
 
 #include "drivers/iio/barometer.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_barometer {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -194,3 +195,5 @@ TEST_CASE("a thermometer that fails costs the temperature, not the pressure") {
   CHECK(std::isnan(bench.samples.back().temperature_c));
   CHECK(bench.state() == BarometerState::kMeasuring);
 }
+
+}  // namespace isobar::test::test_barometer

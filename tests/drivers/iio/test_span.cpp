@@ -8,6 +8,8 @@
 
 #include "drivers/setra278/span.hpp"
 
+namespace isobar::test::test_span {
+
 using namespace isobar::setra278;
 
 TEST_CASE("the spans that the transducer is sold with give the pressures of their order code") {
@@ -53,3 +55,5 @@ TEST_CASE("a span that runs backwards or nowhere is refused") {
   CHECK(broken_rule({1.0, 1.0, 60e3, 110e3}) != nullptr);
   CHECK(broken_rule({0.0, 2.5, 110e3, 60e3}) != nullptr);
 }
+
+}  // namespace isobar::test::test_span

@@ -11,7 +11,8 @@
 #include "drivers/velodyne/velodyne_decoder.hpp"
 #include "tests/drivers/velodyne/packet_builder.hpp"
 
-namespace isobar {
+namespace isobar::test::test_decoder {
+
 namespace {
 
 using test::build_packet;
@@ -377,4 +378,4 @@ TEST_CASE("A sensor that stands still fills scans up to their capacity and the n
   }
 }
 
-}  // namespace isobar
+}  // namespace isobar::test::test_decoder

@@ -10,7 +10,8 @@
 #include "drivers/velodyne/velodyne_decoder.hpp"
 #include "tests/drivers/velodyne/real_data.hpp"
 
-namespace isobar {
+namespace isobar::test::test_real_packets {
+
 namespace {
 
 const std::filesystem::path kData = ISOBAR_SHARED_DATA;
@@ -169,4 +170,4 @@ TEST_CASE("A real VLP-16 data packet gives points, a real position packet is tol
   CHECK(scan->point_count > 100);
 }
 
-}  // namespace isobar
+}  // namespace isobar::test::test_real_packets

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "drivers/simulation/simulate.hpp"
+#include "simulation/simulate.hpp"
 #include "tools/report/evaluated_run.hpp"
 
 namespace isobar::test {

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "daemon/replay.hpp"
-#include "drivers/recording/recording_reader.hpp"
-#include "drivers/recording/recording_writer.hpp"
+#include "run/recording/recording_reader.hpp"
+#include "run/recording/recording_writer.hpp"
 
 namespace isobar::test {
 

@@ -10,20 +10,21 @@
 
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
+#include "run/files/text_file.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/tools/commands/exit_code.hpp"
-#include "tests/tools/report/temporary_folder.hpp"
 #include "tests/tools/report/well_formed.hpp"
 #include "tools/calibrate_logs.hpp"
 #include "tools/commands.hpp"
 #include "tools/report/calibration_report.hpp"
 #include "tools/report/svg.hpp"
-#include "tools/report/text_file.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_calibrate_command {
+
 using namespace isobar::tools;
+using isobar::files::write_text_file;
 using isobar::report::fixed;
-using isobar::report::write_text_file;
-using isobar::report::test::TemporaryFolder;
+using isobar::test::TemporaryFolder;
 
 namespace {
 
@@ -105,9 +106,9 @@ TEST_CASE("isobar calibrate finds the clock, fits the sensor, and writes what th
   // Sensor 0.8 Pa, and the weather between the station's samples.
   CHECK(config.sigma_pa > 0.7);
   CHECK(config.sigma_pa < 2.0);
-  const std::string html = report::read_text_file(path("report.html"));
-  CHECK(report::test::is_well_formed(
-      html.substr(html.find("<main>"), html.find("</main>") + 7 - html.find("<main>"))));
+  const std::string html = files::read_text_file(path("report.html"));
+  CHECK(
+      test::is_well_formed(html.substr(html.find("<main>"), html.find("</main>") + 7 - html.find("<main>"))));
   CHECK(html.find("Residual against temperature") != std::string::npos);
   CHECK(html.find("isobar calibrate --sensor") != std::string::npos);
   // And the daemon's configuration takes it by its name.
@@ -248,6 +249,8 @@ TEST_CASE("the table has a row for each model, the reason, and why models are mi
   page.calibration = calibration;
   page.recordings = aligned.recordings;
   const std::string html = report::render_calibration_report(page);
-  CHECK(report::test::is_well_formed(
-      html.substr(html.find("<main>"), html.find("</main>") + 7 - html.find("<main>"))));
+  CHECK(
+      test::is_well_formed(html.substr(html.find("<main>"), html.find("</main>") + 7 - html.find("<main>"))));
 }
+
+}  // namespace isobar::test::test_calibrate_command

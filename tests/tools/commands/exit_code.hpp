@@ -7,7 +7,7 @@
 
 #include "core/errors.hpp"
 
-namespace isobar::tools::test {
+namespace isobar::test {
 
 /// The exit code that `isobar` gives with one subcommand: 0, the error's, or 64 for what the parser refuses.
 template <typename AddCommand>
@@ -26,4 +26,4 @@ int exit_code(AddCommand add_command, std::vector<std::string> words) {
   return 0;
 }
 
-}  // namespace isobar::tools::test
+}  // namespace isobar::test

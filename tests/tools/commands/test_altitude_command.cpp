@@ -9,26 +9,27 @@
 #include <utility>
 #include <vector>
 
-#include "core/altitude/height_difference.hpp"
-#include "core/altitude/weather_smoother.hpp"
+#include "core/calibration/height_difference.hpp"
+#include "core/calibration/weather_smoother.hpp"
+#include "run/files/text_file.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/tools/commands/exit_code.hpp"
-#include "tests/tools/report/temporary_folder.hpp"
 #include "tools/commands.hpp"
 #include "tools/height_errors.hpp"
 #include "tools/inertial_heights.hpp"
 #include "tools/pressure_log.hpp"
-#include "tools/report/text_file.hpp"
 
-using namespace isobar;
-using isobar::report::read_text_file;
-using isobar::report::write_text_file;
-using isobar::report::test::TemporaryFolder;
+namespace isobar::test::test_altitude_command {
+
+using isobar::files::read_text_file;
+using isobar::files::write_text_file;
+using isobar::test::TemporaryFolder;
 
 namespace {
 
 int altitude(std::vector<std::string> words) {
   words.insert(words.begin(), "altitude");
-  return tools::test::exit_code(tools::add_altitude_command, std::move(words));
+  return isobar::test::exit_code(tools::add_altitude_command, std::move(words));
 }
 
 /// A minute in weather of 1 Pa/s; the moved one climbs at 0.2 m/s.
@@ -152,3 +153,5 @@ TEST_CASE("on a real robot outdoors the height keeps to 12 cm rms of survey-grad
   // that the delay is the right one.
   CHECK(errors(1.0, false).rms_m < errors(0.0, false).rms_m);
 }
+
+}  // namespace isobar::test::test_altitude_command

@@ -2,22 +2,23 @@
 #include <doctest/doctest.h>
 
 #include "core/map/map_tile.hpp"
-#include "daemon/map_export.hpp"
-#include "daemon/tile_store/file_tile_store.hpp"
-#include "tests/daemon/tile_store/tiles.hpp"
-#include "tests/drivers/recording/scratch.hpp"
+#include "run/files/map_export.hpp"
+#include "run/tile_store/file_tile_store.hpp"
+#include "tests/run/recording/scratch.hpp"
+#include "tests/run/tile_store/tiles.hpp"
 #include "tests/tools/commands/exit_code.hpp"
 #include "tools/commands.hpp"
 
-using namespace isobar;        // NOLINT(google-build-using-namespace): a test
-using namespace isobar::test;  // NOLINT(google-build-using-namespace)
+namespace isobar::test::test_map_command {
+
+using namespace isobar;  // NOLINT(google-build-using-namespace): a test
 
 namespace {
 
 int map_command(const std::vector<std::string>& words) {
   std::vector<std::string> all{"map"};
   all.insert(all.end(), words.begin(), words.end());
-  return tools::test::exit_code(tools::add_map_command, all);
+  return isobar::test::exit_code(tools::add_map_command, all);
 }
 
 /// Puts the tiles of a map without points: this is about the commands, not about what is in a tile.
@@ -79,3 +80,5 @@ TEST_CASE("a folder without a map and a box inside out are refused") {
   CHECK(map_command({"export", folder}) == 64);
   CHECK(map_command({}) == 64);
 }
+
+}  // namespace isobar::test::test_map_command

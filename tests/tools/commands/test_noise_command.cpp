@@ -9,21 +9,22 @@
 #include <vector>
 
 #include "core/errors.hpp"
+#include "run/files/text_file.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/tools/commands/exit_code.hpp"
-#include "tests/tools/report/temporary_folder.hpp"
 #include "tools/commands.hpp"
 #include "tools/pressure_log.hpp"
-#include "tools/report/text_file.hpp"
 
-using namespace isobar;
-using isobar::report::read_text_file;
-using isobar::report::write_text_file;
-using isobar::report::test::TemporaryFolder;
+namespace isobar::test::test_noise_command {
+
+using isobar::files::read_text_file;
+using isobar::files::write_text_file;
+using isobar::test::TemporaryFolder;
 
 namespace {
 
 int noise(std::vector<std::string> words) {
-  return tools::test::exit_code(tools::add_noise_command, std::move(words));
+  return isobar::test::exit_code(tools::add_noise_command, std::move(words));
 }
 
 /// A still DPS310 for a minute, with two rows for every conversion.
@@ -126,3 +127,5 @@ TEST_CASE("other names and units of the columns are understood to the nanosecond
         1'760'456'485'602'394'123);
   CHECK(first_stamp("Time (s):s,\xC3\xBCp", "\"Time (s)\",\xC3\xBCp\n1.25E0,94212.4\n") == 1'250'000'000);
 }
+
+}  // namespace isobar::test::test_noise_command

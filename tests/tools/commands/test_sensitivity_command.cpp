@@ -7,20 +7,21 @@
 #include <utility>
 #include <vector>
 
-#include "core/altitude/stamp.hpp"
-#include "core/evaluation/distribution.hpp"
-#include "drivers/simulation/sensitivity_rig.hpp"
+#include "core/stamp.hpp"
+#include "core/statistics/distribution.hpp"
+#include "run/files/text_file.hpp"
+#include "simulation/sensitivity_rig.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/tools/commands/exit_code.hpp"
-#include "tests/tools/report/temporary_folder.hpp"
 #include "tools/commands.hpp"
-#include "tools/report/text_file.hpp"
 #include "tools/sensitivity_study.hpp"
 
-using namespace isobar;
-using isobar::evaluation::ErrorFigures;
-using isobar::report::read_text_file;
-using isobar::report::write_text_file;
-using isobar::report::test::TemporaryFolder;
+namespace isobar::test::test_sensitivity_command {
+
+using isobar::ErrorFigures;
+using isobar::files::read_text_file;
+using isobar::files::write_text_file;
+using isobar::test::TemporaryFolder;
 using simulation::RigPair;
 using simulation::RigRequest;
 using simulation::RigRun;
@@ -29,7 +30,7 @@ namespace {
 
 int sensitivity(std::vector<std::string> words) {
   words.insert(words.begin(), "sensitivity");
-  return tools::test::exit_code(tools::add_sensitivity_command, std::move(words));
+  return isobar::test::exit_code(tools::add_sensitivity_command, std::move(words));
 }
 
 tools::SensorStudy study(const RigRequest& request, RigPair RigRun::*kind) {
@@ -54,12 +55,12 @@ ErrorFigures typical(RigPair RigRun::*kind, double distance_m) {
     request.seed = seed;
     request.dwell_s = 30.0;
     request.distance_m = distance_m;
-    const ErrorFigures figures = evaluation::error_figures(study(request, kind).filtered_errors.steps_m);
+    const ErrorFigures figures = error_figures(study(request, kind).filtered_errors.steps_m);
     CHECK(figures.count == 10);
     medians.push_back(figures.median_m);
     deviations.push_back(figures.sd_m);
   }
-  return {10, evaluation::summarize(medians).median, evaluation::summarize(deviations).median};
+  return {10, summarize(medians).median, summarize(deviations).median};
 }
 
 std::string csv(const std::vector<PressureSample>& samples) {
@@ -167,3 +168,5 @@ TEST_CASE("isobar experiment sensitivity writes its report, from the simulator a
   std::filesystem::remove(path("rig") + "/segments.csv");
   CHECK(sensitivity({"--recording", path("rig"), "--step", "0.003", "--out", path("no")}) == 65);
 }
+
+}  // namespace isobar::test::test_sensitivity_command

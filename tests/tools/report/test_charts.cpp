@@ -10,9 +10,11 @@
 #include "tools/report/histogram.hpp"
 #include "tools/report/line_chart.hpp"
 
+namespace isobar::test::test_charts {
+
 using namespace isobar::report;
-using isobar::evaluation::summarize;
-using isobar::report::test::is_well_formed;
+using isobar::summarize;
+using isobar::test::is_well_formed;
 
 TEST_CASE("numbers have a dot, no negative zero, and a dash where there is none") {
   CHECK(fixed(3.14159, 2) == "3.14");
@@ -141,3 +143,5 @@ TEST_CASE("a chart with logarithmic axes spaces decades evenly") {
   const std::string line = svg.substr(points + 8, svg.find('"', points + 8) - points - 8);
   CHECK(std::count(line.begin(), line.end(), ',') == 2);
 }
+
+}  // namespace isobar::test::test_charts

@@ -5,18 +5,19 @@
 #include <utility>
 #include <vector>
 
+#include "run/files/text_file.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/tools/commands/exit_code.hpp"
-#include "tests/tools/report/temporary_folder.hpp"
 #include "tools/commands.hpp"
-#include "tools/report/text_file.hpp"
 
-using namespace isobar;
-using isobar::report::test::TemporaryFolder;
+namespace isobar::test::test_evaluate_command {
+
+using isobar::test::TemporaryFolder;
 
 namespace {
 
 int exit_code(std::vector<std::string> words) {
-  return tools::test::exit_code(tools::add_evaluate_command, std::move(words));
+  return isobar::test::exit_code(tools::add_evaluate_command, std::move(words));
 }
 
 }  // namespace
@@ -27,17 +28,17 @@ TEST_CASE(
   const auto path = [&](const char* name) { return (folder.path() / name).string(); };
   std::string walk;
   for (int i = 0; i < 100; ++i) walk += std::to_string(i) + " " + std::to_string(0.2 * i) + " 0 0 0 0 0 1\n";
-  report::write_text_file(path("r.tum"), walk);
-  report::write_text_file(path("bad.tum"), "1 2 3\n");
-  report::write_text_file(path("bad.csv"), "t_start_ns,label\n");
+  files::write_text_file(path("r.tum"), walk);
+  files::write_text_file(path("bad.tum"), "1 2 3\n");
+  files::write_text_file(path("bad.csv"), "t_start_ns,label\n");
 
   CHECK(exit_code({"evaluate", path("r.tum"), path("r.tum"), "--names", "walk", "--report", path("out.html"),
                    "--json", path("out.json"), "--picture", path("out.svg"), "--align", "rigid"}) == 0);
-  const std::string html = report::read_text_file(path("out.html"));
+  const std::string html = files::read_text_file(path("out.html"));
   CHECK(html.find("--align rigid") != std::string::npos);
   CHECK(html.find("walk") != std::string::npos);
-  CHECK(report::read_text_file(path("out.json")).find("\"name\": \"walk\"") != std::string::npos);
-  CHECK(report::read_text_file(path("out.svg")).starts_with("<svg "));
+  CHECK(files::read_text_file(path("out.json")).find("\"name\": \"walk\"") != std::string::npos);
+  CHECK(files::read_text_file(path("out.svg")).starts_with("<svg "));
 
   CHECK(exit_code({"evaluate"}) == 64);
   CHECK(exit_code({"evaluate", path("r.tum")}) == 64);
@@ -49,3 +50,5 @@ TEST_CASE(
   CHECK(exit_code({"evaluate", path("r.tum"), path("r.tum"), "--segments", path("bad.csv")}) == 65);
   CHECK(exit_code({"evaluate", path("r.tum"), path("r.tum"), "--report", path("no/such/folder.html")}) == 69);
 }
+
+}  // namespace isobar::test::test_evaluate_command

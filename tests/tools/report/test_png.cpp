@@ -10,6 +10,8 @@
 #include "tools/report/map_view.hpp"
 #include "tools/report/png.hpp"
 
+namespace isobar::test::test_png {
+
 using namespace isobar::report;
 
 namespace {
@@ -93,3 +95,5 @@ TEST_CASE("a map's point darkens its own pixel, more points more, and points out
   CHECK(image.pixels[39] < image.palette.size());
   CHECK(image.palette[0][3] == 0);  // nothing there: see through
 }
+
+}  // namespace isobar::test::test_png

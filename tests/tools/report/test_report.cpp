@@ -4,17 +4,18 @@
 #include <cmath>
 
 #include "core/errors.hpp"
-#include "tests/core/evaluation/paths.hpp"
-#include "tests/tools/report/temporary_folder.hpp"
+#include "tests/run/evaluation/paths.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/tools/report/well_formed.hpp"
 #include "tools/report/report.hpp"
 
-using namespace isobar;
+namespace isobar::test::test_report {
+
 using namespace isobar::report;
 using evaluation::Trajectory;
-using evaluation::test::at_ns;
-using isobar::report::test::is_well_formed;
-using isobar::report::test::TemporaryFolder;
+using isobar::test::at_ns;
+using isobar::test::is_well_formed;
+using isobar::test::TemporaryFolder;
 namespace fs = std::filesystem;
 
 namespace {
@@ -35,8 +36,8 @@ std::string tum_text(const Trajectory& trajectory) {
 /// A replay whose height drifts by `slope`, with status and map, moved out of the reference's frame by (7, 8,
 /// 9) m.
 void write_replay(const fs::path& folder, double slope) {
-  ReplayOutputWriter writer(folder);
-  for (const evaluation::StampedPose& p : evaluation::test::straight(60.0, 0.1, slope).poses) {
+  files::ReplayOutputWriter writer(folder);
+  for (const evaluation::StampedPose& p : isobar::test::straight(60.0, 0.1, slope).poses) {
     PoseEstimate pose;
     pose.stamp_ns = p.stamp_ns;
     pose.T_map_base.translation() = p.position_m - Eigen::Vector3d(7, 8, 9);
@@ -45,16 +46,16 @@ void write_replay(const fs::path& folder, double slope) {
     writer.add(pose, -9.0, 0.05);
   }
   writer.close();
-  PlyWriter map(writer.map_file());
+  files::PlyWriter map(writer.map_file());
   for (int i = 0; i < 2000; ++i) map.add(0.03F * static_cast<float>(i) - 7.0F, -8.0F, -9.0F, 1.0F);
   map.close();
 }
 
 fs::path write_recording(const fs::path& folder) {
   fs::create_directories(folder);
-  write_text_file(folder / "reference.tum", tum_text(evaluation::test::straight(60.0, 0.02)));
-  write_text_file(folder / "segments.csv", "t_start_ns,t_end_ns,label\n" + std::to_string(at_ns(0)) + "," +
-                                               std::to_string(at_ns(60)) + ",flat\n");
+  files::write_text_file(folder / "reference.tum", tum_text(isobar::test::straight(60.0, 0.02)));
+  files::write_text_file(folder / "segments.csv", "t_start_ns,t_end_ns,label\n" + std::to_string(at_ns(0)) +
+                                                      "," + std::to_string(at_ns(60)) + ",flat\n");
   return folder;
 }
 
@@ -113,12 +114,12 @@ TEST_CASE(
     "bare trajectories without segments, status and map make a report too, which says what is missing") {
   const TemporaryFolder folder;
   const fs::path reference = folder.path() / "r.tum";
-  write_text_file(reference, tum_text(evaluation::test::straight(30.0, 0.1)));
+  files::write_text_file(reference, tum_text(isobar::test::straight(30.0, 0.1)));
   SUBCASE("a whole run") {
-    write_text_file(folder.path() / "e.tum", tum_text(evaluation::test::straight(30.0, 0.1)));
+    files::write_text_file(folder.path() / "e.tum", tum_text(isobar::test::straight(30.0, 0.1)));
   }
   SUBCASE("a single pose") {
-    write_text_file(folder.path() / "e.tum", tum_text(evaluation::test::straight(0.0, 0.1)));
+    files::write_text_file(folder.path() / "e.tum", tum_text(isobar::test::straight(0.0, 0.1)));
   }
   const ReportInput input{"t", "", "",
                           evaluate_methods(load_reference(reference), {{"", folder.path() / "e.tum"}})};
@@ -135,7 +136,7 @@ TEST_CASE(
 TEST_CASE("a reference at rest in one place makes no division by its distance") {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "r.tum";
-  write_text_file(file, "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n");
+  files::write_text_file(file, "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n");
   const ReportInput input{"t", "", "", evaluate_methods(load_reference(file), {{"same", file}})};
   CHECK(std::isnan(input.run.methods[0].evaluation.figures.ate_share));
   CHECK(contains(figures_json(input.run), "\"ate_share_of_distance\": null"));
@@ -156,8 +157,8 @@ TEST_CASE("names come from folders and files, and from the path where two are th
 
 TEST_CASE("an estimate of another time is refused with its name") {
   const TemporaryFolder folder;
-  write_text_file(folder.path() / "r.tum", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
-  write_text_file(folder.path() / "e.tum", "91 0 0 0 0 0 0 1\n");
+  files::write_text_file(folder.path() / "r.tum", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
+  files::write_text_file(folder.path() / "e.tum", "91 0 0 0 0 0 0 1\n");
   try {
     evaluate_methods(load_reference(folder.path() / "r.tum"), {{"", folder.path() / "e.tum"}});
     FAIL("was accepted");
@@ -165,3 +166,5 @@ TEST_CASE("an estimate of another time is refused with its name") {
     CHECK(contains(error.what(), "e.tum: no pose lies within the time of the reference"));
   }
 }
+
+}  // namespace isobar::test::test_report

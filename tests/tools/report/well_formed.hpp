@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace isobar::report::test {
+namespace isobar::test {
 
 /// Whether every tag of an XML text is closed in order, and quotes in tags are paired. Knows nothing of
 /// comments and sections, which the report does not use.
@@ -31,4 +31,4 @@ inline bool is_well_formed(const std::string& text) {
   return open.empty();
 }
 
-}  // namespace isobar::report::test
+}  // namespace isobar::test

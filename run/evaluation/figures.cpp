@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/evaluation/figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.hpp"
+#include "run/evaluation/floors.hpp"
+
+namespace isobar::evaluation {
+
+namespace {
+
+double height_error_m(const PosePair& pair) {
+  return pair.estimate.position_m.z() - pair.reference.position_m.z();
+}
+
+double position_error_m(const PosePair& pair) {
+  return (pair.estimate.position_m - pair.reference.position_m).norm();
+}
+
+void add_relative_figures(Evaluation& evaluation, const std::vector<Segment>& flat,
+                          const EvaluationOptions& options) {
+  MethodFigures& figures = evaluation.figures;
+  figures.whole_run_as_flat = flat.empty();
+  const std::vector<PosePair>& pairs = evaluation.pairs;
+  evaluation.z_rpe =
+      relative_z_error(pairs, make_windows(pairs, flat.empty() ? nullptr : &flat, options.z_window));
+  figures.z_rpe = summarize(evaluation.z_rpe);
+  std::vector<double> translations;
+  std::vector<double> rotations;
+  for (const RelativePoseError& error :
+       relative_pose_error(pairs, make_windows(pairs, nullptr, options.pose_window))) {
+    translations.push_back(error.translation);
+    rotations.push_back(error.rotation_rad_m);
+  }
+  figures.rpe_translation = summarize(std::move(translations));
+  figures.rpe_rotation_rad_m = summarize(std::move(rotations));
+}
+
+void add_height_figures(Evaluation& evaluation, const std::vector<Segment>& flat,
+                        const EvaluationOptions& options) {
+  MethodFigures& figures = evaluation.figures;
+  figures.final_height_error_m = height_error_m(evaluation.pairs.back());
+  figures.largest_height_error_m = 0.0;
+  for (const PosePair& pair : evaluation.pairs) {
+    const double error_m = height_error_m(pair);
+    if (std::abs(error_m) > std::abs(figures.largest_height_error_m))
+      figures.largest_height_error_m = error_m;
+  }
+  figures.floors = floor_heights(evaluation.pairs, flat, options.floor_gap_m);
+}
+
+void add_absolute_figures(Evaluation& evaluation, const EvaluationOptions& options) {
+  MethodFigures& figures = evaluation.figures;
+  std::vector<PosePair> aligned = evaluation.pairs;
+  if (options.ate_alignment != Alignment::kStart) {
+    apply_transform(aligned, alignment_transform(aligned, options.ate_alignment));
+  }
+  double sum_m2 = 0.0;
+  figures.ate_max_m = 0.0;
+  for (const PosePair& pair : aligned) {
+    const double error_m = position_error_m(pair);
+    sum_m2 += error_m * error_m;
+    figures.ate_max_m = std::max(figures.ate_max_m, error_m);
+  }
+  figures.ate_rms_m = std::sqrt(sum_m2 / static_cast<double>(aligned.size()));
+  // The rotation about z closest to what is left at the end, as the alignment at the start took it.
+  const PosePair& last = evaluation.pairs.back();
+  const Eigen::Quaterniond left = last.estimate.attitude * last.reference.attitude.conjugate();
+  figures.yaw_drift_rad = wrap_angle_rad(2.0 * std::atan2(left.z(), left.w()));
+  if (figures.travelled_m > 0.0) {
+    figures.ate_share = figures.ate_rms_m / figures.travelled_m;
+    figures.yaw_drift_rad_m = std::abs(figures.yaw_drift_rad) / figures.travelled_m;
+  }
+}
+
+/// Both sorted by stamp; a pose whose stamp has no sigma of its own is left out.
+double share_within_two_sigma(const std::vector<PosePair>& pairs, std::vector<HeightSigma> sigmas) {
+  std::sort(sigmas.begin(), sigmas.end(),
+            [](const HeightSigma& a, const HeightSigma& b) { return a.stamp_ns < b.stamp_ns; });
+  std::size_t known = 0;
+  std::size_t within = 0;
+  auto sigma = sigmas.begin();
+  for (const PosePair& pair : pairs) {
+    while (sigma != sigmas.end() && sigma->stamp_ns < pair.stamp_ns) ++sigma;
+    if (sigma == sigmas.end()) break;
+    if (sigma->stamp_ns != pair.stamp_ns || !std::isfinite(sigma->sigma_m)) continue;
+    ++known;
+    if (std::abs(height_error_m(pair)) <= 2.0 * sigma->sigma_m) ++within;
+  }
+  return known == 0 ? MethodFigures::kNone : static_cast<double>(within) / static_cast<double>(known);
+}
+
+bool is_lost(const Evaluation& evaluation, const EvaluationOptions& options) {
+  if (evaluation.figures.coverage < options.lost_below_coverage) return true;
+  const double bound_m =
+      std::max(options.lost_beyond_m, options.lost_beyond_share_of_distance * evaluation.figures.travelled_m);
+  return std::any_of(evaluation.pairs.begin(), evaluation.pairs.end(),
+                     [&](const PosePair& pair) { return position_error_m(pair) > bound_m; });
+}
+
+}  // namespace
+
+Evaluation evaluate(const Trajectory& reference, const std::vector<Segment>& segments,
+                    const Trajectory& estimate, const std::vector<HeightSigma>& sigmas,
+                    const EvaluationOptions& options) {
+  Evaluation evaluation;
+  evaluation.pairs = associate(reference, estimate, options.max_gap_s);
+  if (evaluation.pairs.empty()) throw DataError("no pose lies within the time of the reference");
+  evaluation.T_reference_estimate = alignment_transform(evaluation.pairs, Alignment::kStart);
+  apply_transform(evaluation.pairs, evaluation.T_reference_estimate);
+
+  MethodFigures& figures = evaluation.figures;
+  figures.coverage = coverage(reference, estimate, options.max_gap_s);
+  figures.poses = estimate.poses.size();
+  figures.paired = evaluation.pairs.size();
+  figures.repairs = estimate.repairs;
+  figures.travelled_m = travelled_distance_m(reference.poses).back();
+  const std::vector<Segment> flat = flat_segments(segments);
+  add_relative_figures(evaluation, flat, options);
+  add_height_figures(evaluation, flat, options);
+  add_absolute_figures(evaluation, options);
+  figures.sigma_share = share_within_two_sigma(evaluation.pairs, sigmas);
+  figures.lost = is_lost(evaluation, options);
+  return evaluation;
+}
+
+}  // namespace isobar::evaluation

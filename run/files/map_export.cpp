@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/files/map_export.hpp"
+
+#include <vector>
+
+#include "core/map/map_tile.hpp"
+
+namespace isobar {
+
+namespace {
+
+bool overlap(const MapBox& a, const MapBox& b, double margin_m) {
+  return (a.lowest.array() <= b.highest.array() + margin_m).all() &&
+         (b.lowest.array() <= a.highest.array() + margin_m).all();
+}
+
+}  // namespace
+
+MapBox box_of(const TileKey& key, double tile_m) {
+  const Eigen::Vector3d lowest = Eigen::Vector3d(key.x, key.y, key.z) * tile_m;
+  return {lowest, lowest.array() + tile_m};
+}
+
+std::string name_of(const TileKey& key) {
+  return "tile (" + std::to_string(key.x) + ", " + std::to_string(key.y) + ", " + std::to_string(key.z) + ")";
+}
+
+MapExport export_map(TileStore& store, const MapHeader& header, const std::optional<MapBox>& box,
+                     files::PlyWriter& ply) {
+  MapExport done;
+  std::vector<std::byte> bytes;
+  std::vector<MapPoint> points;
+  for (const TileKey& key : store.keys()) {
+    // Points on the plane of a cell at the tile's edge may lie a cell beyond it.
+    if (box && !overlap(box_of(key, header.tile_m), *box, header.cell_m)) continue;
+    points.clear();
+    if (!store.take(key, bytes) || !append_tile_points(bytes, points)) {
+      if (done.unreadable++ == 0) done.first_unreadable = name_of(key);
+      continue;
+    }
+    ++done.tiles;
+    for (const MapPoint& point : points) {
+      if (box && !box->contains(point.p_map)) continue;
+      const Eigen::Vector3f p_map = point.p_map.cast<float>();
+      ply.add(p_map.x(), p_map.y(), p_map.z(), point.intensity);
+      ++done.points;
+    }
+  }
+  return done;
+}
+
+}  // namespace isobar

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/files/run_output.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace isobar {
+
+namespace {
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+}  // namespace
+
+RunOutput::RunOutput(const std::filesystem::path& directory)
+    : directory_(directory), poses_(directory), map_(poses_.map_file()) {}
+
+void RunOutput::add_pose(const PoseEstimate& pose, const Prior& prior) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const bool known = prior.height_source != HeightSource::kNone;
+  poses_.add(pose, known ? prior.height_m : kUnknown, known ? std::sqrt(prior.height_variance_m2) : kUnknown);
+  registered_ += pose.mode == PoseMode::kRegistered ? 1 : 0;
+  from_prior_ += pose.mode == PoseMode::kPriorOnly ? 1 : 0;
+}
+
+MapExport RunOutput::write_map(TileStore& store, const MapHeader& header) {
+  return export_map(store, header, std::nullopt, map_);
+}
+
+void RunOutput::close(const std::vector<RunCount>& counts) {
+  poses_.close();
+  map_.close();
+  files::OutputFile file(directory_ / "counters.csv");
+  file.write("name,count,first_message\n");
+  for (const RunCount& count : counts) {
+    file.write(count.name + "," + std::to_string(count.count) + "," + quoted(count.first_message) + "\n");
+  }
+  file.close();
+}
+
+}  // namespace isobar

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/recording/base_clock.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+
+#include "run/recording/sample_csv.hpp"
+
+namespace isobar::recording {
+namespace {
+
+constexpr std::size_t kRowsAtStart = 200;
+constexpr std::uint64_t kBytesAtEnd = 16'384;
+/// Stamps farther than this from the median of their neighbours are absurd [ns].
+constexpr std::int64_t kNeighbourhoodNs = 3'600'000'000'000;
+constexpr std::int64_t kToleranceNs = 5'000'000'000;
+/// Two files that one recorder starts and ends together do so within this [ns]: a few samples of 10 Hz.
+constexpr std::int64_t kTogetherNs = 300'000'000;
+
+/// Lowest and highest stamp among those near the median.
+StampSpan robust_span(std::vector<std::int64_t>& stamps_ns) {
+  auto middle = stamps_ns.begin() + static_cast<std::ptrdiff_t>(stamps_ns.size() / 2);
+  std::nth_element(stamps_ns.begin(), middle, stamps_ns.end());
+  const std::int64_t median_ns = *middle;
+  StampSpan span{median_ns, median_ns};
+  for (const std::int64_t stamp_ns : stamps_ns) {
+    if (std::abs(stamp_ns - median_ns) <= kNeighbourhoodNs) {
+      span.first_ns = std::min(span.first_ns, stamp_ns);
+      span.last_ns = std::max(span.last_ns, stamp_ns);
+    }
+  }
+  return span;
+}
+
+template <typename Sample>
+std::optional<StampSpan> span_of(CsvReader&& csv) {
+  Tally ignored;
+  Sample sample;
+  std::vector<std::int64_t> stamps_ns;
+  while (stamps_ns.size() < kRowsAtStart && next_sample(csv, sample, ignored, ignored)) {
+    stamps_ns.push_back(sample.stamp_ns);
+  }
+  if (stamps_ns.empty()) {
+    return std::nullopt;
+  }
+  StampSpan span = robust_span(stamps_ns);
+  stamps_ns.clear();
+  csv.skip_to_last(kBytesAtEnd);
+  while (next_sample(csv, sample, ignored, ignored)) {
+    stamps_ns.push_back(sample.stamp_ns);
+  }
+  if (!stamps_ns.empty()) {
+    span.last_ns = std::max(span.last_ns, robust_span(stamps_ns).last_ns);
+  }
+  return span;
+}
+
+std::string seconds(std::int64_t ns) {
+  char text[48];  // NOLINT(modernize-avoid-c-arrays)
+  std::snprintf(text, sizeof text, "%.1f s", static_cast<double>(ns) * 1e-9);
+  return text;
+}
+
+}  // namespace
+
+std::optional<StampSpan> pressure_span(const std::filesystem::path& file) {
+  return span_of<PressureSample>(open_pressure_csv(file));
+}
+
+std::optional<StampSpan> imu_span(const std::filesystem::path& file) {
+  return span_of<ImuSample>(open_imu_csv(file));
+}
+
+BaseClock tie_base_clock(const std::optional<StampSpan>& robot, const std::optional<StampSpan>& base) {
+  if (!robot || !base) {
+    return {0, "base-station clock trusted: nothing to compare it with"};
+  }
+  const std::int64_t start_ns = robot->first_ns - base->first_ns;
+  const std::int64_t end_ns = robot->last_ns - base->last_ns;
+  const std::int64_t middle_ns = start_ns + (end_ns - start_ns) / 2;
+  const std::int64_t disagreement_ns = std::abs(start_ns - end_ns);
+  const bool same_tightly = disagreement_ns <= kTogetherNs && std::abs(middle_ns) > kTogetherNs;
+  const bool same_loosely = disagreement_ns <= kToleranceNs && std::abs(middle_ns) > kToleranceNs;
+  if (same_tightly || same_loosely) {
+    return {middle_ns, "base-station clock is off by " + seconds(-middle_ns) +
+                           ": its file starts and ends that much away from the robot's"};
+  }
+  if (start_ns >= -kToleranceNs && end_ns <= kToleranceNs) {
+    return {0, "base-station clock trusted: its file covers the robot's"};
+  }
+  const bool longer = base->length_ns() + kToleranceNs >= robot->length_ns();
+  if (longer) {
+    return {middle_ns,
+            "base-station clock is off by about " + seconds(-middle_ns) +
+                ": its file is longer than the robot's but does not cover it, so both are centred"};
+  }
+  if (base->first_ns <= robot->last_ns && base->last_ns >= robot->first_ns) {
+    return {0, "base-station clock trusted: its file overlaps the robot's, but does not cover it"};
+  }
+  return {start_ns, "base-station clock is off by about " + seconds(-start_ns) +
+                        ": its file does not overlap the robot's, so the starts are put together"};
+}
+
+}  // namespace isobar::recording

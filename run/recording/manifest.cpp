@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/recording/manifest.hpp"
+
+#include <toml++/toml.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "core/errors.hpp"
+#include "core/toml_text.hpp"
+#include "run/recording/number_text.hpp"
+
+namespace isobar::recording {
+namespace {
+
+/// Farthest that a sensor can sit from base_link [m]; a larger number is a slip of units.
+constexpr double kMaxLever = 100.0;
+constexpr double kMaxAngleDeg = 360.0;
+
+/// One parsed recording.toml with what is needed to name a place in it.
+class ManifestText {
+ public:
+  ManifestText(std::string file, std::vector<std::string>& warnings)
+      : file_(std::move(file)), warnings_(warnings) {}
+
+  [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& rule) const {
+    throw DataError(place(node) + key + ": " + rule);
+  }
+
+  void warn(const toml::node& node, const std::string& key) {
+    warnings_.push_back(place(node) + key + ": unknown, ignored");
+  }
+
+  /// A section, or nullptr where it is absent.
+  const toml::table* section(const toml::table& root, const std::string& name) const {
+    const toml::node* node = root.get(name);
+    if (node != nullptr && !node->is_table()) {
+      fail(*node, name, "must be a section, [" + name + "]");
+    }
+    return node == nullptr ? nullptr : node->as_table();
+  }
+
+  std::string file_name(const toml::table& table, const std::string& section_name) const {
+    const toml::node* node = table.get("file");
+    if (node == nullptr) {
+      fail(table, section_name + ".file", "missing");
+    }
+    const auto text = node->value<std::string>();
+    if (!text || text->empty()) {
+      fail(*node, section_name + ".file", "must be the name of a file");
+    }
+    const std::filesystem::path path(*text);
+    bool leaves_folder = path.is_absolute();
+    for (const auto& part : path) {
+      leaves_folder = leaves_folder || part == "..";
+    }
+    if (leaves_folder) {
+      fail(*node, section_name + ".file", "must lie inside the recording folder");
+    }
+    return *text;
+  }
+
+  Eigen::Vector3d triple(const toml::table& table, const std::string& section_name, const std::string& key,
+                         double limit) const {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) {
+      return Eigen::Vector3d::Zero();
+    }
+    const std::string rule =
+        "must be three numbers within -" + number_text(limit) + " … " + number_text(limit);
+    const std::string name = section_name + "." + key;
+    const toml::array* array = node->as_array();
+    if (array == nullptr || array->size() != 3) {
+      fail(*node, name, rule);
+    }
+    Eigen::Vector3d result;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto value = (*array)[i].value<double>();
+      if (!value || !(std::abs(*value) <= limit)) {
+        fail(*node, name, rule);
+      }
+      result[static_cast<Eigen::Index>(i)] = *value;
+    }
+    return result;
+  }
+
+  Mount mount(const toml::table& table, const std::string& section_name) const {
+    return {triple(table, section_name, "xyz_m", kMaxLever),
+            triple(table, section_name, "rpy_deg", kMaxAngleDeg)};
+  }
+
+  void warn_unknown_keys(const toml::table& table, const std::string& section_name,
+                         std::initializer_list<std::string_view> known) {
+    for (const auto& [key, node] : table) {
+      if (std::find(known.begin(), known.end(), key.str()) == known.end()) {
+        warn(node, section_name + std::string(key.str()));
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] std::string place(const toml::node& node) const {
+    return file_ + ":" + std::to_string(node.source().begin.line) + ": ";
+  }
+
+  std::string file_;
+  std::vector<std::string>& warnings_;
+};
+
+std::optional<LidarEntry> read_lidar(const toml::table& root, ManifestText& text) {
+  const toml::table* table = text.section(root, "lidar");
+  if (table == nullptr) {
+    return std::nullopt;
+  }
+  text.warn_unknown_keys(*table, "lidar.", {"model", "file", "port", "xyz_m", "rpy_deg"});
+  LidarEntry lidar;
+  const toml::node* model = table->get("model");
+  if (model == nullptr || !model->is_string() || model->value<std::string>()->empty()) {
+    text.fail(model == nullptr ? *table : *model, "lidar.model", "must name the sensor, such as \"VLP-16\"");
+  }
+  lidar.model = *model->value<std::string>();
+  lidar.file = text.file_name(*table, "lidar");
+  if (const toml::node* port = table->get("port"); port != nullptr) {
+    // value_exact: value would first cast a float to an integer, which is undefined for 1e72.
+    const auto value = port->value_exact<std::int64_t>();
+    if (!value || *value < 1 || *value > 65'535) {
+      text.fail(*port, "lidar.port", "must be a whole number within 1 … 65535");
+    }
+    lidar.port = static_cast<std::uint16_t>(*value);
+  }
+  lidar.mount = text.mount(*table, "lidar");
+  return lidar;
+}
+
+std::optional<SensorEntry> read_sensor(const toml::table& root, const std::string& name, ManifestText& text) {
+  const toml::table* table = text.section(root, name);
+  if (table == nullptr) {
+    return std::nullopt;
+  }
+  text.warn_unknown_keys(*table, name + ".", {"file", "xyz_m", "rpy_deg"});
+  return SensorEntry{text.file_name(*table, name), text.mount(*table, name)};
+}
+
+std::string read_text(const std::filesystem::path& folder, const std::filesystem::path& file) {
+  if (!std::filesystem::is_directory(folder)) {
+    throw DataError(folder.string() +
+                    (std::filesystem::exists(folder) ? ": is no folder; a recording is a folder with "
+                                                     : ": no such folder; a recording is a folder with ") +
+                    kManifestFile);
+  }
+  if (!std::filesystem::exists(file)) {
+    throw DataError(folder.string() + ": holds no " + kManifestFile + ", so it is no recording");
+  }
+  if (std::filesystem::is_directory(file)) {
+    throw DataError(file.string() + ": is a folder, must be a file");
+  }
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream content;
+  content << in.rdbuf();
+  if (!in.good() && content.str().empty()) {
+    throw DataError(file.string() + ": version: must be 1; the file is empty or cannot be read");
+  }
+  return content.str();
+}
+
+toml::table parse_toml(std::string_view text, const std::string& file) {
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    throw DataError(file + ":" + std::to_string(error.source().begin.line) + ": " +
+                    std::string(error.description()));
+  }
+}
+
+std::string triple_text(const Eigen::Vector3d& v) {
+  return "[" + number_text(v.x()) + ", " + number_text(v.y()) + ", " + number_text(v.z()) + "]";
+}
+
+std::string sensor_text(const char* name, const std::optional<SensorEntry>& sensor, bool position,
+                        bool rotation) {
+  if (!sensor) {
+    return {};
+  }
+  std::string text = std::string("\n[") + name + "]\nfile    = " + quoted_toml(sensor->file) + "\n";
+  if (position) {
+    text += "xyz_m   = " + triple_text(sensor->mount.xyz_m) + "\n";
+  }
+  if (rotation) {
+    text += "rpy_deg = " + triple_text(sensor->mount.rpy_deg) + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+Manifest Manifest::with_all_sensors() {
+  Manifest manifest;
+  manifest.lidar = LidarEntry{};
+  manifest.imu = SensorEntry{"imu.csv", {}};
+  manifest.barometer = SensorEntry{"barometer.csv", {}};
+  manifest.base_barometer = SensorEntry{"base_barometer.csv", {}};
+  manifest.wheel = SensorEntry{"wheel.csv", {}};
+  manifest.reference = SensorEntry{"reference.tum", {}};
+  return manifest;
+}
+
+Manifest read_manifest(const std::filesystem::path& folder, std::vector<std::string>& warnings) {
+  const std::filesystem::path file = folder / kManifestFile;
+  return parse_manifest(read_text(folder, file), file.string(), warnings);
+}
+
+Manifest parse_manifest(std::string_view content, const std::string& file,
+                        std::vector<std::string>& warnings) {
+  const toml::table root = parse_toml(content, file);
+  ManifestText text(file, warnings);
+  text.warn_unknown_keys(
+      root, "",
+      {"version", "description", "lidar", "imu", "barometer", "base_barometer", "wheel", "reference"});
+  const toml::node* version = root.get("version");
+  if (version == nullptr || version->value_exact<std::int64_t>() != 1) {
+    text.fail(version == nullptr ? static_cast<const toml::node&>(root) : *version, "version", "must be 1");
+  }
+  Manifest manifest;
+  if (const toml::node* description = root.get("description"); description != nullptr) {
+    if (!description->is_string()) {
+      text.fail(*description, "description", "must be a text");
+    }
+    manifest.description = *description->value<std::string>();
+  }
+  manifest.lidar = read_lidar(root, text);
+  manifest.imu = read_sensor(root, "imu", text);
+  manifest.barometer = read_sensor(root, "barometer", text);
+  manifest.base_barometer = read_sensor(root, "base_barometer", text);
+  manifest.wheel = read_sensor(root, "wheel", text);
+  manifest.reference = read_sensor(root, "reference", text);
+  return manifest;
+}
+
+void write_manifest(const std::filesystem::path& folder, const Manifest& manifest) {
+  const std::filesystem::path file = folder / kManifestFile;
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out << "version = 1\ndescription = " << quoted_toml(manifest.description) << "\n";
+  if (manifest.lidar) {
+    out << "\n[lidar]\nmodel   = " << quoted_toml(manifest.lidar->model)
+        << "\nfile    = " << quoted_toml(manifest.lidar->file) << "\nport    = " << manifest.lidar->port
+        << "\nxyz_m   = " << triple_text(manifest.lidar->mount.xyz_m)
+        << "\nrpy_deg = " << triple_text(manifest.lidar->mount.rpy_deg) << "\n";
+  }
+  out << sensor_text("imu", manifest.imu, true, true);
+  out << sensor_text("barometer", manifest.barometer, true, false);
+  out << sensor_text("base_barometer", manifest.base_barometer, false, false);
+  out << sensor_text("wheel", manifest.wheel, false, false);
+  out << sensor_text("reference", manifest.reference, false, false);
+  out.close();
+  if (!out) {
+    throw DataError(file.string() + ": cannot be written");
+  }
+}
+
+}  // namespace isobar::recording

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/time/stamp_guard.hpp"
+#include "run/recording/tally.hpp"
+#include "run/recording/udp_extractor.hpp"
+
+struct pcap;
+
+namespace isobar::recording {
+
+struct StampedPacket {
+  std::int64_t stamp_ns = 0;
+  std::vector<std::uint8_t> payload;
+};
+
+/// Reads the lidar's UDP payloads from a pcap file: both byte orders, microseconds and nanoseconds, pcapng as
+/// well. A packet is never dropped for its stamp: an absurd one is replaced with the last good one, because
+/// the packet has the sensor's own time.
+class PcapPackets {
+ public:
+  struct Tallies {
+    Tally other_port;
+    Tally other_protocol;
+    Tally malformed;
+    Tally cut;  ///< the capture holds only the beginning of the packet
+    Tally absurd_stamp;
+    Tally file_truncated;  ///< 1 if the file ends in the middle of a packet
+  };
+
+  /// Throws DataError when the file is missing, no pcap, or of a link type without IP.
+  PcapPackets(const std::filesystem::path& file, std::uint16_t port, const StampGuardConfig& guard);
+  ~PcapPackets();
+  PcapPackets(const PcapPackets&) = delete;
+  PcapPackets& operator=(const PcapPackets&) = delete;
+
+  /// The next payload; false at the end. The packet's memory is reused when it is handed in again.
+  bool next(StampedPacket& packet);
+
+  [[nodiscard]] const Tallies& tallies() const { return tallies_; }
+  [[nodiscard]] const StampGuard& guard() const { return guard_; }
+  [[nodiscard]] const UdpExtractor& extractor() const { return extractor_; }
+  [[nodiscard]] std::uint64_t bytes_read() const;
+
+ private:
+  bool read(StampedPacket& packet);
+  [[nodiscard]] std::string place() const;
+
+  std::string name_;
+  std::vector<char> buffer_;  // of the file behind handle_
+  pcap* handle_ = nullptr;
+  LinkType link_ = LinkType::kEthernet;
+  std::uint64_t frames_ = 0;
+  bool ended_ = false;
+  UdpExtractor extractor_;
+  StampGuard guard_;
+  Tallies tallies_;
+  std::optional<StampedPacket> held_;
+  std::optional<StampedPacket> following_;
+};
+
+}  // namespace isobar::recording

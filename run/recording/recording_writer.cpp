@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/recording/recording_writer.hpp"
+
+#include <pcap/pcap.h>
+
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "core/errors.hpp"
+#include "run/recording/csv_writer.hpp"
+#include "run/recording/number_text.hpp"
+#include "run/recording/udp_frame.hpp"
+
+namespace isobar::recording {
+namespace {
+
+constexpr int kSnapLength = 65'535 + static_cast<int>(kEthernetHeaderBytes);
+
+/// A pcap file with nanosecond stamps.
+class PcapFile {
+ public:
+  explicit PcapFile(const std::filesystem::path& file) : name_(file.string()) {
+    handle_ = pcap_open_dead_with_tstamp_precision(DLT_EN10MB, kSnapLength, PCAP_TSTAMP_PRECISION_NANO);
+    dumper_ = handle_ == nullptr ? nullptr : pcap_dump_open(handle_, name_.c_str());
+    if (dumper_ == nullptr) {
+      const std::string reason = handle_ == nullptr ? "libpcap refused" : pcap_geterr(handle_);
+      release();
+      throw DataError(name_ + ": cannot be written: " + reason);
+    }
+  }
+  ~PcapFile() { release(); }
+  PcapFile(const PcapFile&) = delete;
+  PcapFile& operator=(const PcapFile&) = delete;
+
+  void write(std::int64_t stamp_ns, std::span<const std::uint8_t> frame) {
+    pcap_pkthdr header{};
+    header.ts.tv_sec = stamp_ns / 1'000'000'000;
+    header.ts.tv_usec = stamp_ns % 1'000'000'000;  // nanoseconds, by the precision asked for
+    header.caplen = static_cast<bpf_u_int32>(frame.size());
+    header.len = header.caplen;
+    pcap_dump(reinterpret_cast<u_char*>(dumper_), &header, frame.data());
+  }
+
+  void close() {
+    if (dumper_ == nullptr) {
+      return;
+    }
+    const bool failed = pcap_dump_flush(dumper_) != 0 || std::ferror(pcap_dump_file(dumper_)) != 0;
+    release();
+    if (failed) {
+      throw DataError(name_ + ": could not be written completely");
+    }
+  }
+
+ private:
+  void release() {
+    if (dumper_ != nullptr) {
+      pcap_dump_close(dumper_);
+      dumper_ = nullptr;
+    }
+    if (handle_ != nullptr) {
+      pcap_close(handle_);
+      handle_ = nullptr;
+    }
+  }
+
+  std::string name_;
+  pcap_t* handle_ = nullptr;
+  pcap_dumper_t* dumper_ = nullptr;
+};
+
+TextFile& present(std::optional<TextFile>& file, const char* sensor) {
+  if (!file) {
+    throw std::logic_error(std::string("RecordingWriter: the manifest has no ") + sensor);
+  }
+  return *file;
+}
+
+void write_pressure(TextFile& file, const PressureSample& sample) {
+  CsvRow row;
+  file.write(row.add(sample.stamp_ns).add(sample.pressure_pa).add(sample.temperature_c).finish());
+}
+
+}  // namespace
+
+struct RecordingWriter::Files {
+  std::filesystem::path folder;
+  Manifest manifest;
+  std::optional<PcapFile> lidar;
+  std::optional<TextFile> imu;
+  std::optional<TextFile> barometer;
+  std::optional<TextFile> base_barometer;
+  std::optional<TextFile> wheel;
+  std::optional<TextFile> reference;
+  std::optional<TextFile> segments;
+  std::optional<bool> imu_has_attitude;  // known with the first sample
+  std::vector<std::uint8_t> frame;
+  std::uint16_t identification = 0;
+
+  void open_csv(std::optional<TextFile>& file, const std::optional<SensorEntry>& entry, const char* header) {
+    if (entry) {
+      file.emplace(folder / entry->file);
+      file->write(header);
+    }
+  }
+};
+
+RecordingWriter::RecordingWriter(const std::filesystem::path& folder, const Manifest& manifest)
+    : files_(std::make_unique<Files>()) {
+  if (std::filesystem::exists(folder / kManifestFile)) {
+    throw DataError(folder.string() + ": already holds a recording");
+  }
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw DataError(folder.string() + ": cannot be made: " + error.message());
+  }
+  files_->folder = folder;
+  files_->manifest = manifest;
+  write_manifest(folder, manifest);
+  if (manifest.lidar) {
+    files_->lidar.emplace(folder / manifest.lidar->file);
+  }
+  const char* pressure_header = "t_ns,pressure_pa,temperature_c\n";
+  files_->open_csv(files_->imu, manifest.imu, "");
+  files_->open_csv(files_->barometer, manifest.barometer, pressure_header);
+  files_->open_csv(files_->base_barometer, manifest.base_barometer, pressure_header);
+  files_->open_csv(files_->wheel, manifest.wheel, "t_ns,vx_m_s,vy_m_s,wz_rad_s\n");
+  files_->open_csv(files_->reference, manifest.reference, "# t x y z qx qy qz qw\n");
+}
+
+RecordingWriter::~RecordingWriter() = default;
+
+void RecordingWriter::add_packet(std::int64_t stamp_ns, std::span<const std::uint8_t> payload) {
+  if (!files_->manifest.lidar) {
+    throw std::logic_error("RecordingWriter: the manifest has no lidar");
+  }
+  add_packet(stamp_ns, payload, files_->manifest.lidar->port);
+}
+
+void RecordingWriter::add_packet(std::int64_t stamp_ns, std::span<const std::uint8_t> payload,
+                                 std::uint16_t port) {
+  if (!files_->lidar) {
+    throw std::logic_error("RecordingWriter: the manifest has no lidar");
+  }
+  if (payload.size() > kMaxUdpPayloadBytes) {
+    throw std::logic_error("RecordingWriter: no UDP packet is that long");
+  }
+  build_udp_frame(payload, port, files_->identification++, files_->frame);
+  files_->lidar->write(stamp_ns, files_->frame);
+}
+
+void RecordingWriter::add_imu(const ImuSample& sample) {
+  TextFile& file = present(files_->imu, "imu");
+  if (!files_->imu_has_attitude) {
+    files_->imu_has_attitude = sample.has_attitude;
+    file.write("t_ns,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2");
+    file.write(sample.has_attitude ? ",qw,qx,qy,qz\n" : "\n");
+  }
+  CsvRow row;
+  row.add(sample.stamp_ns);
+  for (const double rate : sample.gyro_rad_s) {
+    row.add(rate);
+  }
+  for (const double force : sample.accel_m_s2) {
+    row.add(force);
+  }
+  if (*files_->imu_has_attitude) {
+    const Eigen::Quaterniond& q = sample.q_world_imu;
+    row.add(q.w()).add(q.x()).add(q.y()).add(q.z());
+  }
+  file.write(row.finish());
+}
+
+void RecordingWriter::add_pressure(const PressureSample& sample) {
+  write_pressure(present(files_->barometer, "barometer"), sample);
+}
+
+void RecordingWriter::add_base_pressure(const PressureSample& sample) {
+  write_pressure(present(files_->base_barometer, "base_barometer"), sample);
+}
+
+void RecordingWriter::add_wheel(const WheelSample& sample) {
+  CsvRow row;
+  row.add(sample.stamp_ns).add(sample.vx_m_s).add(sample.vy_m_s).add(sample.wz_rad_s);
+  present(files_->wheel, "wheel").write(row.finish());
+}
+
+void RecordingWriter::add_reference(std::int64_t stamp_ns, const Eigen::Isometry3d& T_map_base) {
+  present(files_->reference, "reference").write(format_tum_row(stamp_ns, T_map_base));
+}
+
+void RecordingWriter::add_segment(const Segment& segment) {
+  if (!files_->segments) {
+    files_->segments.emplace(files_->folder / kSegmentsFile);
+    files_->segments->write("t_start_ns,t_end_ns,label\n");
+  }
+  files_->segments->write(number_text(segment.start_ns) + "," + number_text(segment.end_ns) + "," +
+                          segment.label + "\n");
+}
+
+void RecordingWriter::close() {
+  if (files_->imu && !files_->imu_has_attitude) {
+    files_->imu_has_attitude = false;
+    files_->imu->write("t_ns,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2\n");
+  }
+  if (files_->lidar) {
+    files_->lidar->close();
+  }
+  for (std::optional<TextFile>* file : {&files_->imu, &files_->barometer, &files_->base_barometer,
+                                        &files_->wheel, &files_->reference, &files_->segments}) {
+    if (*file) {
+      (*file)->close();
+    }
+  }
+}
+
+}  // namespace isobar::recording

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/recording/sample_csv.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "core/plausibility.hpp"
+#include "run/recording/number_text.hpp"
+
+namespace isobar::recording {
+namespace {
+
+constexpr const char* kNoStamp = "t_ns must be a whole number of nanoseconds";
+constexpr const char* kNoNumber = "must be a finite number";
+/// A quaternion off by more than its last printed digit is normalised; an exact one keeps its bits.
+constexpr double kExactNorm = 1e-12;
+
+const char* parse_stamp(const CsvReader& csv, std::int64_t& stamp_ns, std::string& value) {
+  if (!parse_number(csv.field(0), stamp_ns)) {
+    value = csv.field(0);
+    return kNoStamp;
+  }
+  const char* rule = implausible_stamp(stamp_ns);
+  if (rule != nullptr) {
+    value = csv.field(0);
+  }
+  return rule;
+}
+
+const char* parse_column(const CsvReader& csv, std::size_t column, double& number, std::string& value) {
+  if (parse_number(csv.field(column), number) && std::isfinite(number)) {
+    return nullptr;
+  }
+  value = csv.field(column);
+  return kNoNumber;
+}
+
+/// The four attitude columns; an attitude that is not there yet (NaN, zeros) leaves the rates and forces
+/// good.
+void parse_attitude(const CsvReader& csv, ImuSample& sample) {
+  constexpr std::size_t kFirst = 7;
+  double q[4] = {};  // NOLINT(modernize-avoid-c-arrays)
+  sample.has_attitude = true;
+  for (std::size_t i = 0; i < 4; ++i) {
+    sample.has_attitude = sample.has_attitude && csv.has(kFirst + i) &&
+                          parse_number(csv.field(kFirst + i), q[i]) && std::isfinite(q[i]);
+  }
+  sample.q_world_imu = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  const double norm = sample.q_world_imu.norm();
+  if (!sample.has_attitude || !kPlausibleQuaternionNorm.holds(norm)) {
+    sample.has_attitude = false;
+    sample.q_world_imu.setIdentity();
+  } else if (std::abs(norm - 1.0) > kExactNorm) {
+    sample.q_world_imu.normalize();
+  }
+}
+
+}  // namespace
+
+CsvReader open_imu_csv(const std::filesystem::path& file) {
+  return {file,
+          {"t_ns", "gx_rad_s", "gy_rad_s", "gz_rad_s", "ax_m_s2", "ay_m_s2", "az_m_s2"},
+          {"qw", "qx", "qy", "qz"}};
+}
+
+CsvReader open_pressure_csv(const std::filesystem::path& file) {
+  return {file, {"t_ns", "pressure_pa", "temperature_c"}};
+}
+
+CsvReader open_wheel_csv(const std::filesystem::path& file) {
+  return {file, {"t_ns", "vx_m_s", "vy_m_s", "wz_rad_s"}};
+}
+
+const char* parse_row(const CsvReader& csv, ImuSample& sample, std::string& value) {
+  if (const char* rule = parse_stamp(csv, sample.stamp_ns, value); rule != nullptr) {
+    return rule;
+  }
+  for (std::size_t i = 0; i < 6; ++i) {
+    double& number = i < 3 ? sample.gyro_rad_s[static_cast<Eigen::Index>(i)]
+                           : sample.accel_m_s2[static_cast<Eigen::Index>(i - 3)];
+    if (const char* rule = parse_column(csv, 1 + i, number, value); rule != nullptr) {
+      return rule;
+    }
+  }
+  parse_attitude(csv, sample);
+  return implausibility(sample);
+}
+
+const char* parse_row(const CsvReader& csv, PressureSample& sample, std::string& value) {
+  if (const char* rule = parse_stamp(csv, sample.stamp_ns, value); rule != nullptr) {
+    return rule;
+  }
+  if (const char* rule = parse_column(csv, 1, sample.pressure_pa, value); rule != nullptr) {
+    return rule;
+  }
+  if (csv.field(2).empty()) {
+    sample.temperature_c = std::numeric_limits<double>::quiet_NaN();
+  } else if (!parse_number(csv.field(2), sample.temperature_c)) {
+    value = csv.field(2);
+    return kNoNumber;
+  }
+  const char* rule = implausibility(sample);
+  if (rule != nullptr) {
+    value = kPlausiblePressurePa.holds(sample.pressure_pa) ? csv.field(2) : csv.field(1);
+  }
+  return rule;
+}
+
+const char* parse_row(const CsvReader& csv, WheelSample& sample, std::string& value) {
+  if (const char* rule = parse_stamp(csv, sample.stamp_ns, value); rule != nullptr) {
+    return rule;
+  }
+  std::size_t column = 1;
+  for (double* number : {&sample.vx_m_s, &sample.vy_m_s, &sample.wz_rad_s}) {
+    if (const char* rule = parse_column(csv, column++, *number, value); rule != nullptr) {
+      return rule;
+    }
+  }
+  return implausibility(sample);
+}
+
+template <typename Sample>
+bool next_sample(CsvReader& csv, Sample& sample, Tally& malformed, Tally& implausible) {
+  std::string value;
+  for (;;) {
+    const CsvReader::Row row = csv.next();
+    if (row == CsvReader::Row::kEnd) {
+      return false;
+    }
+    if (row == CsvReader::Row::kBad) {
+      malformed.add([&csv] { return csv.bad_row_message(); });
+      continue;
+    }
+    sample = Sample{};
+    const char* rule = parse_row(csv, sample, value);
+    if (rule == nullptr) {
+      return true;
+    }
+    Tally& tally = rule == kNoStamp || rule == kNoNumber ? malformed : implausible;
+    tally.add([&] {
+      return csv.lines().place() + rule + (value.empty() ? std::string() : " (is '" + value + "')");
+    });
+    value.clear();
+  }
+}
+
+template bool next_sample(CsvReader&, ImuSample&, Tally&, Tally&);
+template bool next_sample(CsvReader&, PressureSample&, Tally&, Tally&);
+template bool next_sample(CsvReader&, WheelSample&, Tally&, Tally&);
+
+}  // namespace isobar::recording

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/recording/text_lines.hpp"
+
+#include <cerrno>
+#include <cstring>
+
+#include "core/errors.hpp"
+
+namespace isobar::recording {
+namespace {
+
+constexpr std::size_t kBufferBytes = 16 * TextLines::kMaxLineBytes;
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+}  // namespace
+
+TextLines::TextLines(const std::filesystem::path& file) : name_(file.string()), buffer_(kBufferBytes) {
+  if (std::filesystem::is_directory(file)) {
+    throw DataError(name_ + ": is a folder, must be a file");
+  }
+  file_.reset(std::fopen(file.c_str(), "rb"));
+  if (file_ == nullptr) {
+    throw DataError(name_ + ": cannot be read: " + std::strerror(errno));
+  }
+}
+
+bool TextLines::refill() {
+  std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+  end_ -= begin_;
+  begin_ = 0;
+  const std::size_t count = std::fread(buffer_.data() + end_, 1, buffer_.size() - end_, file_.get());
+  end_ += count;
+  bytes_read_ += count;
+  at_end_ = count == 0;
+  return !at_end_;
+}
+
+void TextLines::skip_to_last(std::uint64_t bytes) {
+  std::error_code error;
+  const std::uint64_t size = std::filesystem::file_size(name_, error);
+  const std::uint64_t position = bytes_read_ - (end_ - begin_);
+  if (error || size < bytes || size - bytes <= position ||
+      std::fseek(file_.get(), static_cast<long>(size - bytes), SEEK_SET) != 0) {
+    return;
+  }
+  begin_ = 0;
+  end_ = 0;
+  bytes_read_ = size - bytes;
+  at_end_ = false;
+  std::string_view part_of_a_line;
+  next(part_of_a_line);
+}
+
+bool TextLines::next(std::string_view& line) {
+  too_long_ = false;
+  std::size_t searched = begin_;
+  for (;;) {
+    const void* found = std::memchr(buffer_.data() + searched, '\n', end_ - searched);
+    if (found == nullptr && !at_end_) {
+      if (end_ - begin_ > kMaxLineBytes) {
+        too_long_ = true;
+        begin_ = end_;  // what was read of the line is of no use
+      }
+      const std::size_t unread = end_ - begin_;
+      refill();
+      searched = begin_ + unread;
+      continue;
+    }
+    if (found == nullptr && begin_ == end_ && !too_long_) {
+      return false;
+    }
+    const std::size_t stop =
+        found == nullptr ? end_ : static_cast<std::size_t>(static_cast<const char*>(found) - buffer_.data());
+    line = {buffer_.data() + begin_, stop - begin_};
+    begin_ = found == nullptr ? end_ : stop + 1;
+    break;
+  }
+  ++line_number_;
+  if (too_long_ || line.size() > kMaxLineBytes) {
+    too_long_ = true;
+    line = {};
+  }
+  if (line_number_ == 1 && line.starts_with(kByteOrderMark)) {
+    line.remove_prefix(kByteOrderMark.size());
+  }
+  if (line.ends_with('\r')) {
+    line.remove_suffix(1);
+  }
+  return true;
+}
+
+}  // namespace isobar::recording

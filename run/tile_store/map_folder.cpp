@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/tile_store/map_folder.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <toml++/toml.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include "core/errors.hpp"
+
+namespace isobar {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kLargestTileM = 1'000.0;
+constexpr std::size_t kNumberDigits = 8;
+
+/// A parsed map.toml, which knows the place of everything in it.
+class HeaderText {
+ public:
+  explicit HeaderText(const fs::path& file) : file_(file.string()) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in) throw DataError(file_ + ": cannot be read; a folder without it holds no map");
+    std::ostringstream text;
+    text << in.rdbuf();
+    try {
+      table_ = toml::parse(text.str(), file_);
+    } catch (const toml::parse_error& error) {
+      throw DataError(place(error.source()) + "is no TOML: " + std::string(error.description()));
+    }
+  }
+
+  void must_be(const char* key, std::int64_t only, const std::string& rule) const {
+    const toml::node& node = entry(key, rule);
+    // value_exact: value would first cast a float to an integer, which is undefined for 1e72.
+    const auto value = node.value_exact<std::int64_t>();
+    if (!value || *value != only) fail(node, key, rule);
+  }
+
+  [[nodiscard]] double number(const char* key, double lowest, double highest, const std::string& rule) const {
+    const toml::node& node = entry(key, rule);
+    const auto value = node.value<double>();
+    if (!value || !(*value >= lowest && *value <= highest)) fail(node, key, rule);
+    return *value;
+  }
+
+ private:
+  [[nodiscard]] const toml::node& entry(const char* key, const std::string& rule) const {
+    const toml::node* node = table_.get(key);
+    if (node == nullptr) throw DataError(file_ + ": " + key + ": is missing; " + rule);
+    return *node;
+  }
+  [[noreturn]] void fail(const toml::node& node, const char* key, const std::string& rule) const {
+    throw DataError(place(node.source()) + key + ": " + rule);
+  }
+  [[nodiscard]] std::string place(const toml::source_region& at) const {
+    return file_ + ":" + std::to_string(at.begin.line) + ":" + std::to_string(at.begin.column) + ": ";
+  }
+  std::string file_;
+  toml::table table_;
+};
+
+/// The number in a name such as 00000012.tiles; -1 for other names.
+std::int64_t number_of(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  std::uint32_t number = 0;
+  const auto [end, error] = std::from_chars(stem.data(), stem.data() + stem.size(), number);
+  const bool is_number =
+      stem.size() == kNumberDigits && error == std::errc() && end == stem.data() + stem.size();
+  return is_number ? std::int64_t{number} : -1;
+}
+
+std::string holder_of(const fs::path& lock_file) {
+  std::ifstream in(lock_file);
+  std::string line;
+  std::getline(in, line);
+  return line.empty() ? "another process" : line;
+}
+
+}  // namespace
+
+MapHeader read_map_header(const fs::path& directory) {
+  const HeaderText text(directory / "map.toml");
+  text.must_be(
+      "format", MapHeader::kFormat,
+      "must be " + std::to_string(MapHeader::kFormat) + ": this program reads no other format of map");
+  MapHeader header;
+  header.tile_m = text.number("tile_m", 1e-3, kLargestTileM, "must be a number within 0.001 … 1000 m");
+  header.cell_m = text.number("cell_m", 1e-3, header.tile_m, "must be a number within 0.001 m … tile_m");
+  return header;
+}
+
+void write_map_header(const fs::path& directory, const MapHeader& header) {
+  const fs::path file = directory / "map.toml";
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out << "# A map of Isobar. `isobar map info` tells what is in it.\n"
+      << "format = " << MapHeader::kFormat << "\n";
+  out.precision(17);
+  out.setf(std::ios::showpoint);
+  out << "tile_m = " << header.tile_m << "\ncell_m = " << header.cell_m << "\n";
+  out.close();
+  if (!out) throw ServiceError(file.string() + ": cannot be written: " + errno_message());
+}
+
+MapLock::MapLock(const fs::path& directory) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) throw ServiceError(directory.string() + ": cannot be created: " + error.message());
+  const fs::path file = directory / "lock";
+  file_ = FileDescriptor(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
+  if (!file_) throw ServiceError(file.string() + ": cannot be opened: " + errno_message());
+  if (::flock(file_.get(), LOCK_EX | LOCK_NB) != 0) {
+    if (errno != EWOULDBLOCK) throw ServiceError(file.string() + ": cannot be locked: " + errno_message());
+    throw ServiceError(directory.string() + ": " + holder_of(file) +
+                       " writes this map; only one process at a time may");
+  }
+  // For the error above in another process; the lock holds without it.
+  const std::string holder =
+      std::string(program_invocation_short_name) + " (process " + std::to_string(::getpid()) + ")\n";
+  static_cast<void>(::ftruncate(file_.get(), 0) == 0 &&
+                    ::pwrite(file_.get(), holder.data(), holder.size(), 0) > 0);
+}
+
+std::vector<std::uint32_t> segment_numbers(const fs::path& directory) {
+  std::vector<std::uint32_t> numbers;
+  std::error_code error;
+  fs::directory_iterator entries(directory, error);
+  if (error) throw ServiceError(directory.string() + ": cannot be read: " + error.message());
+  for (const auto& entry : entries) {
+    const std::int64_t number = number_of(entry.path());
+    if (number >= 0 && entry.path().extension() == ".tiles")
+      numbers.push_back(static_cast<std::uint32_t>(number));
+  }
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
+
+fs::path segment_file(const fs::path& directory, std::uint32_t number) {
+  std::array<char, 24> name{};
+  std::snprintf(name.data(), name.size(), "%08u.tiles", static_cast<unsigned>(number));
+  return directory / name.data();
+}
+
+void remove_map(const fs::path& directory) {
+  std::vector<fs::path> files{directory / "map.toml"};
+  for (const auto& entry : fs::directory_iterator(directory)) {
+    const auto extension = entry.path().extension();
+    const bool is_ours = extension == ".tiles" || extension == ".index";
+    if (is_ours && number_of(entry.path()) >= 0) files.push_back(entry.path());
+  }
+  for (const fs::path& file : files) {
+    std::error_code error;
+    fs::remove(file, error);
+    if (error) throw ServiceError(file.string() + ": cannot be removed: " + error.message());
+  }
+}
+
+}  // namespace isobar

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simulation/atmosphere.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "core/samples.hpp"
+
+namespace isobar::simulation {
+
+namespace {
+
+constexpr double kDryAirGasJKgK = 287.05;
+
+/// Door pulses: a half wave of suction, then a weaker one back, 0.5 to 2 s in all.
+void add_pulse(std::vector<double>& pressure, double start_s, double duration_s, double peak_pa) {
+  const auto first = static_cast<std::size_t>(std::max(0.0, start_s / SplineGrid::kStepS));
+  for (std::size_t i = first; i < pressure.size(); ++i) {
+    const double phase = (SplineGrid::kStepS * static_cast<double>(i) - start_s) / duration_s;
+    if (phase >= 1.0) break;
+    const double wave = phase < 0.6 ? std::sin(std::numbers::pi * phase / 0.6)
+                                    : -0.5 * std::sin(std::numbers::pi * (phase - 0.6) / 0.4);
+    pressure[i] += peak_pa * wave;
+  }
+}
+
+/// Of the wind of driving: half the density of air times the speed squared.
+double dynamic_pressure_pa(const std::vector<RawPose>& raw, std::size_t i) {
+  constexpr double kAirKgM3 = 1.2;
+  if (i == 0) return 0.0;
+  const double speed =
+      std::hypot(raw[i].x_m - raw[i - 1].x_m, raw[i].y_m - raw[i - 1].y_m) / SplineGrid::kStepS;
+  return 0.5 * kAirKgM3 * speed * speed;
+}
+
+/// A step at every change of zone, washed out over the second or two in which air follows a door.
+void add_zones(std::vector<double>& pressure, const std::vector<int>& zones, double sigma_pa,
+               Random& random) {
+  if (zones.empty() || sigma_pa <= 0.0) return;
+  // The paper's runs show steps of 2 to 35 cm: 0.2 to 4 Pa.
+  const std::uint64_t seed = random.next();
+  double offset = 0.0;
+  for (std::size_t i = 0; i < pressure.size(); ++i) {
+    Random of_zone(seed, "zone", static_cast<std::uint64_t>(zones[std::min(i, zones.size() - 1)]));
+    const double wanted = std::clamp(of_zone.normal(sigma_pa), -2.0, 2.0);
+    offset = i == 0 ? wanted : offset + (wanted - offset) * SplineGrid::kStepS / 1.5;
+    pressure[i] += offset;
+  }
+}
+
+}  // namespace
+
+AirErrors AirErrors::draw(Random random) {
+  AirErrors errors;
+  // Fronts move several hPa in three hours: 1 to 4 hPa here, up or down.
+  errors.ramp_pa_s = random.sign() * random.uniform(100.0, 400.0) / 10'800.0;
+  errors.walk_pa_rts = random.uniform(0.05, 0.2);
+  errors.turbulence_pa = random.uniform(0.3, 1.0);
+  // Indoors, a few metres apart; what the paper's static pair of sensors leaves after filtering (0.7 cm).
+  errors.local_turbulence_pa = random.uniform(0.08, 0.16);
+  errors.zone_sigma_pa = random.uniform(0.3, 1.0);
+  errors.pulse_pa = random.uniform(3.0, 15.0);
+  return errors;
+}
+
+Atmosphere::Atmosphere(const Scenario& scenario, const AirErrors& errors, Random random)
+    : air_temperature_k_(scenario.air_temperature_c + 273.15), base_height_m_(scenario.base_height_m) {
+  const std::size_t samples = scenario.raw.size();
+  std::vector<double> common(samples);
+  std::vector<double> robot(samples, 0.0);
+  std::vector<double> base(samples, 0.0);
+  GaussMarkov turbulence(errors.turbulence_pa, 60.0, Random(random.next()));
+  GaussMarkov at_robot(errors.local_turbulence_pa, 4.0, Random(random.next()));
+  GaussMarkov at_base(errors.local_turbulence_pa, 4.0, Random(random.next()));
+  double walk = 0.0;
+  for (std::size_t i = 0; i < samples; ++i) {
+    walk += random.normal(errors.walk_pa_rts * std::sqrt(SplineGrid::kStepS));
+    common[i] = scenario.start_pressure_pa + errors.ramp_pa_s * SplineGrid::kStepS * static_cast<double>(i) +
+                walk + turbulence.step(SplineGrid::kStepS);
+    robot[i] = at_robot.step(SplineGrid::kStepS);
+    base[i] = at_base.step(SplineGrid::kStepS);
+    const double climb_m_s =
+        i == 0 ? 0.0 : (scenario.raw[i].z_m - scenario.raw[i - 1].z_m) / SplineGrid::kStepS;
+    robot[i] += scenario.air.piston_pa_s_m * (errors.pulse_pa > 0.0 ? climb_m_s : 0.0);
+    robot[i] += scenario.air.port_coefficient * dynamic_pressure_pa(scenario.raw, i);
+  }
+  add_zones(robot, scenario.air.zone, errors.zone_sigma_pa, random);
+  if (scenario.air.door_pulses_1_s > 0.0 && errors.pulse_pa > 0.0) {
+    const double mean_s = 1.0 / scenario.air.door_pulses_1_s;
+    for (double t = random.exponential(mean_s); t < SplineGrid::kStepS * static_cast<double>(samples);
+         t += random.exponential(mean_s)) {
+      const double peak = random.sign() * errors.pulse_pa * random.uniform(0.4, 1.6);
+      const double duration_s = random.uniform(0.5, 2.0);
+      add_pulse(robot, t, duration_s, peak);
+      add_pulse(base, t + 0.05, duration_s, peak * random.uniform(0.0, 0.6));  // the base is further away
+    }
+  }
+  common_pa_ = Channel(std::move(common));
+  robot_pa_ = Channel(std::move(robot));
+  base_pa_ = Channel(std::move(base));
+}
+
+// The paper's hypsometric equation with a constant temperature of the column, solved for p1.
+double Atmosphere::column(double pressure_pa, double height_m) const {
+  return pressure_pa * std::exp(-kGravity * height_m / (kDryAirGasJKgK * air_temperature_k_));
+}
+
+double Atmosphere::robot_pa(double time_s, double height_m) const {
+  return column(common_pa_.at(time_s), height_m) + robot_pa_.at(time_s);
+}
+
+double Atmosphere::base_pa(double time_s) const {
+  return column(common_pa_.at(time_s), base_height_m_) + base_pa_.at(time_s);
+}
+
+}  // namespace isobar::simulation

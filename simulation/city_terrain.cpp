@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simulation/city_terrain.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace isobar::simulation {
+
+using Eigen::Vector2d;
+
+CityTerrain::CityTerrain(Random random) {
+  // Length of each wave and its share of the steepest slope: the amplitudes of the slopes add up to it.
+  struct Kind {
+    double shortest_m;
+    double longest_m;
+    double share;
+  };
+  constexpr std::array<Kind, 4> kKinds{
+      Kind{900.0, 1300.0, 0.30}, {550.0, 800.0, 0.35}, {350.0, 500.0, 0.20}, {180.0, 260.0, 0.15}};
+  for (std::size_t i = 0; i < waves_.size(); ++i) {
+    const double number = 2.0 * std::numbers::pi / random.uniform(kKinds[i].shortest_m, kKinds[i].longest_m);
+    const double direction = random.uniform(0.0, 2.0 * std::numbers::pi);
+    waves_[i].number_1_m = number * Vector2d(std::cos(direction), std::sin(direction));
+    waves_[i].height_m = kKinds[i].share * kSteepest / number;
+    waves_[i].phase_rad = random.uniform(0.0, 2.0 * std::numbers::pi);
+  }
+}
+
+double CityTerrain::height_m(const Vector2d& at_m) const {
+  double height = 0.0;
+  for (const Wave& wave : waves_) {
+    height +=
+        wave.height_m * (std::sin(wave.number_1_m.dot(at_m) + wave.phase_rad) - std::sin(wave.phase_rad));
+  }
+  return height;
+}
+
+Vector2d CityTerrain::slope(const Vector2d& at_m) const {
+  Vector2d slope = Vector2d::Zero();
+  for (const Wave& wave : waves_) {
+    slope += wave.height_m * std::cos(wave.number_1_m.dot(at_m) + wave.phase_rad) * wave.number_1_m;
+  }
+  return slope;
+}
+
+}  // namespace isobar::simulation

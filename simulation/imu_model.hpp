@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// An inertial measurement unit on a shaking robot.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+
+#include "core/samples.hpp"
+#include "simulation/random.hpp"
+#include "simulation/trajectory.hpp"
+
+namespace isobar::simulation {
+
+/// Errors of one unit. Defaults are none, for tests; draw() gives a real one.
+struct ImuErrors {
+  std::string model = "ideal";
+  double gyro_density_rad_s_rthz = 0.0;
+  double accel_density_m_s2_rthz = 0.0;
+  Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();  ///< turn-on
+  Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();
+  double gyro_instability_rad_s = 0.0;  ///< in-run wander
+  double accel_instability_m_s2 = 0.0;
+  Eigen::Matrix3d gyro_scale = Eigen::Matrix3d::Identity();  ///< scale and misalignment
+  Eigen::Matrix3d accel_scale = Eigen::Matrix3d::Identity();
+  double vibration_m_s2 = 0.0;  ///< rms an axis at 0.6 m/s on flat floor
+  double vibration_rad_s = 0.0;
+  bool has_attitude = false;  ///< the unit computes its own attitude
+  double attitude_sigma_rad = 0.0;
+
+  /// A unit with the data sheet figures of the paper's MTi-10 or VN-100, see imu_model.cpp. `tracked`: rides
+  /// on tracks, which shake it.
+  [[nodiscard]] static ImuErrors draw(Random random, bool tracked);
+};
+
+/// Samples must be taken in time order.
+class ImuModel {
+ public:
+  static constexpr double kRateHz = 200.0;
+
+  ImuModel(const Trajectory& trajectory, const Eigen::Isometry3d& T_base_imu, const ImuErrors& errors,
+           Random random);
+
+  /// The sample of time_s; its stamp is left to the caller.
+  [[nodiscard]] ImuSample sample(double time_s);
+
+ private:
+  [[nodiscard]] Eigen::Vector3d white(double sigma);
+  void wander(Eigen::Vector3d& bias, double sigma);
+
+  const Trajectory& trajectory_;
+  Eigen::Isometry3d T_base_imu_;
+  ImuErrors errors_;
+  Random random_;
+  Eigen::Vector3d gyro_wander_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d accel_wander_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d attitude_wander_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace isobar::simulation

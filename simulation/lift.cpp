@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simulation/lift.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace isobar::simulation {
+
+namespace {
+
+constexpr double kDoorTimeS = 2.5;
+constexpr double kSillM = 0.12;  // between the shaft's wall and the inside of the cabin
+// Passenger elevators: 1 m/s, up to 1 m/s^2.
+constexpr double kSpeed = 1.0;
+constexpr double kAcceleration = 0.8;
+
+/// The cabin's inner walls, floor and ceiling, open at x = 0 towards -x; inside is 0 < x < depth.
+Mesh make_cabin() {
+  Mesh mesh;
+  const double half = 0.5 * LiftSizes::kCabinWidthM;
+  const double top = 2.25;
+  const double door = 0.5 * LiftSizes::kDoorWidthM;
+  const double x0 = kSillM;
+  const double x1 = x0 + LiftSizes::kCabinDepthM;
+  const Surface metal = Surface::kMetal;
+  mesh.quad({0.0, -half, 0.0}, {x1, -half, 0.0}, {x1, half, 0.0}, {0.0, half, 0.0}, Surface::kConcrete);
+  mesh.quad({x0, -half, top}, {x1, -half, top}, {x1, half, top}, {x0, half, top}, Surface::kPlaster);
+  mesh.quad({x1, -half, 0.0}, {x1, half, 0.0}, {x1, half, top}, {x1, -half, top}, metal);
+  for (const double side : {-1.0, 1.0}) {
+    mesh.quad({x0, side * half, 0.0}, {x1, side * half, 0.0}, {x1, side * half, top}, {x0, side * half, top},
+              metal);
+    mesh.quad({x0, side * door, 0.0}, {x0, side * half, 0.0}, {x0, side * half, top}, {x0, side * door, top},
+              metal);
+    // handrails
+    mesh.box({x0 + 0.2, side * half, 0.85}, {x1 - 0.2, side * (half - 0.06), 0.92}, metal);
+  }
+  mesh.quad({x0, -door, LiftSizes::kDoorHeightM}, {x0, door, LiftSizes::kDoorHeightM}, {x0, door, top},
+            {x0, -door, top}, metal);
+  return mesh;
+}
+
+/// One leaf of a sliding door; side -1 or +1, shut at its origin, overlapping the other by 2 cm.
+Mesh make_leaf(double side) {
+  Mesh mesh;
+  mesh.box({-0.02, std::min(-side * 0.01, side * 0.5 * LiftSizes::kDoorWidthM), 0.0},
+           {0.02, std::max(-side * 0.01, side * 0.5 * LiftSizes::kDoorWidthM), LiftSizes::kDoorHeightM},
+           Surface::kMetal);
+  return mesh;
+}
+
+/// A leaf of each side of a door at (x, y), sliding along y.
+void add_doors(std::vector<MovingBody>& bodies, double x, double y, const std::vector<double>& open,
+               const std::vector<double>& z) {
+  for (const double side : {-1.0, 1.0}) {
+    std::vector<double> slide;
+    slide.reserve(open.size());
+    for (const double fraction : open) slide.push_back(y + side * fraction * 0.5 * LiftSizes::kDoorWidthM);
+    bodies.push_back({RayCaster(make_leaf(side)), Channel(std::vector<double>(open.size(), x)),
+                      Channel(std::move(slide)), Channel(z)});
+  }
+}
+
+}  // namespace
+
+LiftDrive::LiftDrive(const LiftSite& site, double start_m, Random& random)
+    : site_(site), route_({start_m, 0.0}, site.height_m, 0.0), random_(random) {}
+
+void LiftDrive::drive(const std::vector<Waypoint>& way) {
+  route_.drive(way);
+  follow();
+}
+
+void LiftDrive::wait(double seconds) {
+  route_.wait(seconds);
+  follow();
+}
+
+void LiftDrive::turn_round() {
+  route_.turn(random_.sign() * std::numbers::pi);
+  follow();
+}
+
+void LiftDrive::take_lift() {
+  const bool top = route_.pose().z_m > 0.5 * site_.height_m;
+  move_cabin_to(top ? site_.height_m : 0.0);
+  doors(top, 1.0);
+  const double middle_m = site_.front_m + LiftSizes::kShaftWallM + kSillM + 0.5 * LiftSizes::kCabinDepthM;
+  drive({{{middle_m, 0.0}, route_.pose().z_m, 0.4, "flat"}});
+  turn_round();
+  doors(top, 0.0);
+  const double before_m = route_.pose().z_m;
+  const double cabin_m = cabin_z_m_.back();
+  const std::size_t first = route_.samples().size();
+  route_.ride(top ? -site_.height_m : site_.height_m, kSpeed, kAcceleration);
+  for (std::size_t i = first; i < route_.samples().size(); ++i) {
+    push(cabin_m + route_.samples()[i].z_m - before_m);
+  }
+  doors(!top, 1.0);
+}
+
+/// The lift stands still while the robot moved.
+void LiftDrive::follow() {
+  while (cabin_z_m_.size() < route_.samples().size()) push(cabin_z_m_.back());
+}
+
+void LiftDrive::push(double cabin_z_m) {
+  cabin_z_m_.push_back(cabin_z_m);
+  cabin_open_.push_back(cabin_door_);
+  top_open_.push_back(top_door_);
+  ground_open_.push_back(ground_door_);
+}
+
+/// Opens (1) or shuts (0) the doors of the cabin and of one storey while the robot waits.
+void LiftDrive::doors(bool top, double target) {
+  const double from = cabin_door_;
+  for (double t = SplineGrid::kStepS; t <= kDoorTimeS; t += SplineGrid::kStepS) {
+    const double phase = t / kDoorTimeS;
+    cabin_door_ = from + (target - from) * 0.5 * (1.0 - std::cos(std::numbers::pi * phase));
+    (top ? top_door_ : ground_door_) = cabin_door_;
+    wait(2.0 * SplineGrid::kStepS);
+  }
+  wait(random_.uniform(0.8, 1.5));
+}
+
+/// The empty cabin comes, unseen behind shut doors.
+void LiftDrive::move_cabin_to(double target_m) {
+  const double from_m = cabin_z_m_.back();
+  const double seconds = std::abs(target_m - from_m) / kSpeed;
+  const auto steps = static_cast<int>(seconds / SplineGrid::kStepS);
+  if (steps == 0) return;
+  route_.wait(seconds + SplineGrid::kStepS);
+  for (int i = 1; cabin_z_m_.size() < route_.samples().size(); ++i) {
+    push(from_m + (target_m - from_m) * std::min(1.0, static_cast<double>(i) / steps));
+  }
+}
+
+std::vector<MovingBody> LiftDrive::bodies() const {
+  std::vector<MovingBody> bodies;
+  const std::size_t samples = cabin_z_m_.size();
+  const double x = site_.front_m + LiftSizes::kShaftWallM;
+  bodies.push_back({RayCaster(make_cabin()), Channel(std::vector<double>(samples, x)),
+                    Channel(std::vector<double>(samples, 0.0)), Channel(cabin_z_m_)});
+  const double landing_x = site_.front_m + 0.15;
+  add_doors(bodies, x + 0.08, 0.0, cabin_open_, cabin_z_m_);
+  add_doors(bodies, landing_x, 0.0, top_open_, std::vector<double>(samples, site_.height_m));
+  add_doors(bodies, landing_x, 0.0, ground_open_, std::vector<double>(samples, 0.0));
+  return bodies;
+}
+
+}  // namespace isobar::simulation

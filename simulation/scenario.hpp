@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Everything that a scenario decides; the sensors are simulated from this alone.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/geometry.hpp"
+#include "simulation/route.hpp"
+#include "simulation/trajectory.hpp"
+#include "simulation/world.hpp"
+
+namespace isobar::simulation {
+
+/// Where the sensors sit; the defaults are the tracked robot's. base_link is on the ground under its middle.
+struct SensorMounts {
+  Mount lidar{{0.10, 0.0, 0.55}, {0.0, 0.0, 0.0}};
+  Mount imu{{0.0, 0.0, 0.20}, {0.0, 0.0, 0.0}};
+  Eigen::Vector3d pressure_port_m{-0.15, 0.05, 0.35};
+};
+
+/// Air between doors: which ventilated zone the robot is in, on the time grid.
+struct AirZones {
+  std::vector<int> zone;          ///< a raw sample
+  double door_pulses_1_s = 0.0;   ///< mean rate of doors moving somewhere near
+  double piston_pa_s_m = 0.0;     ///< pressure in an elevator's cabin a m/s of climb
+  double port_coefficient = 0.0;  ///< share of the dynamic pressure of driving that the port feels
+};
+
+struct Scenario {
+  std::string description;
+  World world;
+  Trajectory trajectory;
+  std::vector<LabelledSpan> labels;
+  std::vector<RawPose> raw;
+  AirZones air;
+  SensorMounts mounts;
+  bool has_wheels = true;
+  bool tracked = true;                   ///< its wheels are tracks, with their slip
+  double air_temperature_c = 20.0;       ///< of the column of air between base station and robot
+  double base_height_m = 1.0;            ///< of the base station's port in the world frame
+  double start_pressure_pa = 101'325.0;  ///< at height 0 and time 0
+};
+
+[[nodiscard]] Scenario make_three_floors(std::uint64_t seed, bool short_form);
+[[nodiscard]] Scenario make_elevator(std::uint64_t seed, bool short_form);
+[[nodiscard]] Scenario make_moulin(std::uint64_t seed, bool short_form);
+[[nodiscard]] Scenario make_stairs_demo(std::uint64_t seed, bool short_form);
+[[nodiscard]] Scenario make_city(std::uint64_t seed, bool short_form);
+[[nodiscard]] Scenario make_city_10km(std::uint64_t seed, bool short_form);
+[[nodiscard]] Scenario make_city_hour(std::uint64_t seed, bool short_form);
+
+}  // namespace isobar::simulation

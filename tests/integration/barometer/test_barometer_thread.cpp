@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The thread that reads a barometer of this machine, in real time, on a model of a DPS310: samples in shared
+// memory, faults in the health report.
+#include "daemon/barometer_thread.hpp"
+
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "daemon/health.hpp"
+#include "drivers/datagram/udp.hpp"
+#include "drivers/dps310/sensor.hpp"
+#include "tests/drivers/dps310/chip_model.hpp"
+
+namespace isobar::test::test_barometer_thread {
+
+using namespace std::chrono_literals;
+
+namespace {
+
+/// A chip that lives in real time; the test changes it while the thread reads it.
+struct LiveChip {
+  LiveChip() { chip.noise_pa = 0.35; }
+  void change(const std::function<void(dps310::ChipModel&)>& what) {
+    const std::lock_guard lock(mutex);
+    what(chip);
+  }
+  /// Takes the chip to the present. Call under the lock.
+  void catch_up() { chip.run_until(RobotClock::now_ns() - start_ns + 2'000'000'000'000); }
+
+  std::mutex mutex;
+  dps310::ChipModel chip;
+  std::int64_t start_ns = RobotClock::now_ns();
+};
+
+class LiveBus final : public dps310::RegisterBus {
+ public:
+  explicit LiveBus(LiveChip& live) : live_(&live) {}
+  int open() noexcept override { return 0; }
+  int read(std::uint8_t first, std::span<std::uint8_t> bytes) noexcept override {
+    const std::lock_guard lock(live_->mutex);
+    live_->catch_up();
+    return live_->chip.read(first, bytes);
+  }
+  int write(std::uint8_t address, std::uint8_t value) noexcept override {
+    const std::lock_guard lock(live_->mutex);
+    live_->catch_up();
+    return live_->chip.write(address, value);
+  }
+
+ private:
+  LiveChip* live_;
+};
+
+/// The thread, a reader of its topic, and what the health report says of it.
+struct Rig {
+  Rig()
+      : barometer(std::make_unique<dps310::Sensor>(dps310::Settings{}, std::make_unique<LiveBus>(live),
+                                                   1'500'000'000),
+                  ThreadSettings{"barometer", 0, {}}),
+        reader(ipc::topics::kBarometer),
+        waiter({&reader.raw()}),
+        monitor(config(), {}) {
+    barometer.start();
+  }
+  static Config config() {
+    Config config;
+    config.barometer.source = "dps310";
+    return config;
+  }
+  /// Samples that came within `time`.
+  int count(std::chrono::milliseconds time, PressureSample* last = nullptr) {
+    const auto end = std::chrono::steady_clock::now() + time;
+    int samples = 0;
+    for (auto now = std::chrono::steady_clock::now(); now < end; now = std::chrono::steady_clock::now()) {
+      (void)waiter.wait_for(end - now);
+      while (const auto sample = reader.take()) {
+        ++samples;
+        if (last != nullptr) *last = *sample;
+      }
+    }
+    return samples;
+  }
+  /// The entry "barometer" as the report has it now: level and words.
+  std::pair<ipc::HealthLevel, std::string> health() {
+    StatusSnapshot now;
+    now.now_ns = RobotClock::now_ns();
+    now.barometer = barometer.status();
+    ipc::HealthReport report;
+    monitor.fill(now, report);
+    for (std::uint32_t i = 0; i < report.entry_count; ++i) {
+      if (std::string(report.entries[i].name) == "barometer") {
+        return {report.entries[i].level, report.entries[i].message};
+      }
+    }
+    return {ipc::HealthLevel::kStale, "no entry"};
+  }
+
+  ipc::Broker broker;
+  LiveChip live;
+  BarometerThread barometer;
+  ipc::Subscriber<PressureSample> reader;
+  ipc::Waiter waiter;
+  HealthMonitor monitor;
+};
+
+}  // namespace
+
+TEST_CASE(
+    "samples come at the sensor's rate; what happens to it is said with its place and is over when it is") {
+  Rig rig;
+  rig.count(1'000ms);
+  PressureSample last;
+  const int samples = rig.count(2'000ms, &last);
+  // 64 are due; a busy machine may read some too late.
+  CHECK(samples >= 40);
+  CHECK(samples <= 68);
+  CHECK(std::abs(last.pressure_pa - 96'000.0) < 3.0);
+  CHECK(last.variance_pa2 == doctest::Approx(0.35 * 0.35));
+  const std::int64_t age_ns = RobotClock::now_ns() - last.stamp_ns;
+  CHECK(age_ns > 0);
+  CHECK(age_ns < 1'000'000'000);
+  auto [level, words] = rig.health();
+  CHECK(level == ipc::HealthLevel::kOk);
+  CHECK(words.find("per second from DPS310 on /dev/i2c-1 at 0x77") != std::string::npos);
+
+  rig.live.change([](auto& chip) { chip.unplugged = true; });
+  rig.count(500ms);
+  CHECK(rig.count(300ms) == 0);
+  std::tie(level, words) = rig.health();
+  CHECK(level == ipc::HealthLevel::kError);
+  CHECK(words == "DPS310 on /dev/i2c-1 at 0x77: no answer (Remote I/O error)");
+
+  rig.live.change([](auto& chip) {
+    chip.unplugged = false;
+    chip.power_up();
+  });
+  rig.count(2'500ms);
+  CHECK(rig.count(1'000ms) > 15);
+  CHECK(rig.health().first == ipc::HealthLevel::kOk);
+
+  rig.live.change([](auto& chip) { chip.frozen = true; });
+  rig.count(2'000ms);
+  std::tie(level, words) = rig.health();
+  CHECK(level == ipc::HealthLevel::kError);
+  CHECK(words == "DPS310 on /dev/i2c-1 at 0x77: the same bits again and again");
+}
+
+TEST_CASE("a thread that waits five seconds for its next try ends at once when it is told to") {
+  Rig rig;
+  rig.live.change([](auto& chip) { chip.unplugged = true; });
+  rig.count(2'000ms);
+  const auto before = std::chrono::steady_clock::now();
+  rig.barometer.stop();
+  CHECK(std::chrono::steady_clock::now() - before < 1s);
+}
+
+TEST_CASE("health is reported once a second, and at once when the barometer fails or comes back") {
+  HealthMonitor monitor(Rig::config(), {});
+  StatusSnapshot now;
+  now.now_ns = 5'000'000'000;
+  now.barometer.present = true;
+  int reports = 0;
+  const auto look = [&] {
+    now.now_ns += 100'000'000;
+    if (!monitor.due(now)) return;
+    ipc::HealthReport report;
+    monitor.fill(now, report);
+    ++reports;
+  };
+  now.barometer.device.state = BarometerState::kMeasuring;
+  for (int i = 0; i < 10; ++i) look();
+  CHECK(reports == 0);  // within a second all sensors have had their chance
+  look();
+  CHECK(reports == 1);
+  for (int i = 0; i < 3; ++i) look();
+  CHECK(reports == 1);
+  now.barometer.device.state = BarometerState::kSilent;
+  look();
+  CHECK(reports == 2);
+  for (int i = 0; i < 30; ++i) look();
+  CHECK(reports == 5);
+}
+
+}  // namespace isobar::test::test_barometer_thread

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// isobar-dds when things around it die. The test itself is the DDS subscriber.
+#include <doctest/doctest.h>
+#include <signal.h>  // NOLINT(modernize-deprecated-headers)
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include "ipc/shared_memory.hpp"
+#include "tests/integration/dds/listener.hpp"
+#include "tests/ipc/child_process.hpp"
+
+namespace isobar::test::test_recovery {
+
+namespace {
+
+using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
+using test::ChildProcess;
+using test::Listener;
+using test::says;
+
+TEST_CASE("without isobard the bridge waits, says so once and in the diagnostics, and ends cleanly") {
+  Listener<dds::DiagnosticsMessage> listener(dds::topics::kDiagnostics);
+  ChildProcess bridge({ISOBAR_DDS_PROGRAM});
+  CHECK(listener.receive(2, [](const auto& message) { return says(message, "isobar: bridge/isobard", 2); }));
+  bridge.signal(SIGTERM);
+  CHECK(bridge.wait(10s) == 0);
+  std::string line;
+  int waiting_lines = 0;
+  while (bridge.read_line(line, 1s)) {
+    waiting_lines += line.find("waiting") != std::string::npos ? 1 : 0;
+  }
+  CHECK(waiting_lines == 1);
+}
+
+TEST_CASE("a killed bridge does not disturb isobard, and a new one goes on") {
+  Listener<dds::OdometryMessage> listener(dds::topics::kOdom);
+  ChildProcess stand_in({ISOBAR_STAND_IN});
+  REQUIRE(stand_in.read_until("ready", 10s));
+  {
+    ChildProcess bridge({ISOBAR_DDS_PROGRAM});
+    CHECK(listener.receive(100));
+    bridge.signal(SIGKILL);
+    CHECK(bridge.wait(10s) == 128 + SIGKILL);
+  }
+  CHECK(stand_in.read_until("priors", 5s));
+  CHECK(stand_in.read_until("priors", 5s));
+  ChildProcess bridge({ISOBAR_DDS_PROGRAM});
+  listener.forget();
+  CHECK(listener.receive(100));
+  CHECK(stand_in.running());
+  bridge.signal(SIGINT);
+  CHECK(bridge.wait(10s) == 0);
+  stand_in.signal(SIGTERM);
+  CHECK(stand_in.wait(10s) == 0);
+}
+
+TEST_CASE("when isobard is killed or stopped and comes again, the bridge comes back by itself") {
+  Listener<dds::OdometryMessage> listener(dds::topics::kOdom);
+  ChildProcess bridge({ISOBAR_DDS_PROGRAM});
+  for (const int ending : {SIGKILL, SIGTERM, SIGKILL}) {
+    ChildProcess stand_in({ISOBAR_STAND_IN});
+    REQUIRE(stand_in.read_until("ready", 10s));
+    listener.forget();
+    CHECK(listener.receive(20));
+    stand_in.signal(ending);
+    CHECK(stand_in.wait(10s) == (ending == SIGKILL ? 128 + SIGKILL : 0));
+  }
+  ChildProcess stand_in({ISOBAR_STAND_IN});
+  listener.forget();
+  CHECK(listener.receive(20));
+  CHECK(bridge.running());  // the same process all along
+  bridge.signal(SIGTERM);
+  CHECK(bridge.wait(10s) == 0);
+}
+
+TEST_CASE("a bridge that was stopped for so long that isobard gave it up comes back") {
+  Listener<dds::OdometryMessage> listener(dds::topics::kOdom);
+  ChildProcess stand_in({ISOBAR_STAND_IN});
+  REQUIRE(stand_in.read_until("ready", 10s));
+  ChildProcess bridge({ISOBAR_DDS_PROGRAM});
+  CHECK(listener.receive(20));
+  bridge.signal(SIGSTOP);
+  for (int second = 0; second < 4; ++second) {  // iceoryx gives a process up after 1.5 s
+    CHECK(stand_in.read_until("priors", 5s));
+  }
+  bridge.signal(SIGCONT);
+  listener.forget();
+  CHECK(listener.receive(200));
+  CHECK(stand_in.running());
+}
+
+TEST_CASE("while the bridge forwards, the end of isobard can be followed at once by its own") {
+  Listener<dds::OdometryMessage> listener(dds::topics::kOdom);
+  ChildProcess stand_in({ISOBAR_STAND_IN});
+  ChildProcess bridge({ISOBAR_DDS_PROGRAM});
+  CHECK(listener.receive(20));
+  stand_in.signal(SIGKILL);
+  bridge.signal(SIGTERM);
+  CHECK(bridge.wait(20s) == 0);
+}
+
+TEST_CASE("a bridge that is told to end does, though isobard hangs and never answers its farewell") {
+  Listener<dds::OdometryMessage> listener(dds::topics::kOdom);
+  ChildProcess stand_in({ISOBAR_STAND_IN});
+  ChildProcess bridge({ISOBAR_DDS_PROGRAM});
+  CHECK(listener.receive(20));
+  stand_in.signal(SIGSTOP);
+  bridge.signal(SIGTERM);
+  CHECK(bridge.wait(20s) == 0);
+}
+
+TEST_CASE("a base station's pressure reaches isobard on isobard's clock, and nonsense does not") {
+  ChildProcess stand_in({ISOBAR_STAND_IN});
+  REQUIRE(stand_in.read_until("ready", 10s));
+  ChildProcess bridge({ISOBAR_DDS_PROGRAM});
+  Listener<dds::DiagnosticsMessage> listener(dds::topics::kDiagnostics);
+  REQUIRE(listener.receive(2));  // isobard has told its clock
+  const dds::Participant& participant = listener.participant();
+  dds::Writer<dds::PressureMessage> writer(participant.get(), dds::topics::kBasePressure, "base");
+  dds::PressureMessage message{};
+  message.header.frame_id = dds::text("base");
+  std::string line;
+  int good = 0;
+  const auto start = std::chrono::steady_clock::now();
+  for (int i = 0; i < 200 && good < 5; ++i) {
+    const auto since_start = std::chrono::steady_clock::now() - start;
+    message.header.stamp =
+        dds::to_time(1'000'000'000'000 + since_start / 1ns);  // it believes that it is 1970
+    message.fluid_pressure = i % 2 == 0 ? 98765.25 : 1e9;
+    writer.write(message);
+    while (stand_in.read_line(line, 50ms)) {
+      if (line.starts_with("base")) {
+        double pressure_pa = 0.0;
+        long age_ms = 0;
+        REQUIRE(std::sscanf(line.c_str(), "base %lf %ld", &pressure_pa, &age_ms) == 2);
+        CHECK(pressure_pa == 98765.25);
+        CHECK(std::abs(age_ms) < 1000);  // a loaded machine's delay, and not half a century
+        ++good;
+      }
+    }
+  }
+  CHECK(good == 5);
+  CHECK(listener.receive(
+      1, [](const auto& got) { return says(got, "isobar: bridge/received_implausible", 1); }));
+}
+
+TEST_CASE("the configuration file says the namespace and where the sensors sit") {
+  const std::string file = "/tmp/isobar-bridge-test.toml";
+  std::ofstream(file) << "[dds]\nros_namespace = \"robot1\"\nlidar_frame = \"velodyne\"\n"
+                         "[lidar]\nxyz_m = [0.1, 0.2, 0.45]\n";
+  ChildProcess stand_in({ISOBAR_STAND_IN});
+  ChildProcess bridge({ISOBAR_DDS_PROGRAM, "--config", file});
+  {
+    Listener<dds::OdometryMessage> listener(dds::topics::kOdom, "robot1");
+    CHECK(listener.receive(20));
+  }
+  Listener<dds::TfMessage> listener(dds::topics::kTfStatic);
+  CHECK(listener.receive(1, [](const dds::TfMessage& message) {
+    const auto& lidar = message.transforms._buffer[0];
+    const auto& xyz = lidar.transform.translation;
+    return std::string("velodyne") == lidar.child_frame_id && xyz.x == 0.1 && xyz.y == 0.2 && xyz.z == 0.45;
+  }));
+}
+
+TEST_CASE("what cannot work is refused in words") {
+  ChildProcess no_interface({ISOBAR_DDS_PROGRAM, "--interface", "nope0"});
+  CHECK(no_interface.read_until("nope0", 10s));
+  CHECK(no_interface.wait(10s) == 69);
+  ChildProcess no_domain({ISOBAR_DDS_PROGRAM, "--domain", "233"});
+  CHECK(no_domain.read_until("domain", 10s));
+  CHECK(no_domain.wait(10s) == 78);
+  ChildProcess no_file({ISOBAR_DDS_PROGRAM, "--config", "/nowhere/isobar.toml"});
+  CHECK(no_file.read_until("/nowhere/isobar.toml", 10s));
+  CHECK(no_file.wait(10s) == 78);
+  ChildProcess no_option({ISOBAR_DDS_PROGRAM, "--nonsense"});
+  CHECK(no_option.wait(10s) == 64);
+}
+
+}  // namespace
+
+}  // namespace isobar::test::test_recovery

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Messages through shared memory: inside one process and between two. Each case starts its own broker.
+#include "ipc/shared_memory.hpp"
+
+#include <doctest/doctest.h>
+#include <signal.h>  // NOLINT(modernize-deprecated-headers)
+
+#include <array>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "core/errors.hpp"
+#include "tests/ipc/child_process.hpp"
+
+namespace isobar::test::test_shared_memory {
+
+using namespace isobar::ipc;
+
+namespace {
+
+using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
+using test::ChildProcess;
+
+TEST_CASE("a small message arrives as it was sent") {
+  const Broker broker;
+  Publisher<Prior> publisher(topics::kPrior);
+  Subscriber<Prior> subscriber(topics::kPrior);
+  Prior sent;
+  sent.stamp_ns = 1'234'567'890'123'456'789;
+  sent.T_odom_base.translation() = Eigen::Vector3d(1.0, -2.0, 3.0);
+  sent.height_m = 12.5;
+  sent.height_source = HeightSource::kDifferential;
+  REQUIRE(publisher.send(sent));
+  const auto received = subscriber.take();
+  REQUIRE(received);
+  CHECK(received->stamp_ns == sent.stamp_ns);
+  CHECK(received->T_odom_base.matrix() == sent.T_odom_base.matrix());
+  CHECK(received->height_m == sent.height_m);
+  CHECK(received->height_source == sent.height_source);
+  CHECK_FALSE(subscriber.take());
+}
+
+TEST_CASE("a full queue loses its oldest messages and counts them") {
+  const Broker broker;
+  Publisher<PoseEstimate> publisher(topics::kPose);
+  Subscriber<PoseEstimate> subscriber(topics::kPose);
+  PoseEstimate pose;
+  REQUIRE(publisher.send(pose));
+  REQUIRE(subscriber.take());  // from here on the reader knows the numbers
+  const std::uint32_t sent = topics::kPose.depth + 7;
+  for (pose.sequence = 1; pose.sequence <= sent; ++pose.sequence) {
+    REQUIRE(publisher.send(pose));
+  }
+  CHECK(subscriber.take()->sequence == 8);
+  CHECK(subscriber.dropped() == 7);
+  CHECK(subscriber.take_latest()->sequence == sent);
+  CHECK(subscriber.dropped() == 7);  // skipping on purpose is no loss
+  CHECK(subscriber.rejected() == 0);
+}
+
+TEST_CASE("whole scans are handed over without copying; a held message stays as it is") {
+  const Broker broker;
+  Publisher<Scan> publisher(topics::kLidarScan);
+  Subscriber<Scan> subscriber(topics::kLidarScan);
+  const Scan* written = nullptr;
+  for (std::uint32_t sequence = 0; sequence < 3; ++sequence) {
+    Scan* scan = publisher.loan();
+    REQUIRE(scan != nullptr);
+    scan->sequence = sequence;
+    scan->point_count = Scan::kMaxPoints;
+    scan->points[Scan::kMaxPoints - 1].x_m = static_cast<float>(sequence);
+    written = scan;
+    publisher.publish(scan);
+  }
+  const auto first = subscriber.take();
+  const auto latest = subscriber.take_latest();
+  CHECK(latest.get() == written);
+  CHECK(latest->points[Scan::kMaxPoints - 1].x_m == 2.0F);
+  for (int i = 0; i < 40; ++i) {  // more than the pool holds: what is free goes round, what is held does not
+    Scan* scan = publisher.loan();
+    REQUIRE(scan != nullptr);
+    CHECK(scan->point_count == 0);  // a loan is a fresh message, not the remains of an old one
+    scan->point_count = 99;
+    scan->sequence = 99;
+    publisher.publish(scan);
+  }
+  CHECK(first->sequence == 0);
+  CHECK(latest->sequence == 2);
+}
+
+TEST_CASE("an exhausted pool is counted, not thrown, and heals when something is given back") {
+  const Broker broker;
+  Publisher<Scan> publisher(topics::kLidarScan);
+  std::array<Scan*, 8> loans{};
+  for (Scan*& loan : loans) {
+    loan = publisher.loan();
+    REQUIRE(loan != nullptr);
+  }
+  CHECK(publisher.loan() == nullptr);
+  CHECK(publisher.loan_failures() == 1);
+  publisher.discard(loans[0]);
+  loans[0] = publisher.loan();
+  CHECK(loans[0] != nullptr);
+  for (Scan* loan : loans) {
+    publisher.discard(loan);
+  }
+}
+
+TEST_CASE("a late reader gets the last map") {
+  const Broker broker;
+  Publisher<MapCloud> publisher(topics::kMapCloud);
+  for (std::uint32_t sequence = 1; sequence <= 2; ++sequence) {
+    MapCloud* map = publisher.loan();
+    REQUIRE(map != nullptr);
+    map->sequence = sequence;
+    publisher.publish(map);
+  }
+  Subscriber<MapCloud> subscriber(topics::kMapCloud);
+  Waiter waiter({&subscriber.raw()});
+  REQUIRE(waiter.wait_for(2s) == Waiter::Event::kData);
+  CHECK(subscriber.take()->sequence == 2);
+}
+
+TEST_CASE("a waiter wakes for any of its readers, times out without data, and ends when told") {
+  const Broker broker;
+  Publisher<WheelSample> wheels(topics::kWheel);
+  Subscriber<ImuSample> imu(topics::kImu);
+  Subscriber<WheelSample> wheel(topics::kWheel);
+  Waiter waiter({&imu.raw(), &wheel.raw()});
+  CHECK(waiter.wait_for(1ms) == Waiter::Event::kTimeout);
+  REQUIRE(wheels.send({}));
+  CHECK(waiter.wait() == Waiter::Event::kData);
+  CHECK(waiter.wait() == Waiter::Event::kData);  // as long as the message waits
+  static_cast<void>(wheel.take());
+  CHECK(waiter.wait_for(1ms) == Waiter::Event::kTimeout);
+
+  Waiter::Event last = Waiter::Event::kData;
+  std::thread sleeper([&] { last = waiter.wait(); });
+  waiter.stop();
+  sleeper.join();
+  CHECK(last == Waiter::Event::kStopped);
+  CHECK(waiter.wait() == Waiter::Event::kStopped);
+}
+
+TEST_CASE("a health report cuts what is too long and refuses what is too much") {
+  HealthReport report;
+  const std::string longer(200, 'x');
+  REQUIRE(report.add(longer, HealthLevel::kWarning, longer, 1.5));
+  CHECK(std::string_view(report.entries[0].name) == std::string(HealthEntry::kNameBytes - 1, 'x'));
+  CHECK(std::string_view(report.entries[0].message) == std::string(HealthEntry::kMessageBytes - 1, 'x'));
+  while (report.entry_count < HealthReport::kMaxEntries) {
+    REQUIRE(report.add("name", HealthLevel::kOk, "", 0.0));
+  }
+  CHECK_FALSE(report.add("name", HealthLevel::kOk, "", 0.0));
+}
+
+TEST_CASE("another process reads what this one writes") {
+  const Broker broker;
+  Publisher<Prior> priors(topics::kPrior);
+  Subscriber<ImuSample> nothing(topics::kImu);
+  Waiter pause({&nothing.raw()});
+  ChildProcess reader({ISOBAR_IPC_PEER, "read", "50"});
+  Prior prior;
+  for (int i = 0; i < 2000 && reader.running(); ++i, prior.height_m += 1.0) {
+    REQUIRE(priors.send(prior));
+    static_cast<void>(pause.wait_for(5ms));
+  }
+  CHECK(reader.wait(5s) == 0);
+}
+
+TEST_CASE("a killed reader does not hold up the writer") {
+  const Broker broker;
+  Publisher<Prior> priors(topics::kPrior);
+  Subscriber<ImuSample> nothing(topics::kImu);
+  Waiter pause({&nothing.raw()});
+  ChildProcess reader({ISOBAR_IPC_PEER, "watch"});
+  Prior prior;
+  for (int i = 0; i < 2000 && !priors.has_subscribers(); ++i, prior.height_m += 1.0) {
+    static_cast<void>(pause.wait_for(5ms));
+  }
+  REQUIRE(priors.has_subscribers());
+  reader.signal(SIGKILL);
+  CHECK(reader.wait(5s) == 128 + SIGKILL);
+  for (int i = 0; i < 10'000; ++i) {  // many times the depth of the queue and the size of the pool
+    REQUIRE(priors.send(prior));
+  }
+}
+
+TEST_CASE("readers see that the broker was killed, and the next broker starts over what it left") {
+  ChildProcess first({ISOBAR_IPC_PEER, "broker"});
+  REQUIRE(first.read_until("ready", 10s));
+  ChildProcess reader({ISOBAR_IPC_PEER, "watch"});
+  REQUIRE(reader.read_until("received", 10s));
+  CHECK(reader.running());
+  first.signal(SIGKILL);
+  CHECK(first.wait(5s) == 128 + SIGKILL);
+  CHECK(reader.wait(5s) == 0);
+  ChildProcess second({ISOBAR_IPC_PEER, "broker"});
+  REQUIRE(second.read_until("ready", 10s));
+  ChildProcess next_reader({ISOBAR_IPC_PEER, "read", "3"});
+  CHECK(next_reader.wait(10s) == 0);
+}
+
+TEST_CASE("a broker that ends waits until those who are attached have left") {
+  auto broker = std::make_unique<Broker>();
+  auto priors = std::make_unique<Publisher<Prior>>(topics::kPrior);
+  ChildProcess reader({ISOBAR_IPC_PEER, "watch"});
+  std::string line;
+  while (!reader.read_line(line, 5ms)) {
+    Prior prior;
+    prior.height_m = 1.0;
+    REQUIRE(priors->send(prior));
+  }
+  CHECK(line == "received");
+  const std::uint64_t faults = library_fault_count();
+  priors.reset();
+  broker.reset();
+  // Had it been slower than the broker, the library would have ended it with another code.
+  CHECK(reader.wait(5s) == 0);
+  CHECK(library_fault_count() == faults);
+}
+
+TEST_CASE("a second broker is refused in words") {
+  ChildProcess first({ISOBAR_IPC_PEER, "broker"});
+  REQUIRE(first.read_until("ready", 10s));
+  ChildProcess reader({ISOBAR_IPC_PEER, "watch"});
+  REQUIRE(reader.read_until("received", 10s));
+  ChildProcess second({ISOBAR_IPC_PEER, "broker"});
+  CHECK(second.read_until("another isobard is running", 10s));
+  CHECK(second.wait(5s) == 69);
+  CHECK(first.running());
+  CHECK(reader.running());  // and those who are attached notice nothing
+  ChildProcess late({ISOBAR_IPC_PEER, "read", "3"});
+  CHECK(late.wait(10s) == 0);
+  CHECK_THROWS_WITH_AS(Broker(), doctest::Contains("another isobard is running"), ServiceError);
+}
+
+TEST_CASE("attaching without a broker is refused after the time given") {
+  CHECK_THROWS_WITH_AS(Attachment("test", 50ms), doctest::Contains("isobard is not running"), ServiceError);
+}
+
+}  // namespace
+
+}  // namespace isobar::test::test_shared_memory

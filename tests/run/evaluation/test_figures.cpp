@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include "core/errors.hpp"
+#include "run/evaluation/figures.hpp"
+#include "tests/run/evaluation/paths.hpp"
+
+namespace isobar::test::test_figures {
+
+using namespace isobar::evaluation;
+using namespace isobar::test;
+using doctest::Approx;
+
+namespace {
+
+/// A step in height of `step_m` from `at_s` on.
+Trajectory stepped(Trajectory t, double at_s, double step_m) {
+  for (StampedPose& p : t.poses) {
+    if (p.stamp_ns >= at_ns(at_s)) p.position_m.z() += step_m;
+  }
+  return t;
+}
+
+}  // namespace
+
+TEST_CASE("a perfect estimate in its own frame has no error, full coverage and is not lost") {
+  const Trajectory reference = winding(100.0, 0.05);
+  const Evaluation e = evaluate(reference, {}, transformed(yaw_and_shift(1.5, {1, 2, 3}), reference), {});
+  CHECK(e.figures.ate_max_m < 1e-9);
+  CHECK(e.figures.z_rpe.max < 1e-9);
+  CHECK(std::abs(e.figures.yaw_drift_rad) < 1e-9);
+  CHECK(e.figures.coverage == Approx(1.0));
+  CHECK(e.figures.whole_run_as_flat);
+  CHECK_FALSE(e.figures.lost);
+  CHECK(std::isnan(e.figures.sigma_share));
+}
+
+TEST_CASE("a height that drifts by 2 % over 100 m: z-RPE 2 %, final height error 2 m, ATE 2/sqrt(3) m") {
+  const Evaluation e = evaluate(straight(100.0, 0.01), {}, straight(100.0, 0.1, 0.02), {});
+  CHECK(e.figures.z_rpe.median == Approx(0.02).epsilon(1e-6));
+  CHECK(e.figures.z_rpe.p95 == Approx(0.02).epsilon(1e-6));
+  CHECK(e.figures.final_height_error_m == Approx(2.0).epsilon(1e-6));
+  CHECK(e.figures.largest_height_error_m == Approx(2.0).epsilon(1e-6));
+  CHECK(e.figures.ate_rms_m ==
+        Approx(2.0 / std::sqrt(3.0)).epsilon(2e-3));  // of a ramp; 1001 samples of the integral
+  CHECK(e.figures.travelled_m == Approx(100.0).epsilon(1e-9));
+  CHECK(e.figures.ate_share == Approx(0.02 / std::sqrt(3.0)).epsilon(2e-3));
+}
+
+TEST_CASE("a heading that drifts by 0.1 degree a metre: 10 degrees after 100 m, signed") {
+  const Evaluation left = evaluate(straight(100.0, 0.01), {}, straight(100.0, 0.1, 0.0, 0.1 * kDegree), {});
+  CHECK(left.figures.yaw_drift_rad / kDegree == Approx(10.0).epsilon(1e-6));
+  CHECK(left.figures.yaw_drift_rad_m * 100.0 / kDegree == Approx(10.0).epsilon(1e-6));
+  const Evaluation right = evaluate(straight(100.0, 0.01), {}, straight(100.0, 0.1, 0.0, -0.1 * kDegree), {});
+  CHECK(right.figures.yaw_drift_rad / kDegree == Approx(-10.0).epsilon(1e-6));
+}
+
+TEST_CASE("a wrong heading at the start alone is aligned away, together with the way it led") {
+  const Trajectory reference = winding(60.0, 0.05);
+  const Evaluation e =
+      evaluate(reference, {}, transformed(yaw_and_shift(30 * kDegree, {0, 0, 0}), reference), {});
+  CHECK(e.figures.ate_max_m < 1e-9);
+}
+
+TEST_CASE("all figures stay when reference and estimate move together by yaw and shift") {
+  const Trajectory reference = winding(100.0, 0.05);
+  Trajectory estimate = transformed(yaw_and_shift(0.3, {0, 1, 0}), winding(100.0, 0.1));
+  for (std::size_t i = 0; i < estimate.poses.size(); ++i)
+    estimate.poses[i].position_m.z() += 1e-4 * static_cast<double>(i);
+  const Eigen::Isometry3d move = yaw_and_shift(-2.0, {40, -30, 20});
+  const MethodFigures a = evaluate(reference, {}, estimate, {}).figures;
+  const MethodFigures b = evaluate(transformed(move, reference), {}, transformed(move, estimate), {}).figures;
+  CHECK(a.z_rpe.median > 1e-5);
+  CHECK(b.z_rpe.median == Approx(a.z_rpe.median).epsilon(1e-6));
+  CHECK(b.z_rpe.p95 == Approx(a.z_rpe.p95).epsilon(1e-6));
+  CHECK(b.ate_rms_m == Approx(a.ate_rms_m).epsilon(1e-9));
+  CHECK(b.rpe_translation.median == Approx(a.rpe_translation.median).epsilon(1e-6));
+  CHECK(b.final_height_error_m == Approx(a.final_height_error_m).epsilon(1e-9));
+}
+
+TEST_CASE("z-RPE looks at flat segments only: an error made on the stairs is not in it, but in the floors") {
+  const std::vector<Segment> segments{
+      {at_ns(0), at_ns(40), "flat"}, {at_ns(40), at_ns(60), "stairs"}, {at_ns(60), at_ns(100), "flat"}};
+  const auto climb = [](double t) { return t < 40 ? 0.0 : (t < 60 ? 0.2 * (t - 40) : 4.0); };
+  const Trajectory reference = sampled(100.0, 0.01, [&](double t) {
+    return StampedPose{0, {t, 0, climb(t)}, Eigen::Quaterniond::Identity()};
+  });
+  const MethodFigures f = evaluate(reference, segments, stepped(reference, 50.0, 0.3), {}).figures;
+  CHECK_FALSE(f.whole_run_as_flat);
+  CHECK(f.z_rpe.max < 1e-9);
+  REQUIRE(f.floors.size() == 2);
+  CHECK(f.floors[0].reference_m == Approx(0.0));
+  CHECK(f.floors[0].mean_error_m == Approx(0.0));
+  CHECK(f.floors[1].reference_m == Approx(4.0).epsilon(1e-3));
+  CHECK(f.floors[1].mean_error_m == Approx(0.3));
+}
+
+TEST_CASE("a floor visited twice is one floor, and its worst visit is named") {
+  const std::vector<Segment> segments{
+      {at_ns(0), at_ns(20), "flat"}, {at_ns(40), at_ns(60), "flat"}, {at_ns(80), at_ns(100), "flat"}};
+  const Trajectory reference = sampled(100.0, 0.05, [](double t) {
+    return StampedPose{0, {t, 0, t < 30 || t > 70 ? 8.0 : 0.0}, Eigen::Quaterniond::Identity()};
+  });
+  const MethodFigures f = evaluate(reference, segments, stepped(reference, 70.0, -0.2), {}).figures;
+  REQUIRE(f.floors.size() == 2);
+  CHECK(f.floors[0].visits == 1);
+  CHECK(f.floors[1].visits == 2);
+  CHECK(f.floors[1].worst_error_m == Approx(-0.2));
+  CHECK(f.floors[1].mean_error_m == Approx(-0.1).epsilon(1e-6));
+}
+
+TEST_CASE("a run is lost when it stops early or leaves the reference for good, not when it merely drifts") {
+  const Trajectory reference = straight(200.0, 0.01);
+  CHECK_FALSE(evaluate(reference, {}, straight(200.0, 0.1, 0.02), {}).figures.lost);  // 4 m in 200 m
+  CHECK(evaluate(reference, {}, straight(190.0, 0.1), {}).figures.lost);              // 95 % covered
+  CHECK(evaluate(reference, {}, stepped(straight(200.0, 0.1), 100.0, 20.0), {}).figures.lost);
+}
+
+TEST_CASE("a height error of 2 m that grows evenly is within twice a sigma of 0.5 m for half of the time") {
+  const Trajectory estimate = straight(100.0, 0.1, 0.02);
+  std::vector<HeightSigma> sigmas;
+  for (const StampedPose& p : estimate.poses) sigmas.push_back({p.stamp_ns, 0.5});
+  CHECK(evaluate(straight(100.0, 0.01), {}, estimate, sigmas).figures.sigma_share ==
+        Approx(0.5).epsilon(0.01));
+}
+
+TEST_CASE("trajectories without a common time are refused") {
+  Trajectory late = straight(10.0, 0.1);
+  for (StampedPose& p : late.poses) p.stamp_ns += 1'000'000'000'000;
+  CHECK_THROWS_AS(evaluate(straight(10.0, 0.1), {}, late, {}), isobar::DataError);
+}
+
+}  // namespace isobar::test::test_figures

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "simulation/atmosphere.hpp"
+#include "simulation/barometer_model.hpp"
+
+namespace isobar::test::test_air {
+
+using namespace isobar::simulation;
+
+namespace {
+
+Scenario make_still_scenario() {
+  Scenario scenario;
+  scenario.raw.resize(20'001);  // 1000 s
+  scenario.air.zone.assign(scenario.raw.size(), 0);
+  scenario.air_temperature_c = 12.5;
+  scenario.base_height_m = 3.0;
+  scenario.start_pressure_pa = 99'000.0;
+  return scenario;
+}
+
+}  // namespace
+
+TEST_CASE("pressure without errors, put into the hypsometric equation, gives the height") {
+  const Scenario scenario = make_still_scenario();
+  const Atmosphere air(scenario, AirErrors{}, Random(1));
+  BarometerModel robot(BarometerErrors{}, Random(2));
+  BarometerModel base(BarometerErrors{}, Random(3));
+  for (const double height_m : {-60.0, -3.0, 0.0, 0.1, 12.0, 200.0}) {
+    const double p1 = robot.sample(5.0, air.robot_pa(5.0, height_m), 12.5).pressure_pa;
+    const double p0 = base.sample(5.0, air.base_pa(5.0), 12.5).pressure_pa;
+    // dz = R T / g ln(p0 / p1), R = 287.05 J/(kg K), g = 9.80665 m/s^2
+    const double dz = 287.05 * (273.15 + 12.5) / 9.80665 * std::log(p0 / p1);
+    CHECK(dz == doctest::Approx(height_m - 3.0).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("weather moves both sensors alike and moves by hectopascals in three hours") {
+  const Scenario scenario = make_still_scenario();
+  AirErrors errors = AirErrors::draw(Random(4));
+  CHECK(std::abs(errors.ramp_pa_s) * 10'800.0 >= 100.0);
+  errors.local_turbulence_pa = 0.0;
+  errors.zone_sigma_pa = 0.0;
+  errors.pulse_pa = 0.0;
+  const Atmosphere air(scenario, errors, Random(5));
+  CHECK(std::abs(air.base_pa(990.0) - air.base_pa(10.0)) > 3.0);
+  for (double t = 1.0; t < 1000.0; t += 7.0) {
+    const double dz = 287.05 * 285.65 / 9.80665 * std::log(air.base_pa(t) / air.robot_pa(t, 3.0));
+    CHECK(std::abs(dz) < 1e-6);
+  }
+}
+
+TEST_CASE("a change of ventilated zone shifts the robot's pressure by at most 35 cm and nothing else") {
+  Scenario scenario = make_still_scenario();
+  for (std::size_t i = 10'000; i < scenario.air.zone.size(); ++i) scenario.air.zone[i] = 1;
+  AirErrors errors;
+  errors.zone_sigma_pa = 0.8;
+  double largest = 0.0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Atmosphere air(scenario, errors, Random(seed));
+    CHECK(std::abs(air.robot_pa(499.0, 0.0) - air.robot_pa(5.0, 0.0)) < 1e-9);
+    const double step = air.robot_pa(520.0, 0.0) - air.robot_pa(499.0, 0.0);
+    CHECK(std::abs(step) * 0.0845 < 0.35);  // 8.45 cm a pascal at 12.5 degrees and 990 hPa
+    CHECK(std::abs(air.base_pa(520.0) - air.base_pa(499.0)) < 1e-9);
+    largest = std::max(largest, std::abs(step));
+  }
+  CHECK(largest > 0.5);
+}
+
+TEST_CASE("a door makes a short pulse that is gone two seconds later") {
+  Scenario scenario = make_still_scenario();
+  scenario.air.door_pulses_1_s = 1.0 / 60.0;
+  AirErrors errors;
+  errors.pulse_pa = 10.0;
+  const Atmosphere air(scenario, errors, Random(6));
+  const double rest_pa = scenario.start_pressure_pa;
+  int disturbed = 0;
+  double peak = 0.0;
+  for (double t = 0.0; t < 1000.0; t += 0.1) {
+    const double off = std::abs(air.robot_pa(t, 0.0) - rest_pa);
+    peak = std::max(peak, off);
+    disturbed += off > 0.1 ? 1 : 0;
+  }
+  CHECK(peak > 3.0);
+  CHECK(peak < 20.0);
+  CHECK(disturbed > 50);  // 1000 s with a pulse a minute, about a second each
+  CHECK(disturbed < 600);
+}
+
+TEST_CASE("warming up moves pressure and temperature along one exponential") {
+  BarometerErrors errors;
+  errors.warm_up_k = 3.0;
+  errors.warm_up_tau_s = 200.0;
+  errors.powered_for_s = 100.0;
+  errors.drift_pa_k = 0.4;
+  BarometerModel barometer(errors, Random(7));
+  for (const double t : {0.0, 50.0, 400.0}) {
+    const PressureSample sample = barometer.sample(t, 100'000.0, 20.0);
+    const double warm = 3.0 * (1.0 - std::exp(-(t + 100.0) / 200.0));
+    CHECK(sample.temperature_c == doctest::Approx(20.0 + warm));
+    CHECK(sample.pressure_pa - 100'000.0 == doctest::Approx(0.4 * warm).epsilon(1e-6));
+  }
+}
+
+}  // namespace isobar::test::test_air

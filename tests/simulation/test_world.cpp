@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simulation/world.hpp"
+
+#include <doctest/doctest.h>
+
+namespace isobar::test::test_world {
+
+using namespace isobar::simulation;
+using Eigen::Vector3d;
+
+namespace {
+
+/// A box of 1 m that moves along x from the given place, for a part of the run.
+MovingBody make_box(double x_m, double speed_m_s, std::size_t first, std::size_t samples) {
+  Mesh shape;
+  shape.box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, Surface::kMetal);
+  std::vector<double> x;
+  for (std::size_t i = 0; i < samples; ++i) {
+    x.push_back(x_m + speed_m_s * SplineGrid::kStepS * static_cast<double>(i));
+  }
+  const Channel zero(std::vector<double>(samples, 0.0));
+  return {RayCaster(shape), Channel(std::move(x)), zero, zero, first};
+}
+
+double look(const World& world, double time_s) {
+  World::Moment moment;
+  world.look(time_s, Vector3d::Zero(), 50.0, moment);
+  return world.cast(moment, Vector3d::Zero(), Vector3d::UnitX(), 50.0).distance_m;
+}
+
+}  // namespace
+
+TEST_CASE("a body is seen where it is at its own time, and only while it is there") {
+  // 100 samples are 5 s; the second body comes after 2 s and goes after 4 s.
+  const World world(Mesh{}, {make_box(20.0, 0.0, 0, 100), make_box(5.0, 2.0, 40, 40)});
+  CHECK(look(world, 1.0) == doctest::Approx(19.5));
+  CHECK(look(world, 2.5) == doctest::Approx(5.5));  // 0.5 s on its way: 5 + 1 - 0.5
+  CHECK(look(world, 3.5) == doctest::Approx(7.5));
+  CHECK(look(world, 4.5) == doctest::Approx(19.5));
+}
+
+}  // namespace isobar::test::test_world
