@@ -70,19 +70,19 @@ struct InputSettings {
 /// [output]
 struct OutputSettings {
   std::string directory;          ///< folder for trajectory, map and status of a live run; empty: none
-  double cloud_interval_s = 2.0;  ///< between map clouds for viewers, 0.2 … 3600
+  double cloud_interval_s = 2.0;  ///< between map clouds for viewers
 };
 
 /// [map], what is about files
 struct MapFileSettings {
   std::string directory;     ///< folder for the map of a live run; empty: map/ in [output], or none without
-  double max_disk_gb = 4.0;  ///< 0.001 … 1000; beyond it the file of tiles begun longest ago goes
+  double max_disk_gb = 4.0;  ///< beyond it the file of tiles begun longest ago is deleted
 };
 
-/// [realtime]; deadlines in ms, 0.1 … 10 000
+/// [realtime]; deadlines in ms
 struct RealtimeSettings {
   bool enabled = false;        ///< SCHED_FIFO, and all memory locked
-  int inertial_priority = 55;  ///< 1 … 99
+  int inertial_priority = 55;  ///< SCHED_FIFO priorities
   int prior_priority = 55;
   int lidar_priority = 45;
   int registration_priority = 40;
@@ -92,8 +92,8 @@ struct RealtimeSettings {
   double prior_deadline_ms = 10.0;         ///< IMU sample to its prior handed on
   double registration_deadline_ms = 50.0;  ///< end of a scan to its pose handed on
   double map_deadline_ms = 100.0;          ///< pose handed on to the map that holds its scan
-  double prior_reach_ms = 6.0;             ///< see ScanQueueConfig, 0 … 100
-  double prior_wait_ms = 50.0;             ///< see ScanQueueConfig, 1 … 1000
+  double prior_reach_ms = 6.0;             ///< see ScanQueueConfig
+  double prior_wait_ms = 50.0;             ///< see ScanQueueConfig
 };
 
 struct Config {

@@ -11,12 +11,12 @@ namespace isobar::dds {
 
 /// What isobar-dds says, to whom, and under which names. Section [dds] of the configuration.
 struct DdsConfig {
-  /// DDS domain, ROS_DOMAIN_ID of the nodes that listen, 0 … 232 (the ports of more do not exist).
+  /// DDS domain, ROS_DOMAIN_ID of the nodes that listen (the ports of more do not exist).
   int domain_id = 0;
   /// Network interface to speak on, by name or address; empty: the best one of the machine, and loopback
   /// where there is no other.
   std::string network_interface;
-  /// Largest datagram [bytes], 1472 … 65500. The default is Cyclone's own; 65500 halves the load of clouds
+  /// Largest datagram [bytes]. The default is Cyclone's own; 65500 halves the load of clouds
   /// where nobody minds IP fragments, as on loopback.
   int max_message_bytes = 14720;
 
@@ -34,9 +34,9 @@ struct DdsConfig {
   std::string imu_frame = "imu";
   std::string barometer_frame = "barometer";
 
-  /// Rate of odom and tf [Hz], 1 … 1000; the IMU's rate if that is lower. 100 serves controllers.
+  /// Rate of odom and tf [Hz]; the IMU's rate if that is lower. 100 serves controllers.
   double odom_rate_hz = 100.0;
-  /// Rate of altitude [Hz], 0.1 … 200. Air pressure is filtered to a few hertz anyway.
+  /// Rate of altitude [Hz]. Air pressure is filtered to a few hertz anyway.
   double altitude_rate_hz = 10.0;
   /// Publish each registered scan and the map. Off saves most of the bridge's load.
   bool publish_clouds = true;

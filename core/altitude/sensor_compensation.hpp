@@ -31,7 +31,7 @@ struct CalibratedRange {
 double compensated_pa(const Compensation& compensation, const CalibratedRange& range, double pressure_pa,
                       double temperature_c);
 
-/// Result of a calibration. Every field says its unit and range; [barometer.compensation] has the same keys.
+/// Result of a calibration. [barometer.compensation] has the same keys.
 struct CompensationConfig {
   CompensationModel model = CompensationModel::kNone;  ///< kNone: the samples stay as they are
 
@@ -46,7 +46,7 @@ struct CompensationConfig {
 
   CalibratedRange range;
 
-  /// White noise of one compensated sample, 1 sigma [Pa], 0 … 1000; 0: not known.
+  /// White noise of one compensated sample, 1 sigma [Pa]; 0: not known.
   double sigma_pa = 0.0;
 };
 

@@ -16,34 +16,34 @@ enum class Matcher : std::uint8_t {
 struct MapConfig {
   /// How points are matched to planes.
   Matcher matcher = Matcher::kPlaneHash;
-  /// Edge of a plane cell [m], 0.1 … 1. Smaller follows finer indoor detail, larger needs fewer cells
+  /// Edge of a plane cell [m]. Smaller follows finer indoor detail, larger needs fewer cells
   /// outdoors. 0.275 was the most accurate of 0.25 … 0.3 over the short scenarios.
   double cell_m = 0.275;
-  /// Tiles whose centre is farther than this from the robot leave memory [m], 20 … 200. Beyond the reach of
+  /// Tiles whose centre is farther than this from the robot leave memory [m]. Beyond the reach of
   /// the registration nothing is matched.
   double radius_m = 70.0;
-  /// The map takes a scan when the robot moved this far since the last one it took [m], 0 … 2.
+  /// The map takes a scan when the robot moved this far since the last one it took [m].
   double update_distance_m = 0.15;
-  /// … or turned this far [deg], 0 … 45.
+  /// … or turned this far [deg].
   double update_angle_deg = 4.0;
-  /// … or this long ago [s], 0.1 … 60: things move while the robot stands.
+  /// … or this long ago [s]: things move while the robot stands.
   double update_interval_s = 1.0;
-  /// … or when less than this share of the scan found the map, 0 … 1: a door opened, the place is new.
+  /// … or when less than this share of the scan found the map: a door opened, the place is new.
   double update_overlap = 0.75;
-  /// Observations after which a cell's plane no longer changes, 8 … 127. Enough to average the lidar's
+  /// Observations after which a cell's plane no longer changes. Enough to average the lidar's
   /// noise; few enough that the oldest pose counts, which keeps drift out of places seen twice.
   int freeze_observations = 80;
-  /// Largest thickness (standard deviation along the normal) of a cell that counts as a plane [m], 0.01 …
-  /// 0.2. The noise of a VLP-16 is 0.01 … 0.03 m.
+  /// Largest thickness (standard deviation along the normal) of a cell that counts as a plane [m]. The noise
+  /// of a VLP-16 is 0.01 … 0.03 m.
   double max_thickness_m = 0.05;
-  /// Largest standard deviation of a normal's direction [deg], 0.5 … 15. Worse ones are not matched.
+  /// Largest standard deviation of a normal's direction [deg]. Worse ones are not matched.
   double max_normal_deviation_deg = 4.0;
-  /// Points seen through this often leave the map, 1 … 50. 0 keeps everything.
+  /// Points seen through this often leave the map. 0 keeps everything.
   int see_through_limit = 3;
-  /// A ray must pass a point's surface by this much to count as seen through [m], 0.1 … 2: above the noise of
+  /// A ray must pass a point's surface by this much to count as seen through [m]: above the noise of
   /// range and height.
   double see_through_margin_m = 0.35;
-  /// Points farther than this from the robot are not tested for being seen through [m], 2 … 100.
+  /// Points farther than this from the robot are not tested for being seen through [m].
   double see_through_range_m = 25.0;
 };
 

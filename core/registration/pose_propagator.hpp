@@ -14,15 +14,15 @@
 namespace isobar {
 
 struct PosePropagatorConfig {
-  /// Time constant with which a correction of the registration enters the odom frame [s], 0.01 … 10. Two of
+  /// Time constant with which a correction of the registration enters the odom frame [s]. Two of
   /// them, 0.2 s, are two scans: odometry follows the registered pose closely, and one bad scan is smoothed.
   double slew_time_s = 0.1;
-  /// Fastest correction of position [m/s], > 0. Controllers see a correction as motion: it stays at walking
+  /// Fastest correction of position [m/s]. Controllers see a correction as motion: it stays at walking
   /// pace.
   double max_slew_m_s = 1.0;
-  /// Fastest correction of orientation [rad/s], > 0.
+  /// Fastest correction of orientation [rad/s].
   double max_slew_rad_s = 1.0;
-  /// Without wheels the velocity between the last scans is taken on for this long at most [s], 0 … 5.
+  /// Without wheels the velocity between the last scans is taken on for this long at most [s].
   double max_extrapolation_s = 0.5;
 };
 

@@ -7,7 +7,7 @@
 
 namespace isobar::dps310 {
 
-/// Where a DPS310 is and how it measures. Rates and oversamplings are powers of two, 1 … 128.
+/// Where a DPS310 is and how it measures. Rates and oversamplings are powers of two.
 struct Settings {
   std::string bus = "/dev/i2c-1";  ///< the kernel's I2C device
   std::string address = "0x77";    ///< "0x77", or "0x76" with SDO to ground

@@ -10,7 +10,7 @@ namespace isobar::iio {
 /// Where a barometer of the kernel is.
 struct Settings {
   std::string folder = "/sys/bus/iio/devices/iio:device0";
-  int rate_hz = 10;  ///< how often it is read, 1 … 100
+  int rate_hz = 10;  ///< how often it is read
 };
 
 /// Where the converter behind a Setra 278 is.
