@@ -6,8 +6,8 @@
 #include <memory>
 #include <thread>
 
-#include "daemon/mailbox.hpp"
 #include "daemon/realtime.hpp"
+#include "daemon/seq_lock.hpp"
 #include "daemon/worker_watch.hpp"
 #include "drivers/barometer/barometer_device.hpp"
 #include "ipc/shared_memory.hpp"
@@ -51,7 +51,7 @@ class BarometerThread {
   int stop_event_ = -1;
   ipc::Publisher<PressureSample> publisher_;
   BarometerThreadStatus own_;
-  Mailbox<BarometerThreadStatus> status_;
+  SeqLock<BarometerThreadStatus> status_;
   Heartbeat heartbeat_;
   std::thread thread_;
 };

@@ -9,7 +9,6 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -118,20 +117,20 @@ void run_base_station(const Config& config, Service& service) {
   LevelChanges changes;
   ipc::Publisher<ipc::HealthReport> health(ipc::topics::kHealth);
   service.ready();
-  while (service.wait_for(std::chrono::milliseconds(100))) {
+  service.supervise([&] {
     const StationSnapshot now = look();
     const bool failed_or_back = now.barometer.device.state != before.barometer.device.state;
-    if (now.now_ns - before.now_ns < kReportEveryNs && !failed_or_back) continue;
-    if (watch.all_alive(now.now_ns)) service.alive();
+    if (now.now_ns - before.now_ns < kReportEveryNs && !failed_or_back) return false;
+    const bool alive = watch.all_alive(now.now_ns);
     ipc::HealthReport report;
     fill(now, before, config, refusals, report);
     watch.fill(report);
     before = now;
     health.send(report);
     for (const std::string& line : news(report, changes)) spdlog::info("{}", line);
-  }
+    return alive;
+  });
   spdlog::info("stopping");
-  service.stopping();
   input.stop();
   if (barometer) barometer->stop();
   station.stop();

@@ -7,8 +7,8 @@
 
 #include "core/time/base_station_stream.hpp"
 #include "core/time/clock_anchor.hpp"
-#include "daemon/mailbox.hpp"
 #include "daemon/realtime.hpp"
+#include "daemon/seq_lock.hpp"
 #include "daemon/worker_watch.hpp"
 #include "drivers/datagram/datagram.hpp"
 #include "drivers/datagram/udp.hpp"
@@ -66,7 +66,7 @@ class InertialThread {
   ipc::Publisher<PressureSample> base_barometer_;
   ipc::Publisher<WheelSample> wheel_;
   InertialStatus own_;
-  Mailbox<InertialStatus> status_;
+  SeqLock<InertialStatus> status_;
   Heartbeat heartbeat_;
   std::thread thread_;
 };

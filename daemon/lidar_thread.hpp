@@ -6,9 +6,9 @@
 #include <thread>
 
 #include "daemon/deadline.hpp"
-#include "daemon/mailbox.hpp"
 #include "daemon/packet_pacing.hpp"
 #include "daemon/realtime.hpp"
+#include "daemon/seq_lock.hpp"
 #include "daemon/worker_watch.hpp"
 #include "drivers/datagram/udp.hpp"
 #include "drivers/velodyne/velodyne_decoder.hpp"
@@ -60,7 +60,7 @@ class LidarThread {
   PacketPacing pacing_;
   Deadline deadline_;
   LidarStatus own_;
-  Mailbox<LidarStatus> status_;
+  SeqLock<LidarStatus> status_;
   Heartbeat heartbeat_;
   std::thread thread_;
 };

@@ -12,7 +12,6 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
-#include <chrono>
 #include <memory>
 #include <optional>
 
@@ -25,6 +24,7 @@
 #include "daemon/health.hpp"
 #include "daemon/inertial_thread.hpp"
 #include "daemon/lidar_thread.hpp"
+#include "daemon/logging.hpp"
 #include "daemon/map_thread.hpp"
 #include "daemon/output_thread.hpp"
 #include "daemon/prior_thread.hpp"
@@ -138,19 +138,19 @@ void run_robot(const Config& config, Service& service) {
   HealthMonitor monitor(config, refusals);
   ipc::Publisher<ipc::HealthReport> health(ipc::topics::kHealth);
   service.ready();
-  while (service.wait_for(std::chrono::milliseconds(100))) {
+  service.supervise([&] {
     const StatusSnapshot now = look();
-    if (!monitor.due(now)) continue;
-    if (watch.all_alive(now.now_ns)) service.alive();
+    if (!monitor.due(now)) return false;
+    const bool alive = watch.all_alive(now.now_ns);
     ipc::HealthReport report;
     monitor.fill(now, report);
     watch.fill(report);
     health.send(report);
     for (const std::string& line : monitor.news(report)) spdlog::info("{}", line);
-  }
+    return alive;
+  });
 
   spdlog::info("stopping");
-  service.stopping();
   // Producers first: what is on its way still reaches the map and the files.
   lidar.stop();
   inertial.stop();
@@ -209,7 +209,7 @@ int main_with_errors(int argc, char** argv) {
 }  // namespace isobar
 
 int main(int argc, char** argv) {
-  spdlog::set_pattern("%Y-%m-%d %H:%M:%S.%e isobard %l: %v");
+  isobar::set_up_logging("isobard");
   try {
     return isobar::main_with_errors(argc, argv);
   } catch (const isobar::Error& error) {

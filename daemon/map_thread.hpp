@@ -8,8 +8,8 @@
 #include "core/map/local_map.hpp"
 #include "core/map/snapshot_exchange.hpp"
 #include "daemon/deadline.hpp"
-#include "daemon/mailbox.hpp"
 #include "daemon/realtime.hpp"
+#include "daemon/seq_lock.hpp"
 #include "daemon/worker_watch.hpp"
 #include "ipc/shared_memory.hpp"
 #include "run/tile_store/file_tile_store.hpp"
@@ -73,7 +73,7 @@ class MapThread {
   std::uint64_t overtaken_ = 0;   ///< scans that a newer one overtook
   Deadline deadline_;
   MapStatus own_;
-  Mailbox<MapStatus> status_;
+  SeqLock<MapStatus> status_;
   Heartbeat heartbeat_;
   std::thread thread_;
 };

@@ -8,8 +8,8 @@
 #include "core/prior/prior_estimator.hpp"
 #include "core/time/cadence.hpp"
 #include "daemon/deadline.hpp"
-#include "daemon/mailbox.hpp"
 #include "daemon/realtime.hpp"
+#include "daemon/seq_lock.hpp"
 #include "daemon/worker_watch.hpp"
 #include "drivers/datagram/datagram.hpp"
 #include "ipc/shared_memory.hpp"
@@ -64,7 +64,7 @@ class PriorThread {
   ipc::Waiter waiter_;
   Deadline deadline_;
   PriorStatus own_;
-  Mailbox<PriorStatus> status_;
+  SeqLock<PriorStatus> status_;
   Heartbeat heartbeat_;
   std::thread thread_;
 };

@@ -9,9 +9,9 @@
 #include "core/map/snapshot_exchange.hpp"
 #include "core/registration/registration.hpp"
 #include "daemon/deadline.hpp"
-#include "daemon/mailbox.hpp"
 #include "daemon/realtime.hpp"
 #include "daemon/scan_queue.hpp"
+#include "daemon/seq_lock.hpp"
 #include "daemon/silence.hpp"
 #include "daemon/worker_watch.hpp"
 #include "ipc/shared_memory.hpp"
@@ -88,7 +88,7 @@ class RegistrationThread {
   Deadline deadline_;
   std::uint64_t faults_before_ = 0;
   RegistrationStatus own_;
-  Mailbox<RegistrationStatus> status_;
+  SeqLock<RegistrationStatus> status_;
   Heartbeat heartbeat_;
   std::thread thread_;
 };

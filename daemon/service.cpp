@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <string>
 
 #include "core/errors.hpp"
 
@@ -28,13 +27,23 @@ Service::Service() {
 
 Service::~Service() { close(signals_); }
 
+// The signal is never read from the descriptor, so it stays pending: every later call returns false, too.
 bool Service::wait_for(std::chrono::milliseconds duration) {
   pollfd wait{signals_, POLLIN, 0};
   return poll(&wait, 1, static_cast<int>(duration.count())) <= 0;
 }
 
-void Service::ready() { sd_notify(0, "READY=1"); }
-void Service::alive() { sd_notify(0, "WATCHDOG=1"); }
-void Service::stopping() { sd_notify(0, "STOPPING=1"); }
+void Service::supervise(const std::function<bool()>& tick, std::chrono::milliseconds period) {
+  while (wait_for(period)) {
+    if (tick()) feed_watchdog();
+  }
+  sd_notify(0, "STOPPING=1");
+}
+
+void Service::ready(const std::string& status) {
+  sd_notify(0, status.empty() ? "READY=1" : ("READY=1\nSTATUS=" + status).c_str());
+}
+void Service::set_status(const std::string& status) { sd_notify(0, ("STATUS=" + status).c_str()); }
+void Service::feed_watchdog() { sd_notify(0, "WATCHDOG=1"); }
 
 }  // namespace isobar

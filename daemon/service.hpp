@@ -1,27 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// What a program owes its service manager: signals, sd_notify(3), and the supervise loop of its main thread.
+// The same for isobard, in both roles, and isobar-dds.
 #pragma once
 
 #include <chrono>
+#include <functional>
+#include <string>
 
 namespace isobar {
 
-/// A program that runs until SIGTERM or SIGINT and keeps the service manager informed (sd_notify(3); silent
-/// where there is none).
+/// Signals and status of a service. Main thread only. Without a service manager the notifications do nothing.
 class Service {
  public:
-  /// Blocks both signals for this thread and all that it starts later: make it before the first thread.
-  /// Throws ServiceError.
+  /// Blocks SIGTERM and SIGINT in this thread and in all threads started later: construct it before the first
+  /// thread.
+  /// @throws ServiceError when the kernel refuses a signal descriptor
   Service();
   ~Service();
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;
 
-  /// Waits; false once a signal has come.
+  /// Sleeps; returns early when a stop signal arrives.
+  /// @return false once a stop signal has arrived, now or in an earlier call
   [[nodiscard]] bool wait_for(std::chrono::milliseconds duration);
 
-  void ready();
-  void alive();  ///< feeds the service manager's watchdog
-  void stopping();
+  /// Default period of the supervise loop.
+  static constexpr std::chrono::milliseconds kTick{100};
+  /// The supervise loop: calls `tick` once a period until a stop signal arrives, then reports STOPPING.
+  /// @param tick returns true when it has just checked its threads and all are alive: this feeds the
+  /// watchdog. False
+  ///        in ticks without a check, or while a thread hangs.
+  void supervise(const std::function<bool()>& tick, std::chrono::milliseconds period = kTick);
+
+  /// READY=1, with the line that `systemctl status` shows. Empty: no line.
+  void ready(const std::string& status = {});
+  void set_status(const std::string& status);
+  void feed_watchdog();
 
  private:
   int signals_ = -1;

@@ -8,8 +8,8 @@
 #include "core/altitude/noise_estimator.hpp"
 #include "core/altitude/sensor_compensation.hpp"
 #include "core/time/cadence.hpp"
-#include "daemon/mailbox.hpp"
 #include "daemon/realtime.hpp"
+#include "daemon/seq_lock.hpp"
 #include "daemon/worker_watch.hpp"
 #include "ipc/shared_memory.hpp"
 
@@ -58,7 +58,7 @@ class StationThread {
   ipc::Publisher<PressureSample> publisher_;
   ipc::Waiter waiter_;
   StationStatus own_;
-  Mailbox<StationStatus> status_;
+  SeqLock<StationStatus> status_;
   Heartbeat heartbeat_;
   std::thread thread_;
 };

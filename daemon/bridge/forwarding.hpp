@@ -13,7 +13,7 @@
 #include "daemon/bridge/outputs.hpp"
 #include "daemon/bridge/receiving.hpp"
 #include "daemon/level_changes.hpp"
-#include "daemon/mailbox.hpp"
+#include "daemon/seq_lock.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar::bridge {
@@ -70,7 +70,7 @@ class Forwarding {
   std::atomic<std::int64_t> last_data_ns_{0};  ///< steady clock, 0: never
   std::atomic<std::uint64_t> clouds_dropped_{0};
   std::atomic<std::uint64_t> cloud_failures_{0};
-  Mailbox<ReceivedCounts> received_;
+  SeqLock<ReceivedCounts> received_;
   ReceivedCounts last_received_;  ///< pose thread
   LevelChanges changes_;          ///< pose thread
   RobotClock clock_;

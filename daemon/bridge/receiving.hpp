@@ -14,7 +14,7 @@
 #include "core/time/clock_anchor.hpp"
 #include "daemon/bridge/settings.hpp"
 #include "daemon/bridge/station_input.hpp"
-#include "daemon/mailbox.hpp"
+#include "daemon/seq_lock.hpp"
 #include "ipc/dds/endpoints.hpp"
 #include "ipc/shared_memory.hpp"
 
@@ -86,7 +86,7 @@ class Receiving {
   std::atomic<std::uint64_t> samples_{0};
   std::atomic<std::uint64_t> refused_{0};
   std::atomic<std::uint64_t> too_early_{0};
-  Mailbox<std::array<BaseStationStatus, 2>> station_status_;
+  SeqLock<std::array<BaseStationStatus, 2>> station_status_;
   std::thread thread_;
 };
 

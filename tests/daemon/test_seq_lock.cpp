@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "daemon/mailbox.hpp"
+#include "daemon/seq_lock.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,7 +7,7 @@
 #include <atomic>
 #include <thread>
 
-namespace isobar::test::test_mailbox {
+namespace isobar::test::test_seq_lock {
 
 namespace {
 
@@ -24,21 +24,21 @@ Twelve filled_with(std::uint64_t number) {
 
 }  // namespace
 
-TEST_CASE("a mailbox starts with a default value and holds the last one put in") {
-  isobar::Mailbox<Twelve> mailbox;
-  CHECK(mailbox.get().words[11] == 0);
-  mailbox.put(filled_with(3));
-  mailbox.put(filled_with(7));
-  CHECK(mailbox.get().words[0] == 7);
-  CHECK(mailbox.get().words[11] == 7);
+TEST_CASE("a sequence lock holds a default value first and then the last one written") {
+  SeqLock<Twelve> lock;
+  CHECK(lock.get().words[11] == 0);
+  lock.put(filled_with(3));
+  lock.put(filled_with(7));
+  CHECK(lock.get().words[0] == 7);
+  CHECK(lock.get().words[11] == 7);
 }
 
-TEST_CASE("a reader never sees half of one value and half of another, nor an older one after a newer one") {
-  isobar::Mailbox<Twelve> mailbox;
+TEST_CASE("a reader never sees a torn value, nor an older value after a newer one") {
+  SeqLock<Twelve> lock;
   constexpr std::uint64_t kWrites = 100'000;
   std::atomic<bool> done{false};
   std::thread writer([&] {
-    for (std::uint64_t i = 1; i <= kWrites; ++i) mailbox.put(filled_with(i));
+    for (std::uint64_t i = 1; i <= kWrites; ++i) lock.put(filled_with(i));
     done = true;
   });
   std::uint64_t newest = 0;
@@ -47,7 +47,7 @@ TEST_CASE("a reader never sees half of one value and half of another, nor an old
   bool last_round = false;
   while (!last_round) {
     last_round = done;
-    const Twelve value = mailbox.get();
+    const Twelve value = lock.get();
     for (const std::uint64_t word : value.words) torn += word != value.words[0] ? 1 : 0;
     backwards += value.words[0] < newest ? 1 : 0;
     newest = value.words[0];
@@ -58,4 +58,4 @@ TEST_CASE("a reader never sees half of one value and half of another, nor an old
   CHECK(newest == kWrites);
 }
 
-}  // namespace isobar::test::test_mailbox
+}  // namespace isobar::test::test_seq_lock

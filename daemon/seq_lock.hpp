@@ -13,12 +13,12 @@ namespace isobar {
 /// reader that meets a write tries again. (H.-J. Boehm, "Can seqlocks get along with programming language
 /// memory models?", 2012: the words are atomics, so that there is no data race.)
 template <class T>
-class Mailbox {
+class SeqLock {
   static_assert(std::is_trivially_copyable_v<T>);
   static constexpr std::size_t kWords = (sizeof(T) + 7) / 8;
 
  public:
-  Mailbox() { put(T{}); }
+  SeqLock() { put(T{}); }
 
   /// Writer's thread only.
   void put(const T& value) noexcept {
