@@ -6,8 +6,8 @@
 
 namespace isobar {
 
-std::vector<RunCount> counts_of(const velodyne::VelodyneCounters& counters,
-                                const std::string& wrong_model_message) {
+std::vector<files::RunCount> counts_of(const velodyne::VelodyneCounters& counters,
+                                       const std::string& wrong_model_message) {
   return {
       {"lidar packets", counters.packets, ""},
       {"lidar packets truncated", counters.truncated, ""},
@@ -26,7 +26,7 @@ std::vector<RunCount> counts_of(const velodyne::VelodyneCounters& counters,
   };
 }
 
-std::vector<RunCount> counts_of(const PriorCounters& counters) {
+std::vector<files::RunCount> counts_of(const PriorCounters& counters) {
   return {
       {"imu samples", counters.imu_accepted, ""},
       {"imu samples with bad values", counters.imu_bad_value, ""},
@@ -63,9 +63,9 @@ std::vector<RunCount> counts_of(const PriorCounters& counters) {
   };
 }
 
-std::vector<RunCount> counts_of(const datagram::Counters& counters) {
+std::vector<files::RunCount> counts_of(const datagram::Counters& counters) {
   constexpr std::array<const char*, datagram::kKinds> kNames = {"imu", "baro", "base", "wheel"};
-  std::vector<RunCount> counts = {
+  std::vector<files::RunCount> counts = {
       {"sample datagrams", counters.datagrams, ""},
       {"sample lines malformed", counters.malformed, ""},
       {"sample lines implausible", counters.implausible, ""},
@@ -81,7 +81,7 @@ std::vector<RunCount> counts_of(const datagram::Counters& counters) {
   return counts;
 }
 
-std::vector<RunCount> counts_of(const BaseStationStatus& base) {
+std::vector<files::RunCount> counts_of(const BaseStationStatus& base) {
   using V = BaseVerdict;
   return {
       {"base lines in time", base.count(V::kAccepted), ""},
@@ -97,7 +97,7 @@ std::vector<RunCount> counts_of(const BaseStationStatus& base) {
   };
 }
 
-std::vector<RunCount> counts_of(const BarometerCounters& counters) {
+std::vector<files::RunCount> counts_of(const BarometerCounters& counters) {
   return {
       {"barometer readings", counters.samples, ""},
       {"barometer accesses failed", counters.io_errors, ""},
@@ -110,9 +110,9 @@ std::vector<RunCount> counts_of(const BarometerCounters& counters) {
   };
 }
 
-std::vector<RunCount> counts_of_map(FileTileStore& store, RunOutput& output) {
+std::vector<files::RunCount> counts_of_map(FileTileStore& store, files::RunOutput& output) {
   const std::uint64_t brought_back = store.counters().taken;
-  const MapExport exported = output.write_map(store, store.header());
+  const files::MapExport exported = output.write_map(store, store.header());
   const TileStoreCounters& counters = store.counters();
   return {
       {"map tiles stored", counters.put, ""},
@@ -125,7 +125,7 @@ std::vector<RunCount> counts_of_map(FileTileStore& store, RunOutput& output) {
   };
 }
 
-void append(std::vector<RunCount>& counts, std::vector<RunCount> more) {
+void append(std::vector<files::RunCount>& counts, std::vector<files::RunCount> more) {
   counts.insert(counts.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 

@@ -15,18 +15,18 @@
 
 namespace isobar {
 
-std::vector<RunCount> counts_of(const velodyne::VelodyneCounters& counters,
-                                const std::string& wrong_model_message);
-std::vector<RunCount> counts_of(const PriorCounters& counters);
-std::vector<RunCount> counts_of(const datagram::Counters& counters);
+std::vector<files::RunCount> counts_of(const velodyne::VelodyneCounters& counters,
+                                       const std::string& wrong_model_message);
+std::vector<files::RunCount> counts_of(const PriorCounters& counters);
+std::vector<files::RunCount> counts_of(const datagram::Counters& counters);
 /// Of the base station that sends datagrams.
-std::vector<RunCount> counts_of(const BaseStationStatus& base);
-std::vector<RunCount> counts_of(const BarometerCounters& counters);
+std::vector<files::RunCount> counts_of(const BaseStationStatus& base);
+std::vector<files::RunCount> counts_of(const BarometerCounters& counters);
 
 /// Writes map.ply and counts what became of the map on the disk, during the run and then.
-std::vector<RunCount> counts_of_map(FileTileStore& store, RunOutput& output);
+std::vector<files::RunCount> counts_of_map(FileTileStore& store, files::RunOutput& output);
 
 /// Appends `more` to `counts`.
-void append(std::vector<RunCount>& counts, std::vector<RunCount> more);
+void append(std::vector<files::RunCount>& counts, std::vector<files::RunCount> more);
 
 }  // namespace isobar

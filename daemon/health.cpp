@@ -9,7 +9,6 @@
 
 #include "daemon/base_station_health.hpp"
 #include "daemon/health_entries.hpp"
-#include "run/files/replay_output.hpp"
 
 namespace isobar {
 

@@ -77,7 +77,7 @@ std::vector<std::string> refusals_of(const Scheduling& scheduling, bool realtime
 std::unique_ptr<FileTileStore> map_store(const Config& config) {
   std::filesystem::path directory = config.map_files.directory;
   if (directory.empty() && !config.output.directory.empty()) {
-    directory = RunOutput::map_directory(config.output.directory);
+    directory = files::RunOutput::map_directory(config.output.directory);
   }
   if (directory.empty()) return nullptr;
   return FileTileStore::create(directory, map_header(config), map_limits(config));
@@ -89,7 +89,7 @@ void run_robot(const Config& config, Service& service) {
   const std::vector<std::string> refusals = refusals_of(scheduling, config.realtime.enabled);
 
   ipc::Broker broker;
-  std::optional<RunOutput> output;
+  std::optional<files::RunOutput> output;
   if (!config.output.directory.empty()) {
     output.emplace(config.output.directory);
     output->write_settings(show_config(config));
@@ -161,7 +161,8 @@ void run_robot(const Config& config, Service& service) {
   if (writer) writer->stop();
   if (output) {
     const StatusSnapshot last = look();
-    std::vector<RunCount> counts = counts_of(last.lidar.counters, last.lidar.wrong_model_message.data());
+    std::vector<files::RunCount> counts =
+        counts_of(last.lidar.counters, last.lidar.wrong_model_message.data());
     append(counts, counts_of(last.inertial.counters));
     append(counts, counts_of(last.inertial.base));
     if (last.barometer.present) append(counts, counts_of(last.barometer.device.counters));

@@ -9,7 +9,7 @@
 
 namespace isobar {
 
-OutputThread::OutputThread(RunOutput& output, ThreadSettings settings)
+OutputThread::OutputThread(files::RunOutput& output, ThreadSettings settings)
     : settings_(std::move(settings)),
       output_(&output),
       poses_(ipc::topics::kPose),

@@ -13,7 +13,7 @@ namespace isobar {
 /// Writes every pose to the folder of the run. Not real-time; a full disk ends the writing, never the poses.
 class OutputThread {
  public:
-  OutputThread(RunOutput& output, ThreadSettings settings);
+  OutputThread(files::RunOutput& output, ThreadSettings settings);
   ~OutputThread();
   OutputThread(const OutputThread&) = delete;
   OutputThread& operator=(const OutputThread&) = delete;
@@ -28,7 +28,7 @@ class OutputThread {
   void drain() noexcept;
 
   ThreadSettings settings_;
-  RunOutput* output_;
+  files::RunOutput* output_;
   ipc::Subscriber<PoseEstimate> poses_;
   ipc::Subscriber<Prior> priors_;
   ipc::Waiter waiter_;

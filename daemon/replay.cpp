@@ -19,7 +19,7 @@ namespace {
 /// Writes what the pipeline makes, and remembers which height and method it worked with.
 class OutputSink : public EstimateSink {
  public:
-  explicit OutputSink(RunOutput& output) : output_(output) {}
+  explicit OutputSink(files::RunOutput& output) : output_(output) {}
   void on_pose(const PoseEstimate& pose, const Prior& prior) override {
     output_.add_pose(pose, prior);
     if (pose.mode != PoseMode::kRegistered) return;
@@ -34,7 +34,7 @@ class OutputSink : public EstimateSink {
   [[nodiscard]] std::uint64_t without_imu() const { return without_imu_; }
 
  private:
-  RunOutput& output_;
+  files::RunOutput& output_;
   std::uint64_t without_height_ = 0;
   std::uint64_t without_imu_ = 0;
 };
@@ -48,8 +48,9 @@ void say_what_is_missing(const recording::Manifest& manifest, ReplaySummary& sum
   if (!manifest.wheel) summary.warnings.emplace_back("no [wheel]: constant velocity between scans");
 }
 
-std::vector<RunCount> collect_counts(const recording::RecordingReader& reader, const LockStep& pipeline) {
-  std::vector<RunCount> counts;
+std::vector<files::RunCount> collect_counts(const recording::RecordingReader& reader,
+                                            const LockStep& pipeline) {
+  std::vector<files::RunCount> counts;
   for (const recording::Count& count : reader.counts())
     counts.push_back({count.name, count.count, count.first_message});
   append(counts, counts_of(pipeline.decoder().counters(), pipeline.decoder().wrong_model_message()));
@@ -78,9 +79,9 @@ void say_what_is_useless(const recording::Manifest& manifest, const LockStep& pi
 }
 
 /// What became of the packets, by count.
-std::string refusals(const std::vector<RunCount>& counts) {
+std::string refusals(const std::vector<files::RunCount>& counts) {
   std::string text;
-  for (const RunCount& count : counts) {
+  for (const files::RunCount& count : counts) {
     const bool is_lidar = count.name.rfind("lidar", 0) == 0;
     if (is_lidar && count.count > 0)
       text += (text.empty() ? "" : ", ") + count.name + ": " + std::to_string(count.count);
@@ -111,10 +112,11 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   say_what_is_missing(reader.manifest(), summary);
   if (reader.manifest().base_barometer) summary.base_clock = reader.base_clock().reason;
 
-  RunOutput output(out);
+  files::RunOutput output(out);
   output.write_settings(show_config(used));
   OutputSink sink(output);
-  const auto store = FileTileStore::create(RunOutput::map_directory(out), map_header(used), map_limits(used));
+  const auto store =
+      FileTileStore::create(files::RunOutput::map_directory(out), map_header(used), map_limits(used));
   LockStep pipeline(stage_settings(used), sink, store.get());
   recording::Event event;
   std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
@@ -126,7 +128,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
     if (events % 512 == 0) progress(reader.progress());
   }
   pipeline.finish();
-  const std::vector<RunCount> map_counts = counts_of_map(*store, output);
+  const std::vector<files::RunCount> map_counts = counts_of_map(*store, output);
 
   summary.scans = pipeline.scans();
   summary.poses = output.poses();

@@ -23,7 +23,7 @@ struct ReplaySummary {
   double wall_s = 0.0;
   std::string base_clock;  ///< how the base station's clock was tied to the robot's; empty: no base
   std::vector<std::string> warnings;  ///< of the manifest, and of what the run could not do
-  std::vector<RunCount> counts;
+  std::vector<files::RunCount> counts;
 };
 
 /// Runs the pipeline in lock step over a recording and writes the folder of the run (run_output.hpp).

@@ -13,7 +13,9 @@
 #include "core/errors.hpp"
 #include "run/files/text_file.hpp"
 #include "tools/commands.hpp"
+#include "tools/report/figures_json.hpp"
 #include "tools/report/report.hpp"
+#include "tools/report/terminal_table.hpp"
 #include "tools/typed_command.hpp"
 
 namespace isobar::tools {
@@ -39,13 +41,13 @@ std::vector<std::string> split_names(const std::string& text) {
   return names;
 }
 
-std::vector<report::EstimateSource> sources_of(const EvaluateArguments& arguments) {
+std::vector<evaluation::EstimateSource> sources_of(const EvaluateArguments& arguments) {
   const std::vector<std::string> names = split_names(arguments.names);
   if (!names.empty() && names.size() != arguments.estimates.size()) {
     throw UsageError("--names: " + std::to_string(names.size()) + " names for " +
                      std::to_string(arguments.estimates.size()) + " estimates");
   }
-  std::vector<report::EstimateSource> sources;
+  std::vector<evaluation::EstimateSource> sources;
   for (std::size_t i = 0; i < arguments.estimates.size(); ++i) {
     sources.push_back({names.empty() ? "" : names[i], arguments.estimates[i]});
   }
@@ -65,14 +67,14 @@ std::string typed_command(const EvaluateArguments& arguments) {
 }
 
 void run_evaluate(const EvaluateArguments& arguments) {
-  const std::vector<report::EstimateSource> sources = sources_of(arguments);
+  const std::vector<evaluation::EstimateSource> sources = sources_of(arguments);
   std::optional<std::filesystem::path> segments;
   if (!arguments.segments.empty()) segments = arguments.segments;
   evaluation::EvaluationOptions options;
   options.ate_alignment = arguments.alignment;
   report::ReportInput input;
-  input.run =
-      report::evaluate_methods(report::load_reference(arguments.reference, segments), sources, options);
+  input.run = evaluation::evaluate_methods(evaluation::load_reference(arguments.reference, segments), sources,
+                                           options);
   input.title = arguments.title.empty() ? "Isobar evaluation" : arguments.title;
   input.command = typed_command(arguments);
   report::print_table(stdout, input.run);

@@ -16,14 +16,16 @@
 #include "core/errors.hpp"
 #include "core/names.hpp"
 #include "daemon/replay.hpp"
+#include "run/evaluation/evaluated_run.hpp"
 #include "run/files/text_file.hpp"
 #include "run/recording/manifest.hpp"
 #include "simulation/simulate.hpp"
 #include "tools/commands.hpp"
 #include "tools/method_option.hpp"
 #include "tools/progress.hpp"
-#include "tools/report/evaluated_run.hpp"
+#include "tools/report/figures_json.hpp"
 #include "tools/report/report.hpp"
+#include "tools/report/terminal_table.hpp"
 
 namespace isobar::tools {
 
@@ -116,13 +118,13 @@ std::string title_of(const std::string& scenario) {
 
 void evaluate_all(const ExperimentOptions& options, const std::filesystem::path& recording,
                   const std::vector<Method>& methods) {
-  std::vector<report::EstimateSource> sources;
+  std::vector<evaluation::EstimateSource> sources;
   for (const Method method : methods) {
     const std::string name(method_name(method));
     sources.push_back({name, options.out / name});
   }
   report::ReportInput input;
-  input.run = report::evaluate_methods(report::load_reference(recording), sources);
+  input.run = evaluation::evaluate_methods(evaluation::load_reference(recording), sources);
   input.title = title_of(options.scenario) + ", seed " + std::to_string(options.seed);
   input.description = "Simulated recording \"" + options.scenario + "\"" +
                       (options.short_form ? " in its short form" : "") +

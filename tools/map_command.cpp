@@ -39,10 +39,10 @@ void print_faults(const TileStoreCounters& counters) {
   if (!counters.first_damage.empty()) std::printf("first: %s\n", counters.first_damage.c_str());
 }
 
-MapBox extent_of(const std::vector<TileKey>& keys, double tile_m) {
-  MapBox extent = box_of(keys.front(), tile_m);
+files::MapBox extent_of(const std::vector<TileKey>& keys, double tile_m) {
+  files::MapBox extent = files::MapBox::of_tile(keys.front(), tile_m);
   for (const TileKey& key : keys) {
-    const MapBox box = box_of(key, tile_m);
+    const files::MapBox box = files::MapBox::of_tile(key, tile_m);
     extent.lowest = extent.lowest.cwiseMin(box.lowest);
     extent.highest = extent.highest.cwiseMax(box.highest);
   }
@@ -59,7 +59,7 @@ void run_info(const std::filesystem::path& directory) {
   std::printf("bytes: %llu of tiles, %llu on the disk in %zu files\n", Count{store->live_bytes()},
               Count{store->disk_bytes()}, store->segment_count());
   if (!keys.empty()) {
-    const MapBox extent = extent_of(keys, store->header().tile_m);
+    const files::MapBox extent = extent_of(keys, store->header().tile_m);
     std::printf("extent: x %g … %g, y %g … %g, z %g … %g m\n", extent.lowest.x(), extent.highest.x(),
                 extent.lowest.y(), extent.highest.y(), extent.lowest.z(), extent.highest.z());
   }
@@ -82,7 +82,7 @@ void run_check(const std::filesystem::path& directory) {
       ++bad;
     } else if (!append_tile_points(bytes, points)) {
       std::printf("%s: %s: its bytes are not a tile of this program\n", directory.c_str(),
-                  name_of(key).c_str());
+                  files::tile_name(key).c_str());
       ++bad;
     }
     point_count += points.size();
@@ -96,16 +96,16 @@ void run_check(const std::filesystem::path& directory) {
 
 void run_export(const std::filesystem::path& directory, const std::filesystem::path& out,
                 const std::vector<double>& corners) {
-  std::optional<MapBox> box;
+  std::optional<files::MapBox> box;
   if (!corners.empty()) {
-    box = MapBox{{corners[0], corners[1], corners[2]}, {corners[3], corners[4], corners[5]}};
+    box = files::MapBox{{corners[0], corners[1], corners[2]}, {corners[3], corners[4], corners[5]}};
     if (!(box->lowest.array() <= box->highest.array()).all()) {
       throw UsageError("--box: each of the first three numbers must not be above the one three behind it");
     }
   }
   const Store store = open_map(directory);
   files::PlyWriter ply(out);
-  const MapExport done = export_map(*store, store->header(), box, ply);
+  const files::MapExport done = files::export_map(*store, store->header(), box, ply);
   ply.close();
   print_faults(store->counters());
   std::printf("%llu points of %llu tiles in %s\n", Count{done.points}, Count{done.tiles}, out.c_str());

@@ -8,7 +8,6 @@
 
 #include "core/estimates.hpp"
 #include "core/names.hpp"
-#include "run/files/replay_output.hpp"
 
 namespace isobar::tools {
 

@@ -5,7 +5,7 @@
 
 #include "core/map/map_tile.hpp"
 
-namespace isobar {
+namespace isobar::files {
 
 namespace {
 
@@ -16,26 +16,26 @@ bool overlap(const MapBox& a, const MapBox& b, double margin_m) {
 
 }  // namespace
 
-MapBox box_of(const TileKey& key, double tile_m) {
+MapBox MapBox::of_tile(const TileKey& key, double tile_m) {
   const Eigen::Vector3d lowest = Eigen::Vector3d(key.x, key.y, key.z) * tile_m;
   return {lowest, lowest.array() + tile_m};
 }
 
-std::string name_of(const TileKey& key) {
+std::string tile_name(const TileKey& key) {
   return "tile (" + std::to_string(key.x) + ", " + std::to_string(key.y) + ", " + std::to_string(key.z) + ")";
 }
 
 MapExport export_map(TileStore& store, const MapHeader& header, const std::optional<MapBox>& box,
-                     files::PlyWriter& ply) {
+                     PlyWriter& ply) {
   MapExport done;
   std::vector<std::byte> bytes;
   std::vector<MapPoint> points;
   for (const TileKey& key : store.keys()) {
-    // Points on the plane of a cell at the tile's edge may lie a cell beyond it.
-    if (box && !overlap(box_of(key, header.tile_m), *box, header.cell_m)) continue;
+    // Margin: a point on the plane of a cell at the tile's edge may lie up to one cell outside.
+    if (box && !overlap(MapBox::of_tile(key, header.tile_m), *box, header.cell_m)) continue;
     points.clear();
     if (!store.take(key, bytes) || !append_tile_points(bytes, points)) {
-      if (done.unreadable++ == 0) done.first_unreadable = name_of(key);
+      if (done.unreadable++ == 0) done.first_unreadable = tile_name(key);
       continue;
     }
     ++done.tiles;
@@ -49,4 +49,4 @@ MapExport export_map(TileStore& store, const MapHeader& header, const std::optio
   return done;
 }
 
-}  // namespace isobar
+}  // namespace isobar::files

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The map as points: a file of a run's store for viewers.
+// The map as points, for viewers.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,40 +7,40 @@
 #include <optional>
 #include <string>
 
-#include "run/files/replay_output.hpp"
+#include "run/files/ply_writer.hpp"
 #include "run/tile_store/map_folder.hpp"
 #include "run/tile_store/tile_store.hpp"
 
-namespace isobar {
+namespace isobar::files {
 
-/// A box along the axes of the map frame [m]; its faces belong to it.
+/// Axis-aligned box in the map frame [m], closed: points on a face are inside.
 struct MapBox {
   Eigen::Vector3d lowest = Eigen::Vector3d::Zero();
   Eigen::Vector3d highest = Eigen::Vector3d::Zero();
+
+  /// The space of a tile; its nominal size, without the overhang of the cells at its edge.
+  [[nodiscard]] static MapBox of_tile(const TileKey& key, double tile_m);
 
   [[nodiscard]] bool contains(const Eigen::Vector3d& p_map) const {
     return (p_map.array() >= lowest.array()).all() && (p_map.array() <= highest.array()).all();
   }
 };
 
-/// The space of a tile [m].
-[[nodiscard]] MapBox box_of(const TileKey& key, double tile_m);
+/// "tile (x, y, z)"
+[[nodiscard]] std::string tile_name(const TileKey& key);
 
-/// What an export did.
 struct MapExport {
-  std::uint64_t tiles = 0;
-  std::uint64_t points = 0;
-  std::uint64_t unreadable = 0;  ///< tiles that are damaged, or whose bytes mean nothing to this program
-  std::string first_unreadable;  ///< "tile (x, y, z)"
+  std::uint64_t tiles = 0;       ///< read
+  std::uint64_t points = 0;      ///< written
+  std::uint64_t unreadable = 0;  ///< damaged tiles, and tiles that this program cannot decode
+  std::string first_unreadable;  ///< tile_name()
 };
 
-/// "tile (x, y, z)"
-[[nodiscard]] std::string name_of(const TileKey& key);
-
-/// Writes the points of all tiles to `ply`, tile by tile in the order of their keys: one tile in memory at a
-/// time, and equal maps give equal files. Of a `box` only what is in it. Throws ServiceError where `ply`
-/// cannot be written; tiles that cannot be read are counted and left out.
+/// Writes the points of all tiles to `ply`, in the order of the tiles' keys: one tile in memory at a time,
+/// and equal maps give equal files. Unreadable tiles are counted and left out.
+/// @param box only points inside; nothing: all points
+/// @throws ServiceError when `ply` cannot be written
 MapExport export_map(TileStore& store, const MapHeader& header, const std::optional<MapBox>& box,
-                     files::PlyWriter& ply);
+                     PlyWriter& ply);
 
-}  // namespace isobar
+}  // namespace isobar::files

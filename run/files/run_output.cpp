@@ -4,10 +4,13 @@
 #include <cmath>
 #include <limits>
 
-namespace isobar {
+#include "run/files/run_layout.hpp"
+
+namespace isobar::files {
 
 namespace {
 
+/// A CSV cell in quotation marks (RFC 4180).
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -17,7 +20,7 @@ std::string quoted(const std::string& text) {
 }  // namespace
 
 RunOutput::RunOutput(const std::filesystem::path& directory)
-    : directory_(directory), poses_(directory), map_(poses_.map_file()) {}
+    : directory_(directory), poses_(directory), map_(directory / kMapPointsFile) {}
 
 void RunOutput::add_pose(const PoseEstimate& pose, const Prior& prior) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -31,10 +34,14 @@ MapExport RunOutput::write_map(TileStore& store, const MapHeader& header) {
   return export_map(store, header, std::nullopt, map_);
 }
 
+void RunOutput::write_settings(std::string_view toml) const {
+  write_text_file(directory_ / kSettingsFile, toml);
+}
+
 void RunOutput::close(const std::vector<RunCount>& counts) {
   poses_.close();
   map_.close();
-  files::OutputFile file(directory_ / "counters.csv");
+  OutputFile file(directory_ / kCountersFile);
   file.write("name,count,first_message\n");
   for (const RunCount& count : counts) {
     file.write(count.name + "," + std::to_string(count.count) + "," + quoted(count.first_message) + "\n");
@@ -42,4 +49,4 @@ void RunOutput::close(const std::vector<RunCount>& counts) {
   file.close();
 }
 
-}  // namespace isobar
+}  // namespace isobar::files

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a run leaves behind: trajectory, status, counters, map, settings.
 #pragma once
 
 #include <cstdint>
@@ -10,31 +9,35 @@
 
 #include "core/estimates.hpp"
 #include "run/files/map_export.hpp"
-#include "run/files/replay_output.hpp"
-#include "run/tile_store/file_tile_store.hpp"
+#include "run/files/ply_writer.hpp"
+#include "run/files/pose_writer.hpp"
+#include "run/files/run_layout.hpp"
 
-namespace isobar {
+namespace isobar::files {
 
-/// Something that was counted during a run, with the first case in words.
+/// A named counter of a run, with the message of its first event.
 struct RunCount {
   std::string name;
   std::uint64_t count = 0;
   std::string first_message;
 };
 
-/// Writes the folder of a run while it goes on. One thread. Throws ServiceError when the disk refuses.
+/// Writes the folder of a run (run_layout.hpp) during the run. One thread.
+/// @throws ServiceError naming the file when writing fails
 class RunOutput {
  public:
   explicit RunOutput(const std::filesystem::path& directory);
-  /// Where the tiles of the map belong.
+  /// Folder for the tile store of the run.
   [[nodiscard]] static std::filesystem::path map_directory(const std::filesystem::path& directory) {
-    return directory / "map";
+    return directory / kMapDirectory;
   }
 
   void add_pose(const PoseEstimate& pose, const Prior& prior);
-  /// map.ply, at the end of the run, of all that is in the store of the run. Returns what was done.
+  /// Writes map.ply from the run's tile store, at the end of the run.
   MapExport write_map(TileStore& store, const MapHeader& header);
-  void write_settings(std::string_view toml) const { poses_.write_settings(toml); }
+  /// Writes settings.toml.
+  void write_settings(std::string_view toml) const;
+  /// Writes counters.csv and closes all files.
   void close(const std::vector<RunCount>& counts);
 
   [[nodiscard]] std::uint64_t poses() const { return poses_.count(); }
@@ -44,10 +47,11 @@ class RunOutput {
 
  private:
   std::filesystem::path directory_;
-  files::ReplayOutputWriter poses_;
-  files::PlyWriter map_;  ///< without a point until the end, so that no earlier run's is taken for this one's
+  PoseWriter poses_;
+  PlyWriter
+      map_;  ///< opened at the start, so that an earlier run's map.ply cannot be mistaken for this run's
   std::uint64_t registered_ = 0;
   std::uint64_t from_prior_ = 0;
 };
 
-}  // namespace isobar
+}  // namespace isobar::files

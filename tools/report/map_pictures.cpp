@@ -48,7 +48,7 @@ double long_side_rad(const std::vector<evaluation::StampedPose>& poses) {
   return chosen < 0.0 ? chosen + std::numbers::pi : chosen;
 }
 
-View side_view(const EvaluatedRun& run) {
+View side_view(const evaluation::EvaluatedRun& run) {
   const double angle = long_side_rad(run.reference.trajectory.poses);
   View view;
   view.u = {std::cos(angle), std::sin(angle), 0.0};
@@ -86,8 +86,9 @@ Range range_of_most(const std::vector<MapPoint>& points, float MapPoint::*coordi
   return {quantile(values, 0.002), quantile(values, 0.998)};
 }
 
-Series seen_path(const EvaluatedRun& run, const EvaluatedMethod& method, const View& view) {
-  Series series{display_name(method.name), method_stroke(run, method), {}, {}};
+Series seen_path(const evaluation::EvaluatedRun& run, const evaluation::EvaluatedMethod& method,
+                 const View& view) {
+  Series series{evaluation::display_name(method.name), method_stroke(run, method), {}, {}};
   for (const PosePair& pair : method.evaluation.pairs) {
     series.x.push_back(view.u.dot(pair.estimate.position_m));
     series.y.push_back(view.v.dot(pair.estimate.position_m));
@@ -95,7 +96,7 @@ Series seen_path(const EvaluatedRun& run, const EvaluatedMethod& method, const V
   return series;
 }
 
-Series seen_reference(const EvaluatedRun& run, const View& view) {
+Series seen_reference(const evaluation::EvaluatedRun& run, const View& view) {
   Series series{"Reference", kReferenceStroke, {}, {}};
   for (const auto& pose : run.reference.trajectory.poses) {
     series.x.push_back(view.u.dot(pose.position_m));
@@ -137,15 +138,16 @@ std::string length_label(double length_m) {
   return fixed_signed(length_m, 2) + " m";
 }
 
-MapView side_map(const EvaluatedRun& run, const EvaluatedMethod& method, const View& view) {
+MapView side_map(const evaluation::EvaluatedRun& run, const evaluation::EvaluatedMethod& method,
+                 const View& view) {
   MapView map;
   map.u_label = view.u_label;
   map.v_label = view.v_label;
   map.points = seen(method.map_points, view);
   map.paths.push_back(seen_reference(run, view));
   map.paths.push_back(seen_path(run, method, view));
-  for (const double level_m : floor_levels_m(run)) {
-    const evaluation::FloorHeight* floor = floor_at(method, level_m, run.options.floor_gap_m);
+  for (const double level_m : evaluation::floor_levels_m(run)) {
+    const evaluation::FloorHeight* floor = evaluation::floor_at(method, level_m, run.options.floor_gap_m);
     if (floor != nullptr) map.levels.push_back({level_m, length_label(floor->mean_error_m)});
   }
   map.max_height = 560.0;
@@ -154,13 +156,13 @@ MapView side_map(const EvaluatedRun& run, const EvaluatedMethod& method, const V
 
 }  // namespace
 
-std::vector<SideView> side_view_pictures(const EvaluatedRun& run) {
+std::vector<SideView> side_view_pictures(const evaluation::EvaluatedRun& run) {
   const View view = side_view(run);
-  std::vector<const EvaluatedMethod*> methods;
+  std::vector<const evaluation::EvaluatedMethod*> methods;
   if (!main_method(run).map_points.empty()) methods.push_back(&main_method(run));
-  if (const EvaluatedMethod* contrast = contrast_method(run, true)) methods.push_back(contrast);
+  if (const evaluation::EvaluatedMethod* contrast = contrast_method(run, true)) methods.push_back(contrast);
   std::vector<MapView> maps;
-  for (const EvaluatedMethod* method : methods) {
+  for (const evaluation::EvaluatedMethod* method : methods) {
     maps.push_back(side_map(run, *method, view));
     set_ranges(maps.back());
   }
@@ -176,18 +178,19 @@ std::vector<SideView> side_view_pictures(const EvaluatedRun& run) {
     const bool is_tall = map.v.high - map.v.low > 0.8 * (map.u.high - map.u.low);
     map.width = is_tall ? 510.0 : 1040.0;  // tall ones stand side by side
     map.id = "side" + std::to_string(i);
-    pictures.push_back({display_name(methods[i]->name), draw(map), is_tall});
+    pictures.push_back({evaluation::display_name(methods[i]->name), draw(map), is_tall});
   }
   return pictures;
 }
 
-Picture top_view_picture(const EvaluatedRun& run) {
+Picture top_view_picture(const evaluation::EvaluatedRun& run) {
   View view{Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), "x [m]", "y [m]"};
   const auto make_map = [&] {
     MapView map;
     map.points = seen(main_method(run).map_points, view);
     map.paths.push_back(seen_reference(run, view));
-    for (const EvaluatedMethod& method : run.methods) map.paths.push_back(seen_path(run, method, view));
+    for (const evaluation::EvaluatedMethod& method : run.methods)
+      map.paths.push_back(seen_path(run, method, view));
     set_ranges(map);
     return map;
   };

@@ -6,7 +6,7 @@
 
 namespace isobar::report {
 
-Stroke method_stroke(const EvaluatedRun& run, const EvaluatedMethod& method) {
+Stroke method_stroke(const evaluation::EvaluatedRun& run, const evaluation::EvaluatedMethod& method) {
   static const std::map<std::string, Stroke> kKnown{{"3dof", {"#0072b2", 2.0}},
                                                     {"4dof", {"#d55e00", 1.8}},
                                                     {"6dof", {"#aa3a86", 1.8}},

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "tools/report/evaluated_run.hpp"
+#include "run/evaluation/evaluated_run.hpp"
 #include "tools/report/svg.hpp"
 
 namespace isobar::report {
@@ -11,7 +11,7 @@ namespace isobar::report {
 /// Look of a method's lines and boxes: always the same for the six methods, from a list for other names. The
 /// colours are those of Okabe and Ito (2008), told apart with colour-blind eyes; dashes tell them apart
 /// without colour.
-Stroke method_stroke(const EvaluatedRun& run, const EvaluatedMethod& method);
+Stroke method_stroke(const evaluation::EvaluatedRun& run, const evaluation::EvaluatedMethod& method);
 
 inline const Stroke kReferenceStroke{"#111827", 2.6};
 inline const Stroke kAltimeterStroke{"#38a3dd", 1.8, "2 3"};

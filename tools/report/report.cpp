@@ -15,9 +15,9 @@ namespace isobar::report {
 
 namespace {
 
-std::string z_rpe_comparison(const EvaluatedRun& run) {
+std::string z_rpe_comparison(const evaluation::EvaluatedRun& run) {
   const double ours = main_method(run).evaluation.figures.z_rpe.median;
-  for (const EvaluatedMethod& method : run.methods) {
+  for (const evaluation::EvaluatedMethod& method : run.methods) {
     const double other = method.evaluation.figures.z_rpe.median;
     if (method.name != "4dof" || &method == &main_method(run) || !(other > 0.0) || !std::isfinite(ours))
       continue;
@@ -29,16 +29,16 @@ std::string z_rpe_comparison(const EvaluatedRun& run) {
 }
 
 /// What the main method reached, in four figures.
-std::string tiles(const EvaluatedRun& run) {
-  const EvaluatedMethod& method = main_method(run);
+std::string tiles(const evaluation::EvaluatedRun& run) {
+  const evaluation::EvaluatedMethod& method = main_method(run);
   const evaluation::MethodFigures& figures = method.evaluation.figures;
   std::vector<double> times_ms;
-  for (const files::StatusRow& row : method.status) {
+  for (const evaluation::StatusRow& row : method.status) {
     if (std::isfinite(row.scan_ms)) times_ms.push_back(row.scan_ms);
   }
   const Distribution time = summarize(std::move(times_ms));
   std::string html = "<ul class=\"tiles\">\n";
-  html += tile(display_name(method.name) + ": error on z, median",
+  html += tile(evaluation::display_name(method.name) + ": error on z, median",
                fixed(100.0 * figures.z_rpe.median, 2) + " %", z_rpe_comparison(run));
   html += tile("Largest height error", fixed_signed(figures.largest_height_error_m, 2) + " m",
                "at the end " + fixed_signed(figures.final_height_error_m, 2) + " m");
@@ -52,7 +52,7 @@ std::string tiles(const EvaluatedRun& run) {
   return html + "</ul>\n";
 }
 
-std::string z_rpe_section(const EvaluatedRun& run) {
+std::string z_rpe_section(const evaluation::EvaluatedRun& run) {
   const bool whole_run = main_method(run).evaluation.figures.whole_run_as_flat;
   return heading("Relative error on z") +
          figure(z_rpe_picture(run, 1040.0), "Box plot of the relative error on z by method",
@@ -61,25 +61,25 @@ std::string z_rpe_section(const EvaluatedRun& run) {
                     ". Thick line: median; box: quartiles; whiskers: 5th and 95th percentiles.");
 }
 
-std::string height_section(const EvaluatedRun& run) {
+std::string height_section(const evaluation::EvaluatedRun& run) {
   std::string html =
       heading("Height along the way") +
       figure(height_picture(run, {1040.0, 380.0}, "height"), "Height against travelled distance",
              "Heights after the start poses were laid over each other." +
-                 std::string(floor_levels_m(run).empty() ? "" : " Shaded: flat segments.")) +
+                 std::string(evaluation::floor_levels_m(run).empty() ? "" : " Shaded: flat segments.")) +
       heading("Height error along the way") +
       figure(height_error_picture(run, {1040.0, 320.0}, std::nullopt, "error"),
              "Height error against travelled distance", "Estimate minus reference.");
   if (const std::optional<double> limit_m = close_up_limit_m(run)) {
-    html += figure(
-        height_error_picture(run, {1040.0, 280.0}, limit_m, "closeup"),
-        "Height error against travelled distance, close up",
-        "The same, close up: " + display_name(main_method(run).name) + " in full, the others cut off.");
+    html += figure(height_error_picture(run, {1040.0, 280.0}, limit_m, "closeup"),
+                   "Height error against travelled distance, close up",
+                   "The same, close up: " + evaluation::display_name(main_method(run).name) +
+                       " in full, the others cut off.");
   }
   return html;
 }
 
-std::string side_section(const EvaluatedRun& run) {
+std::string side_section(const evaluation::EvaluatedRun& run) {
   const std::vector<SideView> views = side_view_pictures(run);
   if (views.empty()) return "";
   std::string html = heading("The map from the side") + "<figure><div class=\"pair\">\n";
@@ -94,16 +94,17 @@ std::string side_section(const EvaluatedRun& run) {
          "</figcaption></figure>\n";
 }
 
-std::string top_section(const EvaluatedRun& run) {
+std::string top_section(const evaluation::EvaluatedRun& run) {
   const bool has_map = !main_method(run).map_points.empty();
-  const std::string what = has_map ? "Map of " + display_name(main_method(run).name) + " and paths" : "Paths";
+  const std::string what =
+      has_map ? "Map of " + evaluation::display_name(main_method(run).name) + " and paths" : "Paths";
   return heading(has_map ? "The map from above" : "The paths from above") +
          figure(top_view_picture(run), what + " from above",
                 what + ", to scale." +
-                    (floor_levels_m(run).size() > 1 ? " All floors lie over each other." : ""));
+                    (evaluation::floor_levels_m(run).size() > 1 ? " All floors lie over each other." : ""));
 }
 
-std::string time_section(const EvaluatedRun& run) {
+std::string time_section(const evaluation::EvaluatedRun& run) {
   const std::optional<Picture> picture = scan_time_picture(run, 1040.0);
   if (!picture) return "";
   return heading("Time per scan") +
@@ -112,7 +113,7 @@ std::string time_section(const EvaluatedRun& run) {
                 "Longer times are counted in the last bar.");
 }
 
-std::string notes_section(const EvaluatedRun& run) {
+std::string notes_section(const evaluation::EvaluatedRun& run) {
   if (run.notes.empty()) return "";
   std::string html = heading("Notes") + "<ul class=\"notes\">\n";
   for (const std::string& note : run.notes) html += "<li>" + escaped(note) + "</li>\n";
@@ -122,7 +123,7 @@ std::string notes_section(const EvaluatedRun& run) {
 }  // namespace
 
 std::string render_report(const ReportInput& input) {
-  const EvaluatedRun& run = input.run;
+  const evaluation::EvaluatedRun& run = input.run;
   std::string html = "<h1>" + escaped(input.title) + "</h1>\n";
   if (!input.description.empty()) html += "<p class=\"lead\">" + escaped(input.description) + "</p>\n";
   html += "<p>" + escaped(run_summary(run)) + "</p>\n";

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "tools/report/evaluated_run.hpp"
+#include "run/evaluation/evaluated_run.hpp"
 
 namespace isobar::report {
 
@@ -13,7 +13,7 @@ struct ReportInput {
   std::string title;        ///< what was measured: "Three floors, seed 1"
   std::string description;  ///< a sentence or two below it; may be empty
   std::string command;      ///< that makes this report again, as typed
-  EvaluatedRun run;
+  evaluation::EvaluatedRun run;
 };
 
 std::string render_report(const ReportInput& input);

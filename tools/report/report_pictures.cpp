@@ -21,9 +21,13 @@ double height_error_m(const PosePair& pair) {
   return pair.estimate.position_m.z() - pair.reference.position_m.z();
 }
 
-Series method_series(const EvaluatedRun& run, const EvaluatedMethod& method,
+Series method_series(const evaluation::EvaluatedRun& run, const evaluation::EvaluatedMethod& method,
                      double (*value)(const PosePair&)) {
-  Series series{display_name(method.name), method_stroke(run, method), {}, {}, &method == &main_method(run)};
+  Series series{evaluation::display_name(method.name),
+                method_stroke(run, method),
+                {},
+                {},
+                &method == &main_method(run)};
   for (const PosePair& pair : method.evaluation.pairs) {
     series.x.push_back(pair.distance_m);
     series.y.push_back(value(pair));
@@ -31,7 +35,7 @@ Series method_series(const EvaluatedRun& run, const EvaluatedMethod& method,
   return series;
 }
 
-Series reference_series(const EvaluatedRun& run) {
+Series reference_series(const evaluation::EvaluatedRun& run) {
   const auto& poses = run.reference.trajectory.poses;
   // Wide, so that it can be seen below an estimate that lies on it.
   Series series{"Reference", {"#9ca3af", 6.0}, evaluation::travelled_distance_m(poses), {}};
@@ -41,7 +45,7 @@ Series reference_series(const EvaluatedRun& run) {
 
 /// The altimeter's heights in the reference's frame, at the poses of the same stamp; empty if there is no
 /// altimeter.
-Series altimeter_series(const EvaluatedMethod& method) {
+Series altimeter_series(const evaluation::EvaluatedMethod& method) {
   Series series{"Altimeter", kAltimeterStroke, {}, {}};
   const double start_m = method.evaluation.T_reference_estimate.translation().z();
   auto row = method.status.begin();
@@ -56,7 +60,7 @@ Series altimeter_series(const EvaluatedMethod& method) {
 }
 
 /// The main method's altimeter, else that of the first method which has one.
-Series altimeter_series(const EvaluatedRun& run) {
+Series altimeter_series(const evaluation::EvaluatedRun& run) {
   Series series = altimeter_series(main_method(run));
   for (auto method = run.methods.begin(); method != run.methods.end() && series.x.empty(); ++method) {
     series = altimeter_series(*method);
@@ -65,7 +69,7 @@ Series altimeter_series(const EvaluatedRun& run) {
 }
 
 /// The recording's segments along the way.
-std::vector<Band> segment_bands(const EvaluatedRun& run) {
+std::vector<Band> segment_bands(const evaluation::EvaluatedRun& run) {
   const auto& poses = run.reference.trajectory.poses;
   const std::vector<double> distance_m = evaluation::travelled_distance_m(poses);
   const auto at = [&](std::int64_t stamp_ns) {
@@ -81,46 +85,46 @@ std::vector<Band> segment_bands(const EvaluatedRun& run) {
   return bands;
 }
 
-Range travelled_range(const EvaluatedRun& run) {
+Range travelled_range(const evaluation::EvaluatedRun& run) {
   return {0.0, std::max(0.1, evaluation::travelled_distance_m(run.reference.trajectory.poses).back())};
 }
 
-double largest_height_error_m(const EvaluatedMethod& method) {
+double largest_height_error_m(const evaluation::EvaluatedMethod& method) {
   return std::abs(method.evaluation.figures.largest_height_error_m);
 }
 
 }  // namespace
 
-const EvaluatedMethod& main_method(const EvaluatedRun& run) {
-  for (const EvaluatedMethod& method : run.methods) {
+const evaluation::EvaluatedMethod& main_method(const evaluation::EvaluatedRun& run) {
+  for (const evaluation::EvaluatedMethod& method : run.methods) {
     if (method.name == "3dof") return method;
   }
   return run.methods.front();
 }
 
-const EvaluatedMethod* contrast_method(const EvaluatedRun& run, bool needs_map) {
-  const EvaluatedMethod* worst = nullptr;
-  for (const EvaluatedMethod& method : run.methods) {
+const evaluation::EvaluatedMethod* contrast_method(const evaluation::EvaluatedRun& run, bool needs_map) {
+  const evaluation::EvaluatedMethod* worst = nullptr;
+  for (const evaluation::EvaluatedMethod& method : run.methods) {
     if (&method == &main_method(run) || (needs_map && method.map_points.empty())) continue;
     if (worst == nullptr || largest_height_error_m(method) > largest_height_error_m(*worst)) worst = &method;
   }
   return worst;
 }
 
-Picture z_rpe_picture(const EvaluatedRun& run, double width) {
+Picture z_rpe_picture(const evaluation::EvaluatedRun& run, double width) {
   BoxPlot plot;
   plot.x_label = "relative error on z over 5 m of travel [%]";
   plot.unit = "%";
   plot.width = width;
-  for (const EvaluatedMethod& method : run.methods) {
+  for (const evaluation::EvaluatedMethod& method : run.methods) {
     Distribution d = method.evaluation.figures.z_rpe;
     for (double* value : {&d.p05, &d.q25, &d.median, &d.q75, &d.p95, &d.p99, &d.max}) *value *= kPercent;
-    plot.rows.push_back({display_name(method.name), method_stroke(run, method).colour, d});
+    plot.rows.push_back({evaluation::display_name(method.name), method_stroke(run, method).colour, d});
   }
   return draw(plot);
 }
 
-Picture height_picture(const EvaluatedRun& run, const PictureSize& size, const std::string& id) {
+Picture height_picture(const evaluation::EvaluatedRun& run, const PictureSize& size, const std::string& id) {
   LineChart chart;
   chart.x_label = "travelled distance [m]";
   chart.y_label = "height [m]";
@@ -133,15 +137,15 @@ Picture height_picture(const EvaluatedRun& run, const PictureSize& size, const s
   chart.series.push_back(reference_series(run));
   Series altimeter = altimeter_series(run);
   if (!altimeter.x.empty()) chart.series.push_back(std::move(altimeter));
-  for (const EvaluatedMethod& method : run.methods) {
+  for (const evaluation::EvaluatedMethod& method : run.methods) {
     chart.series.push_back(
         method_series(run, method, [](const PosePair& p) { return p.estimate.position_m.z(); }));
   }
   return draw(chart);
 }
 
-Picture height_error_picture(const EvaluatedRun& run, const PictureSize& size, std::optional<double> limit_m,
-                             const std::string& id) {
+Picture height_error_picture(const evaluation::EvaluatedRun& run, const PictureSize& size,
+                             std::optional<double> limit_m, const std::string& id) {
   LineChart chart;
   chart.x_label = "travelled distance [m]";
   chart.y_label = "height error [m]";
@@ -152,29 +156,29 @@ Picture height_error_picture(const EvaluatedRun& run, const PictureSize& size, s
   chart.x_range = travelled_range(run);
   chart.zero_line = true;
   if (limit_m) chart.y_range = Range{-*limit_m, *limit_m};
-  for (const EvaluatedMethod& method : run.methods) {
+  for (const evaluation::EvaluatedMethod& method : run.methods) {
     chart.series.push_back(method_series(run, method, height_error_m));
   }
   return draw(chart);
 }
 
-std::optional<double> close_up_limit_m(const EvaluatedRun& run) {
+std::optional<double> close_up_limit_m(const evaluation::EvaluatedRun& run) {
   constexpr double kTooFlat = 5.0;
-  const EvaluatedMethod* contrast = contrast_method(run, false);
+  const evaluation::EvaluatedMethod* contrast = contrast_method(run, false);
   const double main_m = std::max(0.02, largest_height_error_m(main_method(run)));
   if (contrast == nullptr || largest_height_error_m(*contrast) < kTooFlat * main_m) return std::nullopt;
   return 1.5 * main_m;
 }
 
-std::optional<Picture> scan_time_picture(const EvaluatedRun& run, double width) {
+std::optional<Picture> scan_time_picture(const evaluation::EvaluatedRun& run, double width) {
   HistogramChart chart;
   chart.x_label = "time per scan [ms]";
   chart.unit = "ms";
   chart.width = width;
   bool any = false;
-  for (const EvaluatedMethod& method : run.methods) {
-    HistogramChart::Row row{display_name(method.name), method_stroke(run, method).colour, {}};
-    for (const files::StatusRow& status : method.status) row.values.push_back(status.scan_ms);
+  for (const evaluation::EvaluatedMethod& method : run.methods) {
+    HistogramChart::Row row{evaluation::display_name(method.name), method_stroke(run, method).colour, {}};
+    for (const evaluation::StatusRow& status : method.status) row.values.push_back(status.scan_ms);
     if (row.values.empty()) continue;
     any = any || std::any_of(row.values.begin(), row.values.end(), [](double v) { return std::isfinite(v); });
     chart.rows.push_back(std::move(row));

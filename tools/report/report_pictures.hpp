@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/report/evaluated_run.hpp"
+#include "run/evaluation/evaluated_run.hpp"
 #include "tools/report/svg.hpp"
 
 namespace isobar::report {
@@ -17,23 +17,23 @@ struct PictureSize {
 };
 
 /// The method the report is about: "3dof" if it took part, else the first.
-const EvaluatedMethod& main_method(const EvaluatedRun& run);
+const evaluation::EvaluatedMethod& main_method(const evaluation::EvaluatedRun& run);
 /// The other method with the largest height error, of those that have a map if `needs_map`; null if there is
 /// none.
-const EvaluatedMethod* contrast_method(const EvaluatedRun& run, bool needs_map);
+const evaluation::EvaluatedMethod* contrast_method(const evaluation::EvaluatedRun& run, bool needs_map);
 
 /// The paper's box plot of the relative error on z, a method a row.
-Picture z_rpe_picture(const EvaluatedRun& run, double width);
+Picture z_rpe_picture(const evaluation::EvaluatedRun& run, double width);
 
 /// Height along the way: reference, altimeter, every method.
-Picture height_picture(const EvaluatedRun& run, const PictureSize& size, const std::string& id);
+Picture height_picture(const evaluation::EvaluatedRun& run, const PictureSize& size, const std::string& id);
 
 /// Height error along the way; cut at +-limit_m if given.
-Picture height_error_picture(const EvaluatedRun& run, const PictureSize& size, std::optional<double> limit_m,
-                             const std::string& id);
+Picture height_error_picture(const evaluation::EvaluatedRun& run, const PictureSize& size,
+                             std::optional<double> limit_m, const std::string& id);
 /// Where to cut the second height error picture so that the main method can be seen; nothing if the first
 /// does.
-std::optional<double> close_up_limit_m(const EvaluatedRun& run);
+std::optional<double> close_up_limit_m(const evaluation::EvaluatedRun& run);
 
 /// Maps from the side, of the main method and of the one furthest off in height. Empty if no map was given.
 struct SideView {
@@ -41,12 +41,12 @@ struct SideView {
   Picture picture;
   bool is_half = false;  ///< two of them fit beside each other
 };
-std::vector<SideView> side_view_pictures(const EvaluatedRun& run);
+std::vector<SideView> side_view_pictures(const evaluation::EvaluatedRun& run);
 
 /// Map of the main method (the reference's path alone if there is none) from above, with all paths.
-Picture top_view_picture(const EvaluatedRun& run);
+Picture top_view_picture(const evaluation::EvaluatedRun& run);
 
 /// Time per scan of each method; nothing if no status says.
-std::optional<Picture> scan_time_picture(const EvaluatedRun& run, double width);
+std::optional<Picture> scan_time_picture(const evaluation::EvaluatedRun& run, double width);
 
 }  // namespace isobar::report

@@ -22,11 +22,12 @@ double rank_value(const FigureRow& row, const evaluation::MethodFigures& figures
 
 /// Whether this method's shown value is the best of the row; not if only one method took part or all are
 /// equal.
-bool is_best(const FigureRow& row, const EvaluatedRun& run, const EvaluatedMethod& method) {
+bool is_best(const FigureRow& row, const evaluation::EvaluatedRun& run,
+             const evaluation::EvaluatedMethod& method) {
   if (!row.is_ranked || run.methods.size() < 2) return false;
   double best = INFINITY;
   double worst = -INFINITY;
-  for (const EvaluatedMethod& other : run.methods) {
+  for (const evaluation::EvaluatedMethod& other : run.methods) {
     const double rank = rank_value(row, other.evaluation.figures);
     if (!std::isfinite(rank)) continue;
     best = std::min(best, rank);
@@ -40,17 +41,18 @@ std::string cell(const std::string& text, std::string_view css_class = "") {
   return "<td" + attribute + ">" + escaped(text) + "</td>";
 }
 
-std::string table_head(const EvaluatedRun& run, const std::string& first, const std::string& second) {
+std::string table_head(const evaluation::EvaluatedRun& run, const std::string& first,
+                       const std::string& second) {
   std::string html = "<div class=\"scroll\"><table>\n<thead><tr><th>" + escaped(first) + "</th><th>" +
                      escaped(second) + "</th>";
-  for (const EvaluatedMethod& method : run.methods)
-    html += "<th>" + escaped(display_name(method.name)) + "</th>";
+  for (const evaluation::EvaluatedMethod& method : run.methods)
+    html += "<th>" + escaped(evaluation::display_name(method.name)) + "</th>";
   return html + "</tr></thead>\n<tbody>\n";
 }
 
-std::string verdict_row(const EvaluatedRun& run) {
+std::string verdict_row(const evaluation::EvaluatedRun& run) {
   std::string html = "<tr><td>Verdict</td><td></td>";
-  for (const EvaluatedMethod& method : run.methods) {
+  for (const evaluation::EvaluatedMethod& method : run.methods) {
     html += method.evaluation.figures.lost ? cell("lost", "lost") : cell("ok");
   }
   return html + "</tr>\n";
@@ -74,14 +76,14 @@ std::string ate_alignment_text(evaluation::Alignment alignment) {
 
 }  // namespace
 
-std::string run_summary(const EvaluatedRun& run) {
+std::string run_summary(const evaluation::EvaluatedRun& run) {
   const double travelled_m = evaluation::travelled_distance_m(run.reference.trajectory.poses).back();
   return std::to_string(run.methods.size()) + (run.methods.size() == 1 ? " estimate" : " estimates") +
          " against the reference " + run.reference.source.string() + ": " + fixed(travelled_m, 1) + " m in " +
          fixed(run.reference.trajectory.duration_s(), 1) + " s.";
 }
 
-std::string figures_table(const EvaluatedRun& run) {
+std::string figures_table(const evaluation::EvaluatedRun& run) {
   std::string html = table_head(run, "", "");
   std::string_view group;
   for (const FigureRow& row : figure_rows()) {
@@ -91,7 +93,7 @@ std::string figures_table(const EvaluatedRun& run) {
     }
     group = row.group;
     html += "<tr>" + cell(row.label) + cell(row.unit, "unit");
-    for (const EvaluatedMethod& method : run.methods) {
+    for (const evaluation::EvaluatedMethod& method : run.methods) {
       html += cell(shown(row, method.evaluation.figures), is_best(row, run, method) ? "best" : "");
     }
     html += "</tr>\n";
@@ -99,8 +101,8 @@ std::string figures_table(const EvaluatedRun& run) {
   return html + verdict_row(run) + "</tbody></table></div>\n";
 }
 
-std::string floors_table(const EvaluatedRun& run) {
-  const std::vector<double> levels = floor_levels_m(run);
+std::string floors_table(const evaluation::EvaluatedRun& run) {
+  const std::vector<double> levels = evaluation::floor_levels_m(run);
   if (levels.empty()) return "";
   std::string html =
       "<p class=\"before-table\">Mean of estimate minus reference [m] over the flat segments of each floor; "
@@ -109,8 +111,8 @@ std::string floors_table(const EvaluatedRun& run) {
       table_head(run, "Floor at [m]", "");
   for (const double level_m : levels) {
     html += "<tr>" + cell(fixed_signed(level_m, 2)) + "<td></td>";
-    for (const EvaluatedMethod& method : run.methods) {
-      const evaluation::FloorHeight* floor = floor_at(method, level_m, run.options.floor_gap_m);
+    for (const evaluation::EvaluatedMethod& method : run.methods) {
+      const evaluation::FloorHeight* floor = evaluation::floor_at(method, level_m, run.options.floor_gap_m);
       std::string text = "\u2013";
       if (floor != nullptr) text = fixed_signed(floor->mean_error_m, 3);
       if (floor != nullptr && floor->visits > 1) text += " (" + fixed_signed(floor->worst_error_m, 3) + ")";
@@ -121,7 +123,7 @@ std::string floors_table(const EvaluatedRun& run) {
   return html + "</tbody></table></div>\n";
 }
 
-std::string definitions(const EvaluatedRun& run) {
+std::string definitions(const evaluation::EvaluatedRun& run) {
   const evaluation::EvaluationOptions& options = run.options;
   std::string html = "<dl>\n";
   html +=

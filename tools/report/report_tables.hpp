@@ -4,20 +4,20 @@
 
 #include <string>
 
-#include "tools/report/evaluated_run.hpp"
+#include "run/evaluation/evaluated_run.hpp"
 
 namespace isobar::report {
 
 /// What was compared with what, as plain text.
-std::string run_summary(const EvaluatedRun& run);
+std::string run_summary(const evaluation::EvaluatedRun& run);
 
 /// Every figure of every method; the best of each row in bold.
-std::string figures_table(const EvaluatedRun& run);
+std::string figures_table(const evaluation::EvaluatedRun& run);
 
 /// Height error of each floor; empty without flat segments.
-std::string floors_table(const EvaluatedRun& run);
+std::string floors_table(const evaluation::EvaluatedRun& run);
 
 /// How each figure is defined, with this run's options.
-std::string definitions(const EvaluatedRun& run);
+std::string definitions(const evaluation::EvaluatedRun& run);
 
 }  // namespace isobar::report

@@ -17,7 +17,7 @@
 #include "core/errors.hpp"
 #include "daemon/cpu_time.hpp"
 #include "daemon/replay.hpp"
-#include "run/files/replay_output.hpp"
+#include "run/evaluation/run_folder.hpp"
 #include "tools/method_option.hpp"
 
 namespace {
@@ -104,7 +104,7 @@ std::vector<Sample> replay(const Options& options, const Config& config) {
 }
 
 std::vector<Part> collect(const Options& options, const std::vector<Sample>& samples) {
-  const auto run = isobar::files::read_replay_output(options.out, 1);
+  const auto run = isobar::evaluation::read_run_folder(options.out, 1);
   std::vector<Part> parts(kParts);
   if (run.status.size() < kParts) throw isobar::DataError(options.out.string() + ": too few poses");
   const auto start_ns = static_cast<double>(run.status.front().stamp_ns);

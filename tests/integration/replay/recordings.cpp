@@ -7,8 +7,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "run/evaluation/evaluated_run.hpp"
 #include "simulation/simulate.hpp"
-#include "tools/report/evaluated_run.hpp"
 
 namespace isobar::test {
 
@@ -110,14 +110,14 @@ ReplaySummary run(const std::filesystem::path& recording, std::filesystem::path&
 }
 
 std::uint64_t count_of(const ReplaySummary& summary, const std::string& name) {
-  for (const RunCount& count : summary.counts) {
+  for (const files::RunCount& count : summary.counts) {
     if (count.name == name) return count.count;
   }
   return 0;
 }
 
 double largest_error_m(const std::filesystem::path& recording, const std::filesystem::path& out) {
-  const auto evaluated = report::evaluate_methods(report::load_reference(recording), {{"run", out}});
+  const auto evaluated = evaluation::evaluate_methods(evaluation::load_reference(recording), {{"run", out}});
   return evaluated.methods.at(0).evaluation.figures.ate_max_m;
 }
 

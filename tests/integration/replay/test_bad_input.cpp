@@ -151,7 +151,7 @@ TEST_CASE("impossible rows in the CSV files are counted with their place and tak
   const auto summary = run(folder, out);
   std::uint64_t refused = 0;
   bool names_place = false;
-  for (const RunCount& count : summary.counts) {
+  for (const files::RunCount& count : summary.counts) {
     if (count.name.rfind("imu: ", 0) != 0 || count.first_message.empty()) continue;
     refused += count.count;
     names_place = names_place || count.first_message.find("imu.csv:") != std::string::npos;

@@ -35,7 +35,7 @@ TEST_CASE("the map of a run lies in its folder, whole, and map.ply is what it ho
   CHECK(store->header() == map_header(Config{}));
   const std::filesystem::path exported = out / "again.ply";
   files::PlyWriter ply(exported);
-  const MapExport done = export_map(*store, store->header(), std::nullopt, ply);
+  const files::MapExport done = files::export_map(*store, store->header(), std::nullopt, ply);
   ply.close();
   CHECK(done.points == summary.map_points);
   CHECK(done.unreadable == 0);

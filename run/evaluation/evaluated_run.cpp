@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/report/evaluated_run.hpp"
+#include "run/evaluation/evaluated_run.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,53 +9,44 @@
 #include "core/errors.hpp"
 #include "run/files/text_file.hpp"
 
-namespace isobar::report {
+namespace isobar::evaluation {
 
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Enough for every picture of the report; a larger map is thinned evenly.
+// Enough for every picture of the report.
 constexpr std::size_t kMaxMapPoints = 1'500'000;
 
-/// A pose or two before the reference starts are no news.
+// A pose or two before the reference starts are not worth a note.
 constexpr double kNotedShareOutside = 0.005;
 
-std::string repairs_note(const std::string& name, const evaluation::StampRepairs& repairs) {
+std::string repairs_note(const std::string& name, const StampRepairs& repairs) {
   return name + ": " + std::to_string(repairs.backwards) + " poses were out of order and sorted, " +
          std::to_string(repairs.duplicates) + " with a stamp seen before were dropped.";
 }
 
-bool needed_repair(const evaluation::StampRepairs& repairs) {
-  return repairs.backwards + repairs.duplicates > 0;
-}
+bool needed_repair(const StampRepairs& repairs) { return repairs.backwards + repairs.duplicates > 0; }
 
-std::vector<evaluation::HeightSigma> sigmas_of(const std::vector<files::StatusRow>& status) {
-  std::vector<evaluation::HeightSigma> sigmas;
+std::vector<HeightSigma> sigmas_of(const std::vector<StatusRow>& status) {
+  std::vector<HeightSigma> sigmas;
   sigmas.reserve(status.size());
-  for (const files::StatusRow& row : status) sigmas.push_back({row.stamp_ns, row.sd_z_m});
+  for (const StatusRow& row : status) sigmas.push_back({row.stamp_ns, row.sd_z_m});
   return sigmas;
 }
 
-files::ReplayOutput load_estimate(const fs::path& path) {
-  if (fs::is_directory(path)) return files::read_replay_output(path, kMaxMapPoints);
-  files::ReplayOutput output;
-  output.trajectory = evaluation::parse_tum(files::read_text_file(path), path.string());
-  return output;
+RunFolder load_estimate(const fs::path& path) {
+  if (fs::is_directory(path)) return read_run_folder(path, kMaxMapPoints);
+  return {parse_tum(files::read_text_file(path), path.string()), {}, {}};
 }
 
 EvaluatedMethod evaluate_one(const ReferenceData& reference, const EstimateSource& source,
-                             const evaluation::EvaluationOptions& options) {
-  files::ReplayOutput output = load_estimate(source.path);
-  EvaluatedMethod method{source.name,
-                         source.path,
-                         {},
-                         std::move(output.status),
-                         std::move(output.map_points),
-                         output.map_points_total};
+                             const EvaluationOptions& options) {
+  RunFolder run = load_estimate(source.path);
+  EvaluatedMethod method{source.name, {}, source.path, std::move(run.status), std::move(run.map.points)};
   try {
-    method.evaluation = evaluation::evaluate(reference.trajectory, reference.segments, output.trajectory,
-                                             sigmas_of(method.status), options);
+    method.evaluation =
+        evaluate(reference.trajectory, reference.segments, run.trajectory, sigmas_of(method.status), options);
   } catch (const DataError& error) {
     throw DataError(source.path.string() + ": " + error.what());
   }
@@ -70,17 +61,17 @@ void add_notes(EvaluatedRun& run) {
   if (std::any_of(run.methods.begin(), run.methods.end(),
                   [](const EvaluatedMethod& m) { return m.evaluation.figures.whole_run_as_flat; })) {
     run.notes.emplace_back(
-        "No flat segments were named: the relative error on z is taken over the whole run.");
+        "No flat segments are named: the relative error on z is taken over the whole run.");
   }
   for (const EvaluatedMethod& method : run.methods) {
-    const evaluation::MethodFigures& figures = method.evaluation.figures;
+    const MethodFigures& figures = method.evaluation.figures;
     if (needed_repair(figures.repairs))
       run.notes.push_back(repairs_note(display_name(method.name), figures.repairs));
     const std::size_t outside = figures.poses - figures.paired;
     if (static_cast<double>(outside) > kNotedShareOutside * static_cast<double>(figures.poses)) {
-      run.notes.push_back(display_name(method.name) + ": " + std::to_string(figures.poses - figures.paired) +
-                          " of " + std::to_string(figures.poses) +
-                          " poses lie outside of the reference's time and are left out.");
+      run.notes.push_back(display_name(method.name) + ": " + std::to_string(outside) + " of " +
+                          std::to_string(figures.poses) +
+                          " poses are outside the time of the reference and are left out.");
     }
   }
 }
@@ -92,11 +83,10 @@ ReferenceData load_reference(const fs::path& path, const std::optional<fs::path>
   const bool is_recording = fs::is_directory(path);
   reference.source = path;
   const fs::path trajectory_file = is_recording ? path / "reference.tum" : path;
-  reference.trajectory =
-      evaluation::parse_tum(files::read_text_file(trajectory_file), trajectory_file.string());
+  reference.trajectory = parse_tum(files::read_text_file(trajectory_file), trajectory_file.string());
   std::optional<fs::path> file = segments_file;
   if (!file && is_recording && fs::exists(path / "segments.csv")) file = path / "segments.csv";
-  if (file) reference.segments = evaluation::parse_segments_csv(files::read_text_file(*file), file->string());
+  if (file) reference.segments = parse_segments_csv(files::read_text_file(*file), file->string());
   if (needed_repair(reference.trajectory.repairs)) {
     reference.notes.push_back(repairs_note("The reference", reference.trajectory.repairs));
   }
@@ -104,7 +94,7 @@ ReferenceData load_reference(const fs::path& path, const std::optional<fs::path>
 }
 
 EvaluatedRun evaluate_methods(ReferenceData reference, std::vector<EstimateSource> estimates,
-                              const evaluation::EvaluationOptions& options) {
+                              const EvaluationOptions& options) {
   default_names(estimates);
   EvaluatedRun run{std::move(reference), {}, options, {}};
   for (const EstimateSource& source : estimates)
@@ -133,13 +123,13 @@ std::vector<double> floor_levels_m(const EvaluatedRun& run) {
     const auto& floors = method.evaluation.figures.floors;
     if (floors.size() <= levels.size()) continue;
     levels.clear();
-    for (const evaluation::FloorHeight& floor : floors) levels.push_back(floor.reference_m);
+    for (const FloorHeight& floor : floors) levels.push_back(floor.reference_m);
   }
   return levels;
 }
 
-const evaluation::FloorHeight* floor_at(const EvaluatedMethod& method, double level_m, double floor_gap_m) {
-  for (const evaluation::FloorHeight& floor : method.evaluation.figures.floors) {
+const FloorHeight* floor_at(const EvaluatedMethod& method, double level_m, double floor_gap_m) {
+  for (const FloorHeight& floor : method.evaluation.figures.floors) {
     if (std::abs(floor.reference_m - level_m) < floor_gap_m) return &floor;
   }
   return nullptr;
@@ -156,4 +146,4 @@ std::string display_name(const std::string& method) {
   return found == kNames.end() ? method : found->second;
 }
 
-}  // namespace isobar::report
+}  // namespace isobar::evaluation

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reader of the folder that a run leaves behind (run/files/run_layout.hpp).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "run/evaluation/trajectory.hpp"
+#include "run/files/ply_reader.hpp"
+
+namespace isobar::evaluation {
+
+/// The columns of status.csv that the evaluation uses; NaN where the file has no value.
+struct StatusRow {
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+  std::int64_t stamp_ns = 0;
+  std::string mode;
+  double scan_ms = kUnknown;
+  double altimeter_height_m = kUnknown;
+  double sd_z_m = kUnknown;
+};
+
+/// A run's output. Only the trajectory is required.
+struct RunFolder {
+  Trajectory trajectory;
+  std::vector<StatusRow> status;  ///< empty without status.csv
+  files::PlyPoints map;           ///< map frame [m]; empty without map.ply
+};
+
+/// Reads the folder of a run.
+/// @param max_map_points of a larger map every n-th point is kept
+/// @throws DataError "file:line: rule" when a file breaks its format, or when there is no trajectory.tum
+RunFolder read_run_folder(const std::filesystem::path& directory, std::size_t max_map_points);
+
+/// Parses status.csv. Columns in any order, unknown ones ignored, only t_ns required; empty cells and "nan"
+/// mean unknown.
+/// @throws DataError "name:line: rule" when a line breaks the format
+std::vector<StatusRow> parse_status_csv(std::string_view text, const std::string& name);
+
+}  // namespace isobar::evaluation

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/files/ply_writer.hpp"
+
+#include <array>
+#include <bit>
+#include <string>
+
+namespace isobar::files {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "floats are written in the machine's byte order");
+
+/// Header of constant length, so that close() can overwrite it: a comment pads the count.
+std::string ply_header(std::uint64_t count) {
+  constexpr std::size_t kCountDigits = 20;  // of 2^64
+  const std::string digits = std::to_string(count);
+  return "ply\nformat binary_little_endian 1.0\ncomment isobar map, metres, z up\nelement vertex " + digits +
+         "\ncomment " + std::string(kCountDigits - digits.size(), '.') +
+         "\nproperty float x\nproperty float y\nproperty float z\nproperty float intensity\nend_header\n";
+}
+
+}  // namespace
+
+PlyWriter::PlyWriter(const std::filesystem::path& file) : file_(file) { file_.write(ply_header(0)); }
+
+void PlyWriter::add(float x_m, float y_m, float z_m, float intensity) {
+  const std::array<float, 4> vertex{x_m, y_m, z_m, intensity};
+  file_.write(vertex.data(), sizeof(vertex));
+  ++count_;
+}
+
+void PlyWriter::close() {
+  if (!file_.is_open()) return;
+  file_.seek(0);
+  file_.write(ply_header(count_));
+  file_.close();
+}
+
+}  // namespace isobar::files

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/files/pose_writer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "core/errors.hpp"
+#include "core/names.hpp"
+#include "run/files/run_layout.hpp"
+
+namespace isobar::files {
+
+namespace {
+
+std::filesystem::path made_directory(const std::filesystem::path& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) throw ServiceError(directory.string() + ": cannot be created: " + error.message());
+  return directory;
+}
+
+using Line = std::array<char, 8192>;  // holds every column at 1e308
+
+std::string_view text_of(const Line& line, int length) {
+  return {line.data(), std::min(static_cast<std::size_t>(length), line.size() - 1)};
+}
+
+std::string_view trajectory_line(const PoseEstimate& pose, Line& line) {
+  constexpr std::int64_t kNsPerS = 1'000'000'000;
+  const Eigen::Vector3d p = pose.T_map_base.translation();
+  const Eigen::Quaterniond q = Eigen::Quaterniond(pose.T_map_base.linear()).normalized();
+  // Integer seconds and nanoseconds: a double resolves a date of today to 0.2 us only.
+  const long long seconds = std::llabs(pose.stamp_ns / kNsPerS);
+  const long long nanoseconds = std::llabs(pose.stamp_ns % kNsPerS);
+  const int length = std::snprintf(
+      line.data(), line.size(), "%s%lld.%09lld %.6f %.6f %.6f %.9f %.9f %.9f %.9f\n",
+      pose.stamp_ns < 0 ? "-" : "", seconds, nanoseconds, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+  return text_of(line, length);
+}
+
+std::string_view status_line(const PoseEstimate& pose, double altimeter_height_m, double altimeter_sd_m,
+                             Line& line) {
+  const auto sd = [&](int axis) { return std::sqrt(std::max(0.0, pose.covariance(axis, axis))); };
+  const Eigen::Vector3d p = pose.T_map_base.translation();
+  const Eigen::Vector3d& eigenvalues = pose.smallest_eigenvalues;
+  const int length = std::snprintf(
+      line.data(), line.size(),
+      "%lld,%u,%s,%s,%s,%d,%u,%u,%u,%.4f,%.6f,%.6g,%.6g,%.6g,%.3f,%.4f,%.4f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%."
+      "6g\n",
+      static_cast<long long>(pose.stamp_ns), pose.sequence, mode_name(pose.mode).data(),
+      method_name(pose.effective_method).data(), height_source_name(pose.height_source).data(),
+      pose.degenerate ? 1 : 0, pose.iterations, pose.sampled_points, pose.matched_pairs, pose.overlap,
+      pose.residual_rms_m, eigenvalues[0], eigenvalues[1], eigenvalues[2], pose.registration_ms,
+      altimeter_height_m, altimeter_sd_m, p.x(), p.y(), p.z(), sd(0), sd(1), sd(2), sd(5));
+  return text_of(line, length);
+}
+
+}  // namespace
+
+PoseWriter::PoseWriter(const std::filesystem::path& directory)
+    : trajectory_(made_directory(directory) / kTrajectoryFile), status_(directory / kStatusFile) {
+  trajectory_.write("# t_s x_m y_m z_m qx qy qz qw: base_link in map\n");
+  status_.write(std::string(kStatusColumns) + "\n");
+}
+
+void PoseWriter::add(const PoseEstimate& pose, double altimeter_height_m, double altimeter_sd_m) {
+  Line line;
+  trajectory_.write(trajectory_line(pose, line));
+  status_.write(status_line(pose, altimeter_height_m, altimeter_sd_m, line));
+  ++count_;
+}
+
+void PoseWriter::close() {
+  trajectory_.close();
+  status_.close();
+}
+
+}  // namespace isobar::files

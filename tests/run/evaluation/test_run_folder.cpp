@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+
+#include "core/errors.hpp"
+#include "run/evaluation/run_folder.hpp"
+#include "run/files/pose_writer.hpp"
+#include "tests/support/message_of.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace isobar::test::test_run_folder {
+
+using namespace isobar::evaluation;
+using isobar::test::TemporaryFolder;
+
+namespace {
+
+PoseEstimate some_pose(std::uint32_t i) {
+  PoseEstimate pose;
+  pose.stamp_ns = 1'700'000'000'123'456'789 + 100'000'000LL * i;
+  pose.sequence = i;
+  pose.mode = PoseMode::kRegistered;
+  pose.effective_method = Method::k4DofAltitude;
+  pose.T_map_base.translation() = Eigen::Vector3d(0.1 * i, -2.5, 1e-3 * i);
+  pose.T_map_base.linear() =
+      Eigen::AngleAxisd(0.01 * i, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  pose.covariance(2, 2) = 0.0004;
+  pose.registration_ms = 12.5;
+  return pose;
+}
+
+}  // namespace
+
+TEST_CASE("poses and status rows come back from the folder of a run as they were written") {
+  const TemporaryFolder folder;
+  files::PoseWriter writer(folder.path() / "new" / "run");
+  for (std::uint32_t i = 0; i < 50; ++i) writer.add(some_pose(i), i == 7 ? NAN : 0.25 * i, 0.05);
+  CHECK(writer.count() == 50);
+  writer.close();
+
+  const RunFolder run = read_run_folder(folder.path() / "new" / "run", 100);
+  REQUIRE(run.trajectory.poses.size() == 50);
+  REQUIRE(run.status.size() == 50);
+  for (std::uint32_t i = 0; i < 50; ++i) {
+    const PoseEstimate pose = some_pose(i);
+    CHECK(run.trajectory.poses[i].stamp_ns == pose.stamp_ns);
+    // Six decimals of a metre, nine of a quaternion.
+    CHECK((run.trajectory.poses[i].position_m - pose.T_map_base.translation()).norm() < 1e-6);
+    CHECK(run.trajectory.poses[i].attitude.angularDistance(Eigen::Quaterniond(pose.T_map_base.linear())) <
+          1e-7);
+    CHECK(run.status[i].stamp_ns == pose.stamp_ns);
+    CHECK(run.status[i].mode == "registered");
+    CHECK(run.status[i].scan_ms == doctest::Approx(12.5));
+    CHECK(run.status[i].sd_z_m == doctest::Approx(0.02));
+    if (i != 7) CHECK(run.status[i].altimeter_height_m == doctest::Approx(0.25 * i));
+  }
+  CHECK(std::isnan(run.status[7].altimeter_height_m));
+  CHECK(run.map.points.empty());
+}
+
+TEST_CASE("stamps before 1970 and huge values give lines that can be read back") {
+  const TemporaryFolder folder;
+  files::PoseWriter writer(folder.path());
+  PoseEstimate pose = some_pose(1);
+  pose.stamp_ns = -1'500'000'000;
+  pose.T_map_base.translation().setConstant(1e300);
+  pose.residual_rms_m = -1e308;
+  pose.overlap = INFINITY;
+  writer.add(pose, -NAN, INFINITY);
+  writer.close();
+  const RunFolder run = read_run_folder(folder.path(), 100);
+  CHECK(run.trajectory.poses[0].stamp_ns == -1'500'000'000);
+  CHECK(run.trajectory.poses[0].position_m.x() == doctest::Approx(1e300));
+  CHECK(run.status.size() == 1);
+}
+
+TEST_CASE("status.csv requires t_ns only, ignores unknown columns, and errors name line and column") {
+  const auto rows = parse_status_csv("extra,scan_ms,t_ns\n1,,5\n2,3.5,6\n", "s");
+  REQUIRE(rows.size() == 2);
+  CHECK(std::isnan(rows[0].scan_ms));
+  CHECK(rows[1].scan_ms == 3.5);
+  CHECK(std::isnan(rows[1].sd_z_m));
+  CHECK(message_of([] { parse_status_csv("scan_ms\n1\n", "s"); }) == "s:1: the column 't_ns' is missing");
+  CHECK(message_of([] { parse_status_csv("t_ns,scan_ms\n1,fast\n", "s"); }) ==
+        "s:2: scan_ms: 'fast' is not a number");
+}
+
+TEST_CASE("a folder without a trajectory is refused") {
+  const TemporaryFolder folder;
+  CHECK_THROWS_AS(read_run_folder(folder.path(), 100), DataError);
+}
+
+}  // namespace isobar::test::test_run_folder
