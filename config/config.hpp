@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Everything that can be set, as plain values with their defaults. config/ reads it from TOML; a replay takes
-// sensors and mounts from the recording and the rest from here.
+// The configuration as plain values with their defaults. Ranges and reasons stand in the settings table
+// (setting.hpp). A replay takes sensors and mounts from the recording, the rest from here.
 #pragma once
 
 #include <cstdint>
@@ -18,19 +18,19 @@
 
 namespace isobar {
 
-/// What this machine is, and so which threads run.
+/// Role of this machine: decides which threads run.
 enum class Role : std::uint8_t {
-  kRobot,        ///< estimates where it is
-  kBaseStation,  ///< stands still, reads a barometer and tells robots its pressure
+  kRobot,        ///< estimates its pose
+  kBaseStation,  ///< stands still, reads a barometer and publishes its pressure
 };
 
 /// [lidar]
 struct LidarSettings {
   std::string model = "VLP-16";     ///< "VLP-16" or "HDL-32E"
-  std::string address = "0.0.0.0";  ///< IPv4 address to listen on
+  std::string address = "0.0.0.0";  ///< IPv4 address on which packets are received
   std::uint16_t port = 2368;        ///< UDP port of the data packets
   Mount mount;                      ///< of the sensor in base_link
-  double min_range_m = 0.3;         ///< see velodyne::VelodyneConfig
+  double min_range_m = 0.3;         ///< these four: see velodyne::VelodyneConfig
   double max_range_m = 131.0;
   double mask_start_deg = 0.0;
   double mask_end_deg = 0.0;
@@ -43,13 +43,13 @@ struct ImuSettings {
 
 /// [barometer]
 struct BarometerSettings {
-  /// Where its samples come from: "input", as datagrams; "dps310", "setra278", "iio": a sensor of this
-  /// machine, which isobard reads itself and then takes no datagrams of.
+  /// Source of the samples: "input", datagrams; "dps310", "setra278", "iio": a sensor of this machine, which
+  /// isobard reads itself; datagrams of the barometer are then refused.
   std::string source = "input";
-  Mount mount;  ///< position of the pressure port in base_link; its rotation means nothing
-  /// A file of `isobar calibrate` to be loaded into PriorConfig::compensation; empty once it has been.
+  Mount mount;  ///< position of the pressure port in base_link; the rotation is not used
+  /// Calibration file to load into PriorConfig::compensation; empty after loading.
   std::string compensation_file;
-  /// Without a change of one bit for longer a sensor of this machine is stuck [s]; 0: never.
+  /// Time without a change of a single bit after which a sensor of this machine is stuck [s]; 0: never.
   double stuck_time_s = 1.5;
   dps310::Settings dps310;
   iio::SetraSettings setra278;
@@ -58,7 +58,7 @@ struct BarometerSettings {
 
 /// [base_barometer]
 struct BaseBarometerSettings {
-  std::string compensation_file;  ///< the same for PriorConfig::base_compensation
+  std::string compensation_file;  ///< to load into PriorConfig::base_compensation; empty after loading
 };
 
 /// [input]: sample datagrams of IMU, barometers and wheels (drivers/datagram/datagram.hpp)
@@ -69,29 +69,29 @@ struct InputSettings {
 
 /// [output]
 struct OutputSettings {
-  std::string directory;          ///< folder for trajectory, map and status of a live run; empty: none
-  double cloud_interval_s = 2.0;  ///< between map clouds for viewers
+  std::string directory;          ///< for trajectory, map and status of a live run; empty: none written
+  double cloud_interval_s = 2.0;  ///< between two map clouds for viewers
 };
 
-/// [map], what is about files
+/// [map]: its files
 struct MapFileSettings {
-  std::string directory;     ///< folder for the map of a live run; empty: map/ in [output], or none without
-  double max_disk_gb = 4.0;  ///< beyond it the file of tiles begun longest ago is deleted
+  std::string directory;     ///< for a live run's tiles; empty: map/ in output.directory, if that is set
+  double max_disk_gb = 4.0;  ///< beyond it the oldest tile file is deleted
 };
 
 /// [realtime]; deadlines in ms
 struct RealtimeSettings {
-  bool enabled = false;        ///< SCHED_FIFO, and all memory locked
+  bool enabled = false;        ///< SCHED_FIFO, and all memory locked in RAM
   int inertial_priority = 55;  ///< SCHED_FIFO priorities
   int prior_priority = 55;
   int lidar_priority = 45;
   int registration_priority = 40;
   std::vector<int> estimator_cpus;         ///< cores for lidar, inertial, prior and registration; empty: all
   std::vector<int> map_cpus;               ///< cores for the map thread; empty: all
-  double lidar_deadline_ms = 10.0;         ///< end of a scan to the scan handed on
-  double prior_deadline_ms = 10.0;         ///< IMU sample to its prior handed on
-  double registration_deadline_ms = 50.0;  ///< end of a scan to its pose handed on
-  double map_deadline_ms = 100.0;          ///< pose handed on to the map that holds its scan
+  double lidar_deadline_ms = 10.0;         ///< from the end of a scan to its hand-over
+  double prior_deadline_ms = 10.0;         ///< from an IMU sample to the hand-over of its prior
+  double registration_deadline_ms = 50.0;  ///< from the end of a scan to the hand-over of its pose
+  double map_deadline_ms = 100.0;          ///< from the hand-over of a pose to the map with its scan
   double prior_reach_ms = 6.0;             ///< see ScanQueueConfig
   double prior_wait_ms = 50.0;             ///< see ScanQueueConfig
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -9,23 +10,32 @@
 
 namespace isobar {
 
-/// Reads a TOML file over the defaults. Throws ConfigError "file:line:column: key: rule (got X)" for a key
-/// that is unknown, a value of the wrong type or out of range, and for a file that is missing, a directory or
-/// no TOML. The same for a key that means nothing in the role that the file names.
+/// Reads a TOML file over the defaults.
+/// @throws ConfigError "file:line:column: key: rule (got VALUE)" when a key is unknown or not used in the
+/// role that the file names, or a value has the wrong type or breaks its rule; "file: reason" when the file
+/// is missing, a folder or no TOML
 Config load_config(const std::filesystem::path& file);
 
-/// The same from the text of a file; `file` is its name in errors.
+/// Reads the text of a TOML file; `file` is its name in errors.
+/// @throws ConfigError as load_config() does
 Config parse_config(std::string_view text, const std::string& file);
 
-/// Every setting that means something in config.role as TOML, with unit, range and reason as comments;
-/// loading it gives the same Config.
-std::string show_config(const Config& config);
+/// Checks a configuration that was changed after loading, against the settings table.
+/// @throws ConfigError "source: key: rule (got VALUE)" when a value breaks its rule
+void check_config(const Config& config, const std::string& source);
 
-/// Reads what show_compensation() gave, as `isobar calibrate` writes it. Throws ConfigError like
-/// load_config().
+/// Which settings are printed.
+enum class Shown : std::uint8_t { kAll, kBasic };
+
+/// The settings that config.role uses as TOML, the basic ones first, with unit, range and reason as comments.
+/// Loading the text gives the same Config (of kBasic: the same basic settings).
+std::string show_config(const Config& config, Shown shown = Shown::kAll);
+
+/// Reads a calibration that show_compensation() has printed.
+/// @throws ConfigError as load_config() does
 CompensationConfig load_compensation(const std::filesystem::path& file);
 
-/// A calibration as TOML, a section [compensation] with a comment for each key, below `comment`.
+/// A calibration as TOML: `comment`, then the section [compensation] with a comment for each key.
 std::string show_compensation(const CompensationConfig& compensation, const std::string& comment);
 
 }  // namespace isobar

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The table of all settings. Loading, checking, showing and the search for unknown keys all read this one
-// table.
+// The settings table: one entry per key. Loading, checking, printing and the search for unknown keys read it.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,13 +15,32 @@
 
 namespace isobar {
 
-/// What a text may be.
+/// Rule of a text value.
 enum class TextRule : std::uint8_t {
   kAny,
-  kIpv4,  ///< dotted IPv4 address
-  kName,  ///< 1 to 100 letters, digits, '_' or '/', no '/' at the ends
-  kNameOrEmpty,
-  kInterface,  ///< name or address of a network interface, or empty
+  kIpv4,         ///< dotted IPv4 address
+  kName,         ///< 1 to 100 letters, digits, '_' or '/', no '/' at the ends
+  kNameOrEmpty,  ///< kName, or empty
+  kInterface,    ///< name or address of a network interface, or empty
+};
+
+/// Who needs a setting.
+enum class Audience : std::uint8_t {
+  kBasic,   ///< everyone who sets up a robot or a base station
+  kExpert,  ///< only those who tune the estimator or the service
+};
+
+/// When a changed value takes effect.
+enum class Apply : std::uint8_t {
+  kLive,     ///< at once, in the running program
+  kStage,    ///< when the stage that uses it is built anew
+  kRestart,  ///< at the next start of the program
+};
+
+/// Roles in which a setting is used.
+enum class UsedBy : std::uint8_t {
+  kRobot,      ///< robots only; a base station has no lidar, no motion and no map
+  kEveryRole,  ///< robots and base stations
 };
 
 /// One key of the configuration, bound to its place in a Config.
@@ -36,38 +54,43 @@ struct Setting {
   std::string unit{};                                        ///< empty: none
   double lowest = -std::numeric_limits<double>::infinity();  ///< numbers; each element of lists
   double highest = std::numeric_limits<double>::infinity();
-  std::string doc{};  ///< what it is and why it has its default
+  std::string doc{};  ///< meaning, and reason of the default
   TextRule text_rule = TextRule::kAny;
-  std::vector<std::string> choices{};  ///< texts: only these; numbers: only these
+  std::vector<std::string> choices{};  ///< if not empty, the only texts or numbers allowed
+  UsedBy used_by = UsedBy::kEveryRole;
+  Audience audience = Audience::kExpert;
+  Apply apply = Apply::kRestart;
 
   [[nodiscard]] std::string section() const;  ///< "registration"; empty at the top
   [[nodiscard]] std::string name() const;     ///< "max_range_m"
+
+  /// Marks the setting as basic.
+  void basic() { audience = Audience::kBasic; }
 };
 
-/// The names of an enumeration's values, in their order.
+/// Names of an enumeration's values, in the order of the enumerators.
 const std::vector<std::string>& role_choices();
 const std::vector<std::string>& method_choices();
 const std::vector<std::string>& air_temperature_choices();
 const std::vector<std::string>& compensation_choices();
 const std::vector<std::string>& matcher_choices();
 
-/// All settings of `config`, in the order in which they are shown.
+/// All settings of `config`, section by section.
 std::vector<Setting> settings_of(Config& config);
 
-/// Does this key mean nothing to a base station? It has no lidar, no motion and no map.
-bool is_for_robots_only(std::string_view key);
-
-/// A sentence for the head of a section.
+/// The sentence that introduces a section; empty for an unknown one.
 std::string_view section_doc(std::string_view section);
 
 // The parts of the table, by the code that the settings belong to.
 void add_sensor_settings(Config& config, std::vector<Setting>& settings);
-void add_compensation_settings(const std::string& section, CompensationConfig& compensation,
+void add_compensation_settings(const std::string& section, UsedBy used_by, CompensationConfig& compensation,
                                std::vector<Setting>& settings);
 void add_service_settings(Config& config, std::vector<Setting>& settings);
-void add_prior_settings(PriorConfig& prior, std::vector<Setting>& settings);
+void add_dds_settings(dds::DdsConfig& dds, std::vector<Setting>& settings);
+void add_altimeter_settings(AltimeterConfig& altimeter, std::vector<Setting>& settings);
+void add_motion_settings(PriorConfig& prior, std::vector<Setting>& settings);
+void add_height_settings(HeightConfig& height, std::vector<Setting>& settings);
 void add_registration_settings(RegistrationConfig& registration, std::vector<Setting>& settings);
-void add_map_settings(MapConfig& map, std::vector<Setting>& settings);
-void add_map_file_settings(MapFileSettings& files, std::vector<Setting>& settings);
+void add_map_settings(MapConfig& map, MapFileSettings& files, std::vector<Setting>& settings);
 
 }  // namespace isobar

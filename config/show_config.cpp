@@ -4,20 +4,21 @@
 
 #include "config/config_io.hpp"
 #include "config/setting.hpp"
+#include "config/setting_rules.hpp"
 #include "config/value_text.hpp"
 
 namespace isobar {
 namespace {
 
-constexpr std::size_t kLineWidth = 110;
+constexpr std::size_t kLineBytes = 110;  // as the source's lines
 
-/// Comment lines of at most kLineWidth bytes, broken between words.
+/// Comment lines of at most kLineBytes, broken between words.
 void append_comment(std::string_view text, std::string& out) {
   while (!text.empty()) {
     std::size_t end = text.size();
-    if (end > kLineWidth - 2) {
-      const auto blank = text.rfind(' ', kLineWidth - 2);
-      end = blank == std::string_view::npos ? kLineWidth - 2 : blank;
+    if (end > kLineBytes - 2) {
+      const auto blank = text.rfind(' ', kLineBytes - 2);
+      end = blank == std::string_view::npos ? kLineBytes - 2 : blank;
     }
     out += "# " + std::string(text.substr(0, end)) + "\n";
     text.remove_prefix(end);
@@ -25,7 +26,8 @@ void append_comment(std::string_view text, std::string& out) {
   }
 }
 
-std::string rule_of(const Setting& setting) {
+/// "0.1 … 10 m. " or "One of a, b. "; empty for a setting without such a rule.
+std::string rule_sentence(const Setting& setting) {
   if (!setting.choices.empty()) {
     std::string text = "One of";
     for (const std::string& choice : setting.choices) {
@@ -33,56 +35,89 @@ std::string rule_of(const Setting& setting) {
     }
     return text + ". ";
   }
-  const std::string range = range_text(setting);  // " within a … b unit"
+  const std::string range = range_text(setting);
   return range.empty() ? "" : range.substr(std::string_view(" within ").size()) + ". ";
 }
 
-void append_settings(const std::vector<Setting>& settings, std::string& out) {
+/// When a changed value takes effect; empty for the usual case, the next start.
+std::string_view apply_sentence(Apply apply) {
+  switch (apply) {
+    case Apply::kLive:
+      return "Takes effect at once. ";
+    case Apply::kStage:
+      return "Takes effect when its stage is built anew. ";
+    case Apply::kRestart:
+      return "";
+  }
+  return "";
+}
+
+void append_setting(const Setting& setting, const std::string& spelled, std::string& out) {
+  append_comment(rule_sentence(setting) + std::string(apply_sentence(setting.apply)) + setting.doc, out);
+  out += spelled + " = " + value_text(setting) + "\n";
+}
+
+/// The settings of one audience under a heading. Keys are spelled with their section, as TOML allows a
+/// section to stand only once and a section may have settings of both audiences.
+void append_audience(const std::vector<Setting>& settings, Audience audience, const char* heading,
+                     std::string& out) {
+  out += "\n";
+  append_comment(heading, out);
   std::string section;
   for (const Setting& setting : settings) {
+    if (setting.audience != audience) continue;
     if (setting.section() != section) {
       section = setting.section();
-      out += "\n";
-      append_comment(section_doc(section), out);
-      out += "[" + section + "]\n";
-    } else {
-      out += "\n";
+      out += "\n\n";
+      append_comment("---- " + section + ": " + std::string(section_doc(section)), out);
     }
-    append_comment(rule_of(setting) + setting.doc, out);
-    out += setting.name() + " = " + value_text(setting) + "\n";
+    out += "\n";
+    append_setting(setting, setting.key, out);
   }
 }
 
 }  // namespace
 
-std::string show_config(const Config& config) {
+std::string show_config(const Config& config, Shown shown) {
   Config copy = config;
-  std::string out;
-  append_comment(
-      "Settings of isobard, isobar-dds and isobar. Every key may be left out: what stands here is its "
-      "default or "
-      "the value in use. `isobar config check FILE` checks a file; `isobar config show [FILE]` prints this "
-      "one.",
-      out);
   std::vector<Setting> settings = settings_of(copy);
   if (config.role == Role::kBaseStation) {
-    std::erase_if(settings, [](const Setting& setting) { return is_for_robots_only(setting.key); });
+    std::erase_if(settings, [](const Setting& setting) { return setting.used_by == UsedBy::kRobot; });
   }
-  append_settings(settings, out);
+  std::string out;
+  append_comment(
+      "Settings of isobard, isobar-dds and isobar. Every key may be left out; the values here are the "
+      "defaults "
+      "or those in use. A changed value takes effect at the next start, unless its comment says otherwise. "
+      "`isobar config check FILE` checks a file, `isobar config show [FILE]` prints all settings, "
+      "`isobar config show --basic [FILE]` only the basic ones.",
+      out);
+  append_audience(settings, Audience::kBasic, "======== Basic settings: set these first ========", out);
+  if (shown == Shown::kAll) {
+    append_audience(settings, Audience::kExpert,
+                    "======== Expert settings: the defaults suit most robots ========", out);
+  }
   return out;
 }
 
 std::string show_compensation(const CompensationConfig& compensation, const std::string& comment) {
   CompensationConfig copy = compensation;
   std::vector<Setting> settings;
-  add_compensation_settings("compensation", copy, settings);
+  add_compensation_settings("compensation", UsedBy::kEveryRole, copy, settings);
   std::string out;
   for (std::size_t begin = 0; begin < comment.size();) {
     const std::size_t end = std::min(comment.find('\n', begin), comment.size());
     append_comment(std::string_view(comment).substr(begin, end - begin), out);
     begin = end + 1;
   }
-  append_settings(settings, out);
+  out += "\n";
+  append_comment(section_doc("compensation"), out);
+  out += "[compensation]\n";
+  for (const Setting& setting : settings) {
+    append_setting(setting, setting.name(), out);
+    out += "\n";
+  }
+  out.pop_back();
   return out;
 }
 

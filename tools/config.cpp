@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `isobar config`: checks a configuration, shows all settings.
+// `isobar config`: checks a configuration, prints the settings.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
@@ -15,28 +15,29 @@
 namespace isobar::tools {
 
 void add_config_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("config", "Check a configuration or show all settings");
+  CLI::App* command = app.add_subcommand("config", "Check a configuration or print the settings");
   command->require_subcommand(1);
   const auto file = std::make_shared<std::string>();
 
-  CLI::App* check = command->add_subcommand("check", "Check a file: keys, types, units, ranges");
+  CLI::App* check = command->add_subcommand("check", "Check a file: keys, types, ranges");
   check->add_option("FILE", *file, "configuration in TOML")->required();
   check->callback([file] {
     load_config(*file);
     std::printf("%s: all right\n", file->c_str());
   });
 
-  CLI::App* show =
-      command->add_subcommand("show", "Print every setting with unit, range and reason, as TOML");
-  show->add_option("FILE", *file, "configuration whose values take the place of the defaults");
+  CLI::App* show = command->add_subcommand(
+      "show", "Print the settings with unit, range and reason as TOML, basic ones first");
+  show->add_option("FILE", *file, "configuration whose values replace the defaults");
+  const auto basic = std::make_shared<bool>(false);
+  show->add_flag("--basic", *basic, "print only the basic settings, those to set first on a robot");
   const auto role = std::make_shared<std::string>();
-  show->add_option("--role", *role, "print the defaults of a robot or of a base-station")
+  show->add_option("--role", *role, "print the defaults of this role")
       ->check(CLI::IsMember(role_choices()))
       ->excludes("FILE");
   const auto recording = std::make_shared<std::string>();
-  show->add_option("--sensors-of", *recording,
-                   "recording whose sensors and mounts take the place of the defaults");
-  show->callback([file, role, recording] {
+  show->add_option("--sensors-of", *recording, "recording whose sensors and mounts replace the defaults");
+  show->callback([file, basic, role, recording] {
     Config config = file->empty() ? Config{} : load_config(*file);
     if (*role == role_choices().back()) config.role = Role::kBaseStation;
     if (!recording->empty()) {
@@ -44,7 +45,7 @@ void add_config_command(CLI::App& app) {
       config = with_sensors_of(recording::read_manifest(*recording, warnings), config);
       for (const std::string& warning : warnings) std::fprintf(stderr, "note: %s\n", warning.c_str());
     }
-    const std::string text = show_config(config);
+    const std::string text = show_config(config, *basic ? Shown::kBasic : Shown::kAll);
     std::fwrite(text.data(), 1, text.size(), stdout);
   });
 }

@@ -18,7 +18,14 @@ void add_options(CLI::App& app, Options& options) {
 }
 
 Settings load_settings(const Options& options) {
-  const Config config = options.config_file.empty() ? Config{} : load_config(options.config_file);
+  Config config = options.config_file.empty() ? Config{} : load_config(options.config_file);
+  if (options.domain) {
+    config.dds.domain_id = *options.domain;
+  }
+  if (options.network_interface) {
+    config.dds.network_interface = *options.network_interface;
+  }
+  check_config(config, "command line");
   Settings settings;
   settings.is_base_station = config.role == Role::kBaseStation;
   settings.dds = config.dds;
@@ -27,13 +34,6 @@ Settings load_settings(const Options& options) {
     std::replace(settings.dds.node_name.begin(), settings.dds.node_name.end(), '/', '_');
   }
   settings.mounts = {config.lidar.mount, config.imu.mount, config.barometer.mount};
-  if (options.domain) {
-    settings.dds.domain_id = *options.domain;
-  }
-  if (options.network_interface) {
-    settings.dds.network_interface = *options.network_interface;
-  }
-  dds::validate(settings.dds);
   return settings;
 }
 

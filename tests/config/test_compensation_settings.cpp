@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The calibration of a barometer on its way from file to settings.
+// Calibration of a barometer: from the file into the settings.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -44,7 +44,7 @@ std::string text_of(const CompensationConfig& config) { return show_compensation
 
 }  // namespace
 
-TEST_CASE("A calibration's file holds every bit, and its comment every line") {
+TEST_CASE("A calibration file keeps every bit of the numbers and every line of the comment") {
   const Folder folder;
   const std::string text = show_compensation(calibrated(), "One line.\nAnother, about the sensor.");
   CHECK(text.rfind("# One line.\n# Another, about the sensor.\n", 0) == 0);
@@ -54,7 +54,7 @@ TEST_CASE("A calibration's file holds every bit, and its comment every line") {
   CHECK(loaded.pressure_scale_pa == calibrated().pressure_scale_pa);
 }
 
-TEST_CASE("One key names the file, beside the configuration; what is shown is what was loaded") {
+TEST_CASE("compensation_file is found beside the configuration, and the calibration is shown as loaded") {
   const Folder folder;
   (void)folder.write("dps310.toml", text_of(calibrated()));
   const auto file = folder.write("isobar.toml", "[barometer]\ncompensation_file = \"dps310.toml\"\n");
@@ -69,7 +69,7 @@ TEST_CASE("One key names the file, beside the configuration; what is shown is wh
   CHECK(text_of(base.prior.base_compensation) == text_of(calibrated()));
 }
 
-TEST_CASE("A calibration that cannot be used says where, which key and why") {
+TEST_CASE("A calibration that cannot be used is refused with place, key and rule") {
   const Folder folder;
   const auto fails = [&](const std::string& calibration, const std::string& words) {
     CAPTURE(calibration);

@@ -2,9 +2,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -13,6 +15,7 @@
 
 #include "config/config_io.hpp"
 #include "config/setting.hpp"
+#include "config/setting_rules.hpp"
 #include "config/value_text.hpp"
 #include "core/errors.hpp"
 
@@ -56,7 +59,8 @@ struct Change {
 }  // namespace
 
 TEST_CASE(
-    "config/isobar.toml is what `isobar config show` prints, so it holds every key and is never stale") {
+    "config/isobar.toml is what `isobar config show` prints, so it holds every key and is never out of "
+    "date") {
   std::ifstream in(std::filesystem::path(ISOBAR_SOURCE_DIR) / "config/isobar.toml", std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();
@@ -64,7 +68,7 @@ TEST_CASE(
   CHECK(text.str() == show_config(Config{}));
 }
 
-TEST_CASE("What is shown loads as the same settings, defaults and changed values alike") {
+TEST_CASE("The shown text loads as the same settings, with defaults and with changed values") {
   const std::string defaults = show_config(Config{});
   CHECK(show_config(parse_config(defaults, "c.toml")) == defaults);
   for (const Setting& setting : [] {
@@ -85,7 +89,7 @@ TEST_CASE("What is shown loads as the same settings, defaults and changed values
     try {
       loaded = parse_config(toml, "c.toml");
     } catch (const ConfigError& error) {
-      // Some pairs must move together; then the error says so.
+      // Some pairs must change together; then the error names the other key.
       CHECK(std::string(error.what()).find("must") != std::string::npos);
       continue;
     }
@@ -94,17 +98,19 @@ TEST_CASE("What is shown loads as the same settings, defaults and changed values
   }
 }
 
-TEST_CASE("Every key stands once, has words, and its default keeps its own rule") {
+TEST_CASE("Every key stands once, is documented, and its default keeps its own rule") {
   Config config;
   std::set<std::string> keys;
   for (const Setting& setting : settings_of(config)) {
     CAPTURE(setting.key);
     CHECK(keys.insert(setting.key).second);
-    CHECK(setting.doc.size() > 5);
+    CHECK(setting.doc.size() > 30);
+    CHECK(setting.doc.back() == '.');
+    CHECK(setting.doc.find("…") == std::string::npos);  // no half sentence that the neighbour completes
+    CHECK(keeps_rule(setting));
+    CHECK(setting.apply == Apply::kRestart);  // neither program reloads its configuration yet
     CHECK((setting.section().empty() || !section_doc(setting.section()).empty()));
-    if (const auto* number = std::get_if<double*>(&setting.target); number != nullptr) {
-      CHECK(**number >= setting.lowest);
-      CHECK(**number <= setting.highest);
+    if (std::holds_alternative<double*>(setting.target)) {
       CHECK(std::isfinite(setting.lowest));
       CHECK(std::isfinite(setting.highest));
     }
@@ -160,7 +166,7 @@ TEST_CASE("Values outside their rules are refused with file, line, column, key, 
   fails("[altimeter]\nmin_pressure_pa = 150000.0\n", "must be below altimeter.max_pressure_pa");
 }
 
-TEST_CASE("A barometer that cannot measure as it is told is refused, where it is the one in use") {
+TEST_CASE("Impossible rates of a barometer are refused if it is the one in use") {
   const std::string greedy = "[barometer.dps310]\npressure_rate_hz = 32\npressure_oversampling = 64\n";
   fails("[barometer]\nsource = \"dps310\"\n" + greedy,
         "c.toml: barometer.dps310.pressure_rate_hz: pressure 32 x 104.4 ms and temperature 4 x 14.8 ms are "
@@ -175,35 +181,98 @@ TEST_CASE("A barometer that cannot measure as it is told is refused, where it is
   fails("[barometer]\nsource = \"bmp280\"\n", "must be one of input, dps310, setra278, iio");
 }
 
-TEST_CASE("A base station's configuration is three lines, and its keys are those that mean something to it") {
+TEST_CASE("A base station is configured in three lines, and only the keys it uses are shown") {
   const Config base = parse_config("role = \"base-station\"\n[dds]\nbase_station = \"roof\"\n", "c.toml");
   CHECK(base.role == Role::kBaseStation);
   CHECK(base.dds.base_station == "roof");
   const std::string shown = show_config(base);
   CHECK(show_config(parse_config(shown, "c.toml")) == shown);
-  for (const char* section : {"[lidar]", "[imu]", "[output]", "[dds.propagator]", "[altimeter.air]",
-                              "[attitude]", "[height]", "[limits]", "[registration]", "[map]", "method ="}) {
+  for (const char* section :
+       {"\nlidar.", "\nimu.", "\noutput.", "\ndds.propagator.", "\naltimeter.air.", "\nattitude.",
+        "\nheight.", "\nlimits.", "\nregistration.", "\nmap.", "\nmethod ="}) {
     CAPTURE(section);
     CHECK(shown.find(section) == std::string::npos);
   }
-  for (const char* key : {"port = 7373", "base_station = \"roof\"", "stuck_timeout_s ="}) {
+  for (const char* key :
+       {"\ninput.port = 7373", "\ndds.base_station = \"roof\"", "\naltimeter.stuck_timeout_s ="}) {
     CAPTURE(key);
     CHECK(shown.find(key) != std::string::npos);
   }
 }
 
-TEST_CASE("What means nothing in the role of a base station is refused there, and only there") {
+TEST_CASE("Keys that a base station does not use are refused there, and only there") {
   const std::string role = "role = \"base-station\"\n";
-  fails(role + "[lidar]\nport = 2369\n",
-        "c.toml:3:8: lidar.port: means nothing where role = \"base-station\"");
-  fails(role + "method = \"3dof\"\n", "c.toml:2:10: method: means nothing");
-  fails(role + "[dds]\nreceive_base_pressure = true\n", "dds.receive_base_pressure: means nothing");
-  fails(role + "[dds.propagator]\nslew_time_s = 0.2\n", "dds.propagator.slew_time_s: means nothing");
+  fails(role + "[lidar]\nport = 2369\n", "c.toml:3:8: lidar.port: is not used where role = \"base-station\"");
+  fails(role + "method = \"3dof\"\n", "c.toml:2:10: method: is not used");
+  fails(role + "[dds]\nreceive_base_pressure = true\n", "dds.receive_base_pressure: is not used");
+  fails(role + "[dds.propagator]\nslew_time_s = 0.2\n", "dds.propagator.slew_time_s: is not used");
   fails("role = \"base station\"\n", "role: must be one of robot, base-station (got 'base station')");
   fails("[dds]\nis_base_station = true\n", "dds.is_base_station: unknown key");
   fails("[dds]\nsecond_base_station = \"base\"\n",
         "dds.second_base_station: must differ from dds.base_station");
   CHECK(parse_config("role = \"robot\"\n[lidar]\nport = 2369\n", "c.toml").lidar.port == 2369);
+}
+
+TEST_CASE("Basic settings are shown first, and with --basic alone") {
+  const std::string all = show_config(Config{});
+  const std::string basic = show_config(Config{}, Shown::kBasic);
+  CHECK(all.starts_with(basic));
+  CHECK(basic.size() * 5 < all.size());
+  Config config;
+  std::size_t basic_settings = 0;
+  for (const Setting& setting : settings_of(config)) {
+    CAPTURE(setting.key);
+    const bool is_basic = setting.audience == Audience::kBasic;
+    CHECK((basic.find("\n" + setting.key + " = ") != std::string::npos) == is_basic);
+    CHECK(all.find("\n" + setting.key + " = ") != std::string::npos);
+    basic_settings += is_basic ? 1 : 0;
+  }
+  CHECK(basic_settings == 15);
+  CHECK_NOTHROW(parse_config(basic, "c.toml"));
+}
+
+TEST_CASE("Keys load alike in sections and spelled with dots, in any order") {
+  const std::string expected =
+      show_config(parse_config("[dds]\ndomain_id = 7\n[lidar]\nport = 9\n", "c.toml"));
+  CHECK(show_config(parse_config("lidar.port = 9\ndds.domain_id = 7\n", "c.toml")) == expected);
+  fails("lidar.port = 9\ndds.domain_id = 233\n",
+        "c.toml:2:17: dds.domain_id: must be a whole number within 0 … 232 (got 233)");
+}
+
+TEST_CASE("Numbers are printed as plain decimals that read back to the same bits") {
+  CHECK(number_text(2e5) == "200000");
+  CHECK(number_text(3e-6) == "0.000003");
+  CHECK(number_text(-0.35) == "-0.35");
+  CHECK(number_text(0.0) == "0");
+  CHECK(number_text(1e-30) == "1e-30");
+  for (const double value : {1.0 / 3.0, 98'765.4, 1e-7 / 3.0, -2e14 / 7.0, 2.3e-308, 1.7e308}) {
+    CHECK(std::stod(number_text(value)) == value);
+  }
+}
+
+TEST_CASE("A configuration changed after loading is checked against the same table") {
+  const auto refused = [](auto change, const char* words) {
+    Config config;
+    change(config);
+    CAPTURE(words);
+    CHECK_THROWS_WITH_AS(check_config(config, "command line"), doctest::Contains(words), ConfigError);
+  };
+  CHECK_NOTHROW(check_config(Config{}, "command line"));
+  refused([](Config& c) { c.dds.domain_id = 233; },
+          "command line: dds.domain_id: must be a whole number within 0 … 232 (got 233)");
+  refused([](Config& c) { c.dds.domain_id = -1; }, "dds.domain_id");
+  refused([](Config& c) { c.dds.network_interface = "eth0\"/><Bad"; },
+          "dds.network_interface: must be the name or the address of a network interface");
+  refused([](Config& c) { c.dds.ros_namespace = "/robot"; }, "dds.ros_namespace");
+  refused([](Config& c) { c.dds.map_frame = ""; }, "dds.map_frame");
+  refused([](Config& c) { c.dds.base_station = ""; }, "dds.base_station");
+  refused([](Config& c) { c.dds.second_base_station = "base"; }, "dds.second_base_station");
+  refused([](Config& c) { c.dds.odom_rate_hz = std::numeric_limits<double>::quiet_NaN(); },
+          "dds.odom_rate_hz");
+  refused([](Config& c) { c.dds.ros_gid_bytes = 20; }, "dds.ros_gid_bytes: must be one of 16, 24 (got 20)");
+  refused([](Config& c) { c.dds.propagator.slew_time_s = 0.0; }, "dds.propagator.slew_time_s");
+  refused([](Config& c) { c.realtime.map_cpus = {-1}; }, "realtime.map_cpus");
+  refused([](Config& c) { c.lidar.mount.xyz_m.z() = 1e9; }, "lidar.xyz_m");
 }
 
 TEST_CASE("An unknown key is an error that names the nearest one") {
@@ -214,7 +283,7 @@ TEST_CASE("An unknown key is an error that names the nearest one") {
   fails("[dds.propagator]\nzzzzzzzzzzzzzzz = 3\n", "unknown key");
 }
 
-TEST_CASE("Files that cannot be a configuration are explained; an empty one means defaults") {
+TEST_CASE("A file that is no configuration is refused with the reason; an empty one gives the defaults") {
   fails("[lidar\n", "c.toml:1:");
   fails("a = 1\na = 2\n", "c.toml:2:");
   CHECK_THROWS_WITH_AS(load_config("/"), doctest::Contains("is a folder"), ConfigError);
@@ -222,7 +291,7 @@ TEST_CASE("Files that cannot be a configuration are explained; an empty one mean
   CHECK(show_config(parse_config("", "c.toml")) == show_config(Config{}));
 }
 
-TEST_CASE("Whole numbers serve as numbers") {
+TEST_CASE("A whole number is accepted for a real one") {
   CHECK(parse_config("[map]\ncell_m = 1\n", "c.toml").map.cell_m == 1.0);
 }
 

@@ -11,7 +11,6 @@
 #include <memory>
 #include <string>
 
-#include "core/errors.hpp"
 #include "ipc/dds/outputs.hpp"
 #include "ipc/dds/samples.hpp"
 
@@ -271,26 +270,6 @@ TEST_CASE("samples from the network are taken if they can be true, and else leav
   odometry.twist.twist.linear.y = 1e6;
   CHECK(to_sample(odometry, wheel) != nullptr);
   CHECK(wheel.vy_m_s == 0.0);
-}
-
-TEST_CASE("what cannot be configured is refused with its key") {
-  CHECK_NOTHROW(validate(DdsConfig{}));
-  const auto refused = [](auto change, const char* key) {
-    DdsConfig config;
-    change(config);
-    CHECK_THROWS_WITH_AS(validate(config), doctest::Contains(key), ConfigError);
-  };
-  refused([](DdsConfig& c) { c.domain_id = 233; }, "dds.domain_id");
-  refused([](DdsConfig& c) { c.domain_id = -1; }, "dds.domain_id");
-  refused([](DdsConfig& c) { c.network_interface = "eth0\"/><Bad"; }, "dds.network_interface");
-  refused([](DdsConfig& c) { c.ros_namespace = "/robot"; }, "dds.ros_namespace");
-  refused([](DdsConfig& c) { c.map_frame = ""; }, "dds.map_frame");
-  refused([](DdsConfig& c) { c.base_station = ""; }, "dds.base_station");
-  refused([](DdsConfig& c) { c.second_base_station = "base"; }, "dds.second_base_station");
-  refused([](DdsConfig& c) { c.odom_rate_hz = std::numeric_limits<double>::quiet_NaN(); },
-          "dds.odom_rate_hz");
-  refused([](DdsConfig& c) { c.ros_gid_bytes = 20; }, "dds.ros_gid_bytes");
-  refused([](DdsConfig& c) { c.propagator.slew_time_s = 0.0; }, "slew_time_s");
 }
 
 TEST_CASE("the domain is configured for loopback as Linux has it, and never for iceoryx") {

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
+#include "config/setting_rules.hpp"
+#include "config/value_text.hpp"
+#include "core/errors.hpp"
+
+namespace isobar {
+namespace {
+
+/// Throws for the broken rules of one file.
+class Requirements {
+ public:
+  explicit Requirements(const std::string& file) : file_(file) {}
+
+  void require(bool holds, const char* key, const std::string& rule) const {
+    if (!holds) {
+      throw ConfigError(file_ + ": " + key + ": " + rule);
+    }
+  }
+
+ private:
+  const std::string& file_;
+};
+
+/// Why a DPS310 cannot measure at these rates.
+std::string busy_text(const dps310::Settings& settings) {
+  const auto product = [](int rate_hz, int oversampling) {
+    return std::to_string(rate_hz) + " x " +
+           number_text(std::round(dps310::measurement_time_s(oversampling) * 1e4) / 10.0) + " ms";
+  };
+  return "pressure " + product(settings.pressure_rate_hz, settings.pressure_oversampling) +
+         " and temperature " + product(settings.temperature_rate_hz, settings.temperature_oversampling) +
+         " are " + number_text(std::round(dps310::busy_time_s(settings) * 1e3) / 1e3) +
+         " s of measuring in a second, must be below 1; lower a rate or an oversampling";
+}
+
+void check_sensors(const Config& config, const Requirements& rules) {
+  rules.require(config.lidar.min_range_m < config.lidar.max_range_m, "lidar.min_range_m",
+                "must be below lidar.max_range_m");
+  rules.require(config.lidar.port != config.input.port || config.role == Role::kBaseStation, "input.port",
+                "must differ from lidar.port");
+  const BarometerSettings& barometer = config.barometer;
+  if (barometer.source == "dps310") {
+    rules.require(dps310::busy_time_s(barometer.dps310) < 1.0, "barometer.dps310.pressure_rate_hz",
+                  busy_text(barometer.dps310));
+  }
+  if (barometer.source == "setra278") {
+    const char* broken = setra278::broken_rule(barometer.setra278.span);
+    rules.require(broken == nullptr, "barometer.setra278", broken == nullptr ? "" : broken);
+  }
+}
+
+void check_estimator(const Config& config, const Requirements& rules) {
+  const AltimeterConfig& altimeter = config.prior.altimeter;
+  rules.require(config.registration.min_range_m < config.registration.max_range_m, "registration.min_range_m",
+                "must be below registration.max_range_m");
+  rules.require(config.registration.last_distance_m <= config.registration.first_distance_m,
+                "registration.last_distance_m", "must not be above registration.first_distance_m");
+  rules.require(altimeter.min_pressure_pa < altimeter.max_pressure_pa, "altimeter.min_pressure_pa",
+                "must be below altimeter.max_pressure_pa");
+  rules.require(altimeter.noise_floor_pa <= altimeter.initial_noise_pa &&
+                    altimeter.initial_noise_pa <= altimeter.noise_ceiling_pa,
+                "altimeter.initial_noise_pa",
+                "must lie between altimeter.noise_floor_pa and altimeter.noise_ceiling_pa");
+}
+
+}  // namespace
+
+void check_compensation(const CompensationConfig& compensation, const std::string& place) {
+  const char* key = nullptr;
+  if (const char* rule = broken_compensation_rule(compensation, &key); rule != nullptr) {
+    throw ConfigError(place + key + ": " + rule);
+  }
+}
+
+void check_together(const Config& config, const std::string& file) {
+  const Requirements rules(file);
+  check_sensors(config, rules);
+  check_estimator(config, rules);
+  rules.require(config.dds.second_base_station != config.dds.base_station, "dds.second_base_station",
+                "must differ from dds.base_station");
+  check_compensation(config.prior.compensation, file + ": barometer.compensation.");
+  check_compensation(config.prior.base_compensation, file + ": base_barometer.compensation.");
+}
+
+}  // namespace isobar

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "config/section_builder.hpp"
+
+namespace isobar {
+namespace {
+
+void add_network(dds::DdsConfig& dds, SectionBuilder& s) {
+  s.number("domain_id", &dds.domain_id, "", 0, 232,
+           "DDS domain; must equal ROS_DOMAIN_ID of the ROS 2 nodes that listen. 0 is their default; "
+           "domains beyond 232 have no UDP ports.")
+      .basic();
+  s.text("network_interface", dds.network_interface, TextRule::kInterface,
+         "Network interface of DDS, by name or address. Empty: the best one, or loopback if there is no "
+         "other.");
+  s.number("max_message_bytes", &dds.max_message_bytes, "bytes", 1'472, 65'500,
+           "Largest datagram. 14720 is Cyclone's default; 65500 halves the load of clouds where IP fragments "
+           "do no harm, as on loopback.");
+}
+
+void add_names(dds::DdsConfig& dds, SectionBuilder& s) {
+  s.text("ros_namespace", dds.ros_namespace, TextRule::kNameOrEmpty,
+         "ROS namespace in front of the topic names, such as \"robot1\"; empty: none. Never in front of /tf, "
+         "/tf_static and /diagnostics, which all robots share.");
+  s.text("node_name", dds.node_name, TextRule::kName,
+         "Node name of isobar-dds in ROS 2 tools. A base station with the default is named isobar_STATION.");
+  s.choice("ros_gid_bytes", &dds.ros_gid_bytes, {"16", "24"},
+           "Bytes of an endpoint's id in ros_discovery_info: 16 from ROS 2 Iron on, 24 up to Humble.");
+}
+
+void add_frames(dds::DdsConfig& dds, SectionBuilder& s) {
+  s.text("map_frame", dds.map_frame, TextRule::kName, "Frame of the map, named as in REP-105.");
+  s.text("odom_frame", dds.odom_frame, TextRule::kName,
+         "Frame in which the pose has no jumps, named as in REP-105.");
+  s.text("base_frame", dds.base_frame, TextRule::kName, "Frame of the robot, named as in REP-105.");
+  s.text("lidar_frame", dds.lidar_frame, TextRule::kName,
+         "Frame of the lidar in /tf_static. Must be unique among the robot's frames.");
+  s.text("imu_frame", dds.imu_frame, TextRule::kName,
+         "Frame of the IMU in /tf_static. Must be unique among the robot's frames.");
+  s.text("barometer_frame", dds.barometer_frame, TextRule::kName,
+         "Frame of the barometer in /tf_static. Must be unique among the robot's frames.");
+}
+
+void add_outputs(dds::DdsConfig& dds, SectionBuilder& s) {
+  s.number("odom_rate_hz", &dds.odom_rate_hz, "Hz", 1.0, 1'000.0,
+           "Publishing rate of odom and tf; the IMU's rate if that is lower. 100 suffices for controllers.");
+  s.number("altitude_rate_hz", &dds.altitude_rate_hz, "Hz", 0.1, 200.0,
+           "Publishing rate of altitude. 10: air pressure is filtered to a few hertz anyway.");
+  s.flag("publish_clouds", dds.publish_clouds,
+         "Publish the registered scans and the map as clouds. false saves most of the load of isobar-dds.");
+}
+
+void add_inputs(dds::DdsConfig& dds, SectionBuilder& s) {
+  s.text("second_base_station", dds.second_base_station, TextRule::kNameOrEmpty,
+         "Name of a second base station, against which a faulty first one is noticed. Empty: none.");
+  s.flag("receive_base_pressure", dds.receive_base_pressure,
+         "Receive the base stations' pressure over DDS. true: base stations publish it there.");
+  s.flag("receive_sensors", dds.receive_sensors,
+         "Receive the robot's own sensors from the topics imu/data and wheel/odom, for robots whose drivers "
+         "are ROS 2 nodes. false: a sensor must not reach isobard on two ways.");
+}
+
+void add_propagator(PosePropagatorConfig& propagator, std::vector<Setting>& settings) {
+  SectionBuilder s("dds.propagator", UsedBy::kRobot, settings);
+  s.number("slew_time_s", &propagator.slew_time_s, "s", 0.01, 10.0,
+           "Time constant with which a correction enters odom. 0.1: within two scans odom follows the "
+           "registered pose, and one bad scan is smoothed.");
+  s.number("max_slew_m_s", &propagator.max_slew_m_s, "m/s", 1e-3, 100.0,
+           "Fastest correction of the position in odom. Controllers see a correction as motion; 1 is walking "
+           "pace.");
+  s.number("max_slew_rad_s", &propagator.max_slew_rad_s, "rad/s", 1e-3, 100.0,
+           "Fastest correction of the orientation in odom. Controllers see a correction as motion; 1 is 57 "
+           "deg/s.");
+  s.number("max_extrapolation_s", &propagator.max_extrapolation_s, "s", 0.0, 5.0,
+           "Longest extrapolation of the last velocity between scans without wheels. 0.5: five scans at 10 "
+           "Hz.");
+}
+
+}  // namespace
+
+void add_dds_settings(dds::DdsConfig& dds, std::vector<Setting>& settings) {
+  SectionBuilder s("dds", UsedBy::kEveryRole, settings);
+  add_network(dds, s);
+  add_names(dds, s);
+  s.text("base_station", dds.base_station, TextRule::kName,
+         "Name of the base station, whose topics are NAME/fluid_pressure and NAME/temperature. A robot "
+         "listens to it; a base station bears it, also as its frame.")
+      .basic();
+  s.used_by(UsedBy::kRobot);
+  add_frames(dds, s);
+  add_outputs(dds, s);
+  add_inputs(dds, s);
+  add_propagator(dds.propagator, settings);
+}
+
+}  // namespace isobar

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rules of the values: of one setting, from the table, and of several together.
+#pragma once
+
+#include <string>
+
+#include "config/setting.hpp"
+
+namespace isobar {
+
+/// " within 0.1 … 10 m"; empty for a setting without a range.
+std::string range_text(const Setting& setting);
+
+/// The rule of a setting's values, as errors state it: "must be a number within 0.1 … 10 m".
+std::string rule_text(const Setting& setting);
+
+/// Whether a number is finite and in the range of a setting.
+bool is_in_range(const Setting& setting, double value);
+
+/// Whether a text or a number, spelled as a text, is one of the choices of a setting.
+bool is_choice(const Setting& setting, const std::string& value);
+
+/// Whether a text keeps a rule.
+bool keeps_rule(TextRule rule, const std::string& text);
+
+/// Whether the value in the setting's place keeps the rule.
+bool keeps_rule(const Setting& setting);
+
+/// Checks a calibration as a whole.
+/// @throws ConfigError "PLACEkey: rule" when it cannot be used
+void check_compensation(const CompensationConfig& compensation, const std::string& place);
+
+/// Checks the rules that tie several settings together.
+/// @throws ConfigError "file: key: rule" when one is broken
+void check_together(const Config& config, const std::string& file);
+
+}  // namespace isobar

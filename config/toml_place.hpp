@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "core/errors.hpp"
+
+namespace isobar {
+
+/// "FILE:LINE:COLUMN" of a position in a TOML file.
+inline std::string place_text(const std::string& file, const toml::source_position& at) {
+  return file + ":" + std::to_string(at.line) + ":" + std::to_string(at.column);
+}
+
+/// A value in a TOML file: its place, its key and the errors about it.
+class TomlPlace {
+ public:
+  /// `file` and `node` must outlive the object.
+  TomlPlace(const std::string& file, std::string key, const toml::node& node)
+      : file_(file), key_(std::move(key)), node_(node) {}
+
+  [[nodiscard]] const toml::node& node() const { return node_; }
+
+  /// @throws ConfigError always: "file:line:column: key: rule"
+  [[noreturn]] void fail(const std::string& rule) const {
+    throw ConfigError(place_text(file_, node_.source().begin) + ": " + key_ + ": " + rule);
+  }
+
+  /// @throws ConfigError always: "file:line:column: key: rule (got VALUE)"
+  [[noreturn]] void fail_with_value(const std::string& rule) const { fail(rule + " (got " + got() + ")"); }
+
+ private:
+  [[nodiscard]] std::string got() const {
+    std::ostringstream text;
+    if (node_.is_table()) {
+      text << "a section";
+    } else {
+      node_.visit([&text](const auto& node) { text << node; });
+    }
+    return text.str();
+  }
+
+  const std::string& file_;
+  std::string key_;
+  const toml::node& node_;
+};
+
+}  // namespace isobar
