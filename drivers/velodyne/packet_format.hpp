@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a Velodyne data packet looks like: VLP-16 user manual 63-9243 chapter 9, HDL-32E user manual 63-9113
+// Layout of a Velodyne data packet: VLP-16 user manual 63-9243 chapter 9, HDL-32E user manual 63-9113
 // appendix. All integers are little-endian.
 //
-//   12 data blocks of 100 bytes: flag FF EE, azimuth (u16, 0.01 deg), 32 channels of (distance u16,
-//   reflectivity u8) timestamp (u32, microseconds past the hour, of the first firing in the packet) return
-//   mode (u8), product id (u8)
+//   12 data blocks of 100 bytes each:
+//     flag FF EE
+//     azimuth       u16, 0.01 deg
+//     32 channels   of distance (u16, 2 mm) and reflectivity (u8)
+//   timestamp       u32, microseconds past the hour, of the first firing in the packet
+//   return mode     u8
+//   product id      u8
 #pragma once
 
 #include <array>
