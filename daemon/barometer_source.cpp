@@ -7,8 +7,9 @@
 #include "drivers/iio/barometer.hpp"
 
 namespace isobar {
+namespace {
 
-std::unique_ptr<BarometerDevice> make_barometer(const BarometerSettings& settings) {
+std::unique_ptr<BarometerDevice> make_device(const BarometerSettings& settings) {
   const auto stuck_time_ns = static_cast<std::int64_t>(settings.stuck_time_s * 1e9);
   if (settings.source == "input") return nullptr;
   if (settings.source == "dps310") {
@@ -21,6 +22,14 @@ std::unique_ptr<BarometerDevice> make_barometer(const BarometerSettings& setting
   }
   if (settings.source == "iio") return std::make_unique<iio::Barometer>(settings.iio, stuck_time_ns);
   throw ConfigError("barometer.source: \"" + settings.source + "\" has no driver");
+}
+
+}  // namespace
+
+std::unique_ptr<BarometerThread> make_barometer_thread(const BarometerSettings& settings,
+                                                       const ThreadSettings& scheduling) {
+  std::unique_ptr<BarometerDevice> device = make_device(settings);
+  return device ? std::make_unique<BarometerThread>(std::move(device), scheduling) : nullptr;
 }
 
 }  // namespace isobar

@@ -4,13 +4,16 @@
 #include <memory>
 
 #include "config/config.hpp"
-#include "drivers/barometer/barometer_device.hpp"
+#include "daemon/barometer_thread.hpp"
 
 namespace isobar {
 
-/// The barometer of this machine that the configuration names; nullptr when its samples come as datagrams.
-/// Touches no hardware: what is missing shows, and is asked for again, once the device runs. Throws
-/// ConfigError for a source that has no driver.
-[[nodiscard]] std::unique_ptr<BarometerDevice> make_barometer(const BarometerSettings& settings);
+/// Thread for the barometer attached to this machine that the configuration names; null when its samples
+/// arrive as datagrams. Does not access the hardware: a missing device is reported and retried once the
+/// thread runs.
+/// @throws ConfigError for a source without a driver
+/// @throws ServiceError when the kernel refuses a timer
+[[nodiscard]] std::unique_ptr<BarometerThread> make_barometer_thread(const BarometerSettings& settings,
+                                                                     const ThreadSettings& scheduling);
 
 }  // namespace isobar

@@ -4,56 +4,43 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <thread>
 
-#include "daemon/realtime.hpp"
 #include "daemon/seq_lock.hpp"
-#include "daemon/worker_watch.hpp"
+#include "daemon/stoppable_timer.hpp"
+#include "daemon/worker.hpp"
 #include "drivers/barometer/barometer_device.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar {
 
-/// What the barometer's thread says of itself.
+/// Status of the barometer thread.
 struct BarometerThreadStatus {
-  bool present = false;          ///< false: there is no such thread, samples come as datagrams
+  bool present = false;          ///< false: no such thread, samples arrive as datagrams
   std::array<char, 80> place{};  ///< "DPS310 on /dev/i2c-1 at 0x77"
   BarometerStatus device;
   std::uint64_t samples_without_memory = 0;
 };
 
-/// Reads a barometer of this machine and is then the only writer of the barometer's topic. A sensor that is
-/// missing or fails is asked for again and again; the rest of the program never waits for it. Serves a robot
-/// and a base station alike.
+/// Reads a barometer attached to this machine; it is then the only writer of the barometer topic. A missing
+/// or failed sensor is retried for ever; nothing else waits for it. On robots and base stations alike.
 class BarometerThread {
  public:
-  /// Throws ServiceError when the kernel gives no timer.
+  /// @throws ServiceError when the kernel refuses a timer
   BarometerThread(std::unique_ptr<BarometerDevice> device, ThreadSettings settings);
-  ~BarometerThread();
-  BarometerThread(const BarometerThread&) = delete;
-  BarometerThread& operator=(const BarometerThread&) = delete;
 
-  void start();
-  void stop() noexcept;  ///< returns when the thread has ended
-
+  [[nodiscard]] Worker& worker() noexcept { return worker_; }
   [[nodiscard]] BarometerThreadStatus status() const noexcept { return status_.get(); }
-  [[nodiscard]] const Heartbeat& heartbeat() const noexcept { return heartbeat_; }
 
  private:
   void loop() noexcept;
   std::int64_t step() noexcept;
-  void arm(std::int64_t wait_ns) noexcept;
-  bool wait() noexcept;
 
-  ThreadSettings settings_;
   std::unique_ptr<BarometerDevice> device_;
-  int timer_ = -1;
-  int stop_event_ = -1;
+  StoppableTimer timer_;
   ipc::Publisher<PressureSample> publisher_;
-  BarometerThreadStatus own_;
+  BarometerThreadStatus draft_status_;
   SeqLock<BarometerThreadStatus> status_;
-  Heartbeat heartbeat_;
-  std::thread thread_;
+  Worker worker_;
 };
 
 }  // namespace isobar

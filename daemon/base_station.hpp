@@ -1,13 +1,44 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
+#include <string>
+
 #include "config/config.hpp"
-#include "daemon/service.hpp"
+#include "daemon/barometer_thread.hpp"
+#include "daemon/graph.hpp"
+#include "daemon/sample_thread.hpp"
+#include "daemon/scheduling.hpp"
+#include "daemon/station_monitor.hpp"
+#include "daemon/station_thread.hpp"
+#include "ipc/shared_memory.hpp"
 
 namespace isobar {
 
-/// isobard in the role of a base station, until it is told to stop.
-/// Throws ServiceError when the port cannot be bound or shared memory is refused.
-void run_base_station(const Config& config, Service& service);
+/// The graph of a base station.
+class BaseStationGraph final : public Graph {
+ public:
+  /// @throws ServiceError when the port cannot be bound or shared memory is refused
+  explicit BaseStationGraph(const Config& config);
+
+  void start() override { workers_.start(); }
+  void stop() override { workers_.stop(); }
+  [[nodiscard]] StationSnapshot status(std::int64_t now_ns) const;
+
+  [[nodiscard]] WorkerGroup& workers() override { return workers_; }
+  [[nodiscard]] std::string inputs() const override;
+  [[nodiscard]] BarometerState barometer_state() const override;
+  void fill_health(std::int64_t now_ns, ipc::HealthReport& report) override;
+
+ private:
+  Config config_;
+  BaseStationScheduling scheduling_;
+  ipc::Broker broker_;
+  StationThread station_;
+  std::unique_ptr<BarometerThread> barometer_;
+  SampleThread input_;
+  StationMonitor monitor_;
+  WorkerGroup workers_;  ///< last: stops all threads before the stages are destroyed
+};
 
 }  // namespace isobar

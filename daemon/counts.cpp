@@ -7,7 +7,7 @@
 namespace isobar {
 
 std::vector<files::RunCount> counts_of(const velodyne::VelodyneCounters& counters,
-                                       const std::string& wrong_model_message) {
+                                const std::string& wrong_model_message) {
   return {
       {"lidar packets", counters.packets, ""},
       {"lidar packets truncated", counters.truncated, ""},
@@ -125,7 +125,7 @@ std::vector<files::RunCount> counts_of_map(FileTileStore& store, files::RunOutpu
   };
 }
 
-void append(std::vector<files::RunCount>& counts, std::vector<files::RunCount> more) {
+void run_counts::append(std::vector<files::RunCount>& counts, std::vector<files::RunCount> more) {
   counts.insert(counts.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Counters of the stages by name, for counters.csv, the health report and the summary of a replay.
+// Counters of the stages by name, for counters.csv and the summary of a replay.
 #pragma once
 
 #include <string>
@@ -16,17 +16,19 @@
 namespace isobar {
 
 std::vector<files::RunCount> counts_of(const velodyne::VelodyneCounters& counters,
-                                       const std::string& wrong_model_message);
+                                const std::string& wrong_model_message);
 std::vector<files::RunCount> counts_of(const PriorCounters& counters);
 std::vector<files::RunCount> counts_of(const datagram::Counters& counters);
-/// Of the base station that sends datagrams.
+/// Counters of the base station that sends datagrams.
 std::vector<files::RunCount> counts_of(const BaseStationStatus& base);
 std::vector<files::RunCount> counts_of(const BarometerCounters& counters);
 
-/// Writes map.ply and counts what became of the map on the disk, during the run and then.
+/// Writes map.ply; returns the counters of the tile store, during the run and while writing.
 std::vector<files::RunCount> counts_of_map(FileTileStore& store, files::RunOutput& output);
 
-/// Appends `more` to `counts`.
+namespace run_counts {
+/// Moves the elements of `more` to the end of `counts`.
 void append(std::vector<files::RunCount>& counts, std::vector<files::RunCount> more);
+}  // namespace run_counts
 
 }  // namespace isobar

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/health.hpp"
-#include "core/names.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <array>
 #include <cmath>
 
+#include "core/names.hpp"
 #include "daemon/base_station_health.hpp"
 #include "daemon/health_entries.hpp"
+#include "daemon/health_entry.hpp"
 
 namespace isobar {
 
@@ -17,7 +18,7 @@ namespace {
 using ipc::HealthLevel;
 using ipc::HealthReport;
 
-/// Where samples of this kind may come from.
+/// Inputs that may deliver samples of this kind.
 std::string input_of(const Config& config, datagram::Kind kind) {
   using datagram::Kind;
   const bool by_dds = kind == Kind::kBasePressure
@@ -29,32 +30,22 @@ std::string input_of(const Config& config, datagram::Kind kind) {
 const char* sentence_of(BarometerFault fault) {
   switch (fault) {
     case BarometerFault::kOk:
-      return "well";
+      return "ok";
     case BarometerFault::kOff:
       return "off: silent";
     case BarometerFault::kStuck:
-      return "stuck: its value does not change by one bit";
+      return "stuck: its value does not change by a single bit";
     case BarometerFault::kSpiking:
-      return "spiking: single values jump again and again";
+      return "spiking: single values jump repeatedly";
     case BarometerFault::kDrifting:
-      return "drifting: it moves as no weather and no height does";
+      return "drifting: faster than weather, and not with the height";
     case BarometerFault::kWrong:
-      return "wrong: its values are impossible, or have jumped to where nothing can have brought them";
+      return "wrong: impossible values, or a jump that neither motion nor weather explains";
   }
   return "unknown";
 }
 
 }  // namespace
-
-HealthMonitor::HealthMonitor(const Config& config, std::vector<std::string> realtime_refusals)
-    : config_(config), refusals_(std::move(realtime_refusals)) {}
-
-bool HealthMonitor::due(const StatusSnapshot& now) {
-  if (first_look_ns_ == 0) first_look_ns_ = now.now_ns;
-  if (last_.now_ns == 0) return now.now_ns - first_look_ns_ >= kReportEveryNs;
-  return now.now_ns - last_.now_ns >= kReportEveryNs ||
-         now.barometer.device.state != last_.barometer.device.state;
-}
 
 void HealthMonitor::fill_deadlines(const StatusSnapshot& now, HealthReport& report) const {
   add_deadline(report, "lidar/deadline", now.lidar.punctuality, last_.lidar.punctuality, "scans");
@@ -62,46 +53,41 @@ void HealthMonitor::fill_deadlines(const StatusSnapshot& now, HealthReport& repo
   add_deadline(report, "registration/deadline", now.registration.punctuality, last_.registration.punctuality,
                "poses");
   add_deadline(report, "map/deadline", now.map.punctuality, last_.map.punctuality, "updates");
-  // Where the memory is locked nothing is left to be fetched.
+  // With locked memory there should be none.
   if (config_.realtime.enabled) {
     add_count(report, "registration/page_faults", now.registration.page_faults,
-              last_.registration.page_faults,
-              "page faults of the registration, each may cost some microseconds");
+              last_.registration.page_faults, "page faults of the registration, some microseconds each");
   }
 }
 
 void HealthMonitor::fill(const StatusSnapshot& now, HealthReport& report) {
   const double elapsed_s = last_.now_ns == 0 ? 1.0 : static_cast<double>(now.now_ns - last_.now_ns) * 1e-9;
-  report.stamp_ns = now.now_ns;
-  report.entry_count = 0;
   fill_lidar(now, elapsed_s, report);
   fill_samples(now, elapsed_s, report);
   fill_faults(now, report);
   fill_estimate(now, report);
   fill_deadlines(now, report);
-  add_refusals(report, refusals_);
   last_ = now;
 }
 
 void HealthMonitor::fill_lidar(const StatusSnapshot& now, double elapsed_s, HealthReport& report) const {
   const auto& counters = now.lidar.counters;
   const auto& before = last_.lidar.counters;
-  add_stream(report, "lidar", now.lidar.last_packet_ns, now.now_ns, kSilenceNs,
+  add_stream(report, "lidar", now.lidar.last_packet_ns, now.now_ns, kSensorSilenceNs,
              per_second(counters.scans, before.scans, elapsed_s),
              "UDP port " + std::to_string(config_.lidar.port));
   if (counters.wrong_model > before.wrong_model) {
-    report.add("lidar/model", HealthLevel::kError, now.lidar.wrong_model_message.data(),
-               static_cast<double>(counters.wrong_model));
+    add_entry(report, "lidar/model", HealthLevel::kError, now.lidar.wrong_model_message.data(),
+              static_cast<double>(counters.wrong_model));
   }
   add_count(report, "lidar/packets_lost", counters.lost, before.lost,
-            "packets missing, by the sensor's own time");
+            "packets lost, by the gaps in the sensor's time");
   add_count(report, "lidar/garbage", counters.garbage + counters.truncated + counters.oversized,
-            before.garbage + before.truncated + before.oversized,
-            "packets that are none of the lidar's, refused");
+            before.garbage + before.truncated + before.oversized, "packets of another format, refused");
   add_count(report, "lidar/reordered", counters.reordered + counters.duplicated,
-            before.reordered + before.duplicated, "packets that came twice or out of order");
+            before.reordered + before.duplicated, "packets duplicated or out of order");
   add_count(report, "lidar/dropped_by_kernel", now.lidar.dropped_by_kernel, last_.lidar.dropped_by_kernel,
-            "datagrams dropped by the kernel: the machine is too busy");
+            "datagrams dropped by the kernel: the machine is overloaded");
   add_count(report, "lidar/no_memory", now.lidar.scans_without_memory, last_.lidar.scans_without_memory,
             "scans dropped: no free chunk of shared memory");
 }
@@ -109,8 +95,8 @@ void HealthMonitor::fill_lidar(const StatusSnapshot& now, double elapsed_s, Heal
 void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, HealthReport& report) const {
   constexpr const char* kNames[] = {"imu", "barometer", "base_station",
                                     "wheels"};  // NOLINT(modernize-avoid-c-arrays)
-  const auto& counters = now.inertial.counters;
-  const auto& before = last_.inertial.counters;
+  const auto& counters = now.samples.counters;
+  const auto& before = last_.samples.counters;
   for (std::size_t kind = 0; kind < datagram::kKinds; ++kind) {
     const double rate_hz = per_second(now.prior.samples[kind], last_.prior.samples[kind], elapsed_s);
     const auto which = static_cast<datagram::Kind>(kind);
@@ -119,18 +105,18 @@ void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, He
     } else if (which == datagram::Kind::kBasePressure) {
       fill_base_stations(now, report);
     } else {
-      add_stream(report, kNames[kind], now.prior.last_sample_ns[kind], now.now_ns, kSilenceNs, rate_hz,
+      add_stream(report, kNames[kind], now.prior.last_sample_ns[kind], now.now_ns, kSensorSilenceNs, rate_hz,
                  input_of(config_, which));
     }
     add_count(report, (std::string(kNames[kind]) + "/lost").c_str(), counters.lost[kind], before.lost[kind],
-              "samples missing, by their numbers");
+              "samples lost, by the gaps in their numbers");
   }
-  add_input(report, now.inertial, last_.inertial);
+  add_input(report, now.samples, last_.samples);
   add_count(report, "input/dropped", now.prior.dropped_samples, last_.prior.dropped_samples,
-            "samples that came faster than they could be used");
+            "samples dropped: they arrived faster than they were used");
 }
 
-// Base stations may send once a second or less: what is silence they teach themselves.
+// A base station may send once a second or less; its limit of silence comes from its own cadence.
 void HealthMonitor::fill_base_stations(const StatusSnapshot& now, HealthReport& report) const {
   constexpr std::array<const char*, 2> kNames = {"base_station", "second_base_station"};
   for (std::size_t i = 0; i < kNames.size(); ++i) {
@@ -140,31 +126,32 @@ void HealthMonitor::fill_base_stations(const StatusSnapshot& now, HealthReport& 
     add_stream(report, kNames[i], cadence.last_ns(), now.now_ns, cadence.limit_ns(), rate_hz,
                input_of(config_, datagram::Kind::kBasePressure));
   }
-  add_base_station_counts("base_station", now.inertial.base, last_.inertial.base,
+  add_base_station_counts("base_station", now.samples.base, last_.samples.base,
                           [&report](const std::string& name, HealthLevel level, const std::string& message,
-                                    double value) { report.add(name, level, message, value); });
+                                    double value) { add_entry(report, name, level, message, value); });
 }
 
-// Silence of a stream is said by its own entry; here is what the values themselves say.
+// Faults found in the values; silence is in the entry of the stream.
 void HealthMonitor::fill_faults(const StatusSnapshot& now, HealthReport& report) {
   const BarometerHealth& health = now.prior.barometers;
   const auto add = [&report](const char* name, BarometerFault fault) {
-    // Silence is an error already, of the stream.
+    // Silence is already an error of the stream.
     const bool well = fault == BarometerFault::kOk || fault == BarometerFault::kOff;
-    report.add(name, well ? HealthLevel::kOk : HealthLevel::kWarning, sentence_of(fault),
-               static_cast<double>(fault));
+    add_entry(report, name, well ? HealthLevel::kOk : HealthLevel::kWarning, sentence_of(fault),
+              static_cast<double>(fault));
   };
   if (now.prior.counters.pressure_accepted > 0) add("barometer/fault", health.robot);
   if (health.base_heard[0]) add("base_station/fault", health.base[0]);
   if (health.base_heard[1]) add("second_base_station/fault", health.base[1]);
   if (!health.base_heard[0] || !health.base_heard[1]) return;
-  const char* sentence = health.base_undecided ? "both are there and disagree, nobody can tell which is wrong"
+  const char* sentence = health.base_undecided      ? "both send and disagree; which one is wrong is unknown"
                          : health.base_usable == 2  ? "both agree"
-                         : health.base_usable == 0  ? "none is left: the last pressure is held"
-                         : health.base_active == 0U ? "only the first is left"
-                                                    : "only the second is left";
+                         : health.base_usable == 0  ? "none is usable: the last pressure is held"
+                         : health.base_active == 0U ? "only the first is usable"
+                                                    : "only the second is usable";
   const bool well = health.base_usable == 2 && !health.base_undecided;
-  report.add("base_stations", well ? HealthLevel::kOk : HealthLevel::kWarning, sentence, health.base_usable);
+  add_entry(report, "base_stations", well ? HealthLevel::kOk : HealthLevel::kWarning, sentence,
+            health.base_usable);
 }
 
 void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& report) const {
@@ -175,41 +162,38 @@ void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& repor
                   used.pressure_without_temperature, before.pressure_without_temperature);
   add_calibration(report, "base_station", used.base_outside_calibration, before.base_outside_calibration,
                   used.base_without_temperature, before.base_without_temperature);
-  report.add("attitude", prior.attitude_valid ? HealthLevel::kOk : HealthLevel::kStale,
-             prior.attitude_valid ? "gravity found" : "gravity not found yet, it needs the IMU", 0.0);
+  add_entry(report, "attitude", prior.attitude_valid ? HealthLevel::kOk : HealthLevel::kStale,
+            prior.attitude_valid ? "gravity found" : "waiting for gravity from the IMU", 0.0);
   const bool height_good = prior.height_source == HeightSource::kDifferential;
-  report.add("height", height_good ? HealthLevel::kOk : HealthLevel::kWarning,
-             fmt::format("source: {}, sd {:.3f} m", height_source_name(prior.height_source),
-                         std::sqrt(prior.height_variance_m2)),
-             prior.height_m);
+  add_entry(report, "height", height_good ? HealthLevel::kOk : HealthLevel::kWarning,
+            fmt::format("source: {}, sd {:.3f} m", height_source_name(prior.height_source),
+                        std::sqrt(prior.height_variance_m2)),
+            prior.height_m);
 
   const RegistrationStatus& registration = now.registration;
   const bool good = registration.mode == PoseMode::kRegistered;
   const HealthLevel level = registration.scans == 0 ? HealthLevel::kStale
                             : good                  ? HealthLevel::kOk
                                                     : HealthLevel::kWarning;
-  report.add("registration", level,
-             fmt::format("mode: {}, method: {}, overlap {:.2f}{}", mode_name(registration.mode),
-                         method_name(registration.effective_method), registration.overlap,
-                         registration.degenerate ? ", degenerate" : ""),
-             registration.overlap);
-  report.add("registration/ms", HealthLevel::kOk, "CPU time of the last scan", registration.registration_ms);
+  add_entry(report, "registration", level,
+            fmt::format("mode: {}, method: {}, overlap {:.2f}{}", mode_name(registration.mode),
+                        method_name(registration.effective_method), registration.overlap,
+                        registration.degenerate ? ", degenerate" : ""),
+            registration.overlap);
+  add_entry(report, "registration/ms", HealthLevel::kOk, "CPU time of the last scan",
+            registration.registration_ms);
   add_count(report, "registration/refused", registration.from_prior, last_.registration.from_prior,
-            "scans that did not fit the map; their pose is the prior's");
+            "scans that did not match the map; their poses are the prior's");
   add_count(report, "registration/dropped", registration.dropped_scans, last_.registration.dropped_scans,
-            "scans dropped, a newer one was there; their poses are the prior's");
+            "scans dropped for a newer one; their poses are the prior's");
   add_count(report, "registration/priors_dropped", registration.dropped_priors,
-            last_.registration.dropped_priors, "priors that the registration did not get");
+            last_.registration.dropped_priors, "priors lost to a full queue of the registration");
   add_count(report, "registration/bridged", registration.bridged, last_.registration.bridged,
-            "poses without a scan: the lidar was silent");
-  report.add("map", HealthLevel::kOk, "cells in memory", static_cast<double>(now.map.cells));
-  report.add("map/ms", HealthLevel::kOk, "CPU time of the last update", now.map.update_ms);
+            "poses from the prior while the lidar was silent");
+  add_entry(report, "map", HealthLevel::kOk, "cells in memory", static_cast<double>(now.map.cells));
+  add_entry(report, "map/ms", HealthLevel::kOk, "CPU time of the last update", now.map.update_ms);
   add_count(report, "map/dropped", now.map.dropped_scans, last_.map.dropped_scans,
-            "scans that the map did not take, a newer one was there");
-}
-
-std::vector<std::string> HealthMonitor::news(const HealthReport& report) {
-  return isobar::news(report, changes_);
+            "scans that the map skipped for a newer one");
 }
 
 }  // namespace isobar

@@ -3,6 +3,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "daemon/health_entry.hpp"
+
 namespace isobar {
 
 using ipc::HealthLevel;
@@ -10,7 +12,7 @@ using ipc::HealthReport;
 
 namespace {
 
-/// Time between two samples of a barometer of this machine.
+/// Sampling period of a barometer attached to this machine.
 std::int64_t period_ns(const BarometerSettings& barometer) {
   const int rate_hz = barometer.source == "dps310"     ? barometer.dps310.pressure_rate_hz
                       : barometer.source == "setra278" ? barometer.setra278.device.rate_hz
@@ -27,15 +29,15 @@ double per_second(std::uint64_t now, std::uint64_t before, double elapsed_s) {
 void add_count(HealthReport& report, const char* name, std::uint64_t now, std::uint64_t before,
                const char* sentence) {
   if (now == 0) return;
-  report.add(name, now > before ? HealthLevel::kWarning : HealthLevel::kOk, sentence,
-             static_cast<double>(now));
+  add_entry(report, name, now > before ? HealthLevel::kWarning : HealthLevel::kOk, sentence,
+            static_cast<double>(now));
 }
 
 void add_deadline(HealthReport& report, const char* name, const DeadlineStatus& now,
                   const DeadlineStatus& before, const char* what) {
   if (now.outputs == 0) return;
-  report.add(
-      name, now.misses > before.misses ? HealthLevel::kWarning : HealthLevel::kOk,
+  add_entry(
+      report, name, now.misses > before.misses ? HealthLevel::kWarning : HealthLevel::kOk,
       fmt::format("{} of {} {} later than {:.1f} ms, the worst {:.1f} ms", now.misses, now.outputs, what,
                   static_cast<double>(now.limit_ns) * 1e-6, static_cast<double>(now.worst_ns) * 1e-6),
       static_cast<double>(now.misses));
@@ -44,12 +46,13 @@ void add_deadline(HealthReport& report, const char* name, const DeadlineStatus& 
 void add_stream(HealthReport& report, const std::string& name, std::int64_t last_ns, std::int64_t now_ns,
                 std::int64_t silence_ns, double rate_hz, const std::string& where) {
   if (last_ns == 0) {
-    report.add(name, HealthLevel::kStale, "nothing received yet on " + where, 0.0);
+    add_entry(report, name, HealthLevel::kStale, "nothing received yet on " + where, 0.0);
   } else if (now_ns - last_ns > silence_ns) {
     const double silent_s = static_cast<double>(now_ns - last_ns) * 1e-9;
-    report.add(name, HealthLevel::kError, fmt::format("silent for {:.0f} s on {}", silent_s, where), 0.0);
+    add_entry(report, name, HealthLevel::kError, fmt::format("silent for {:.0f} s on {}", silent_s, where),
+              0.0);
   } else {
-    report.add(name, HealthLevel::kOk, fmt::format("{:.1f} per second", rate_hz), rate_hz);
+    add_entry(report, name, HealthLevel::kOk, fmt::format("{:.1f} per second", rate_hz), rate_hz);
   }
 }
 
@@ -60,24 +63,24 @@ void add_barometer_device(HealthReport& report, const BarometerSettings& setting
   const std::string place = now.place.data();
   const std::int64_t age_ns = now_ns - device.last_sample_ns;
   if (device.state == BarometerState::kStarting) {
-    report.add("barometer", HealthLevel::kStale, place + ": starting", 0.0);
+    add_entry(report, "barometer", HealthLevel::kStale, place + ": starting", 0.0);
   } else if (device.state != BarometerState::kMeasuring) {
-    report.add("barometer", HealthLevel::kError, place + ": " + device.fault.data(), 0.0);
-  } else if (age_ns > kSilenceNs + period_ns(settings)) {
-    // The thread itself hangs in the kernel, or gets no processor.
-    report.add("barometer", HealthLevel::kError,
-               fmt::format("{}: silent for {:.0f} s", place, static_cast<double>(age_ns) * 1e-9), 0.0);
+    add_entry(report, "barometer", HealthLevel::kError, place + ": " + device.fault.data(), 0.0);
+  } else if (age_ns > kSensorSilenceNs + period_ns(settings)) {
+    // The thread hangs in the kernel or gets no processor time.
+    add_entry(report, "barometer", HealthLevel::kError,
+              fmt::format("{}: silent for {:.0f} s", place, static_cast<double>(age_ns) * 1e-9), 0.0);
   } else {
-    report.add("barometer", HealthLevel::kOk, fmt::format("{:.1f} per second from {}", rate_hz, place),
-               rate_hz);
+    add_entry(report, "barometer", HealthLevel::kOk, fmt::format("{:.1f} per second from {}", rate_hz, place),
+              rate_hz);
   }
   const BarometerCounters& earlier = before.device.counters;
   add_count(report, "barometer/io_errors", device.counters.io_errors, earlier.io_errors,
             "accesses that failed");
   add_count(report, "barometer/resets", device.counters.resets, earlier.resets,
-            "times that the sensor lost its settings: is its power sound?");
+            "resets of the sensor: it lost its settings, check its power supply");
   add_count(report, "barometer/implausible", device.counters.implausible, earlier.implausible,
-            "readings that cannot be air pressure, refused");
+            "readings outside of the range of air pressure, refused");
   add_count(report, "barometer/no_memory", now.samples_without_memory, before.samples_without_memory,
             "samples dropped: no free chunk of shared memory");
 }
@@ -86,12 +89,12 @@ void add_calibration(HealthReport& report, const std::string& sensor, std::uint6
                      std::uint64_t outside_before, std::uint64_t without_temperature,
                      std::uint64_t without_temperature_before) {
   add_count(report, (sensor + "/outside_calibration").c_str(), outside, outside_before,
-            "samples outside of the calibrated range: the nearest correction was used");
+            "samples outside of the calibrated range, corrected as at its edge");
   add_count(report, (sensor + "/no_temperature").c_str(), without_temperature, without_temperature_before,
-            "samples without the temperature that the calibration needs: the last known was used");
+            "samples without a temperature, calibrated with the last known one");
 }
 
-void add_input(HealthReport& report, const InertialStatus& now, const InertialStatus& before) {
+void add_input(HealthReport& report, const SampleThreadStatus& now, const SampleThreadStatus& before) {
   const auto& counters = now.counters;
   const auto& earlier = before.counters;
   add_count(report, "input/refused", counters.malformed + counters.implausible + counters.unknown_kind,
@@ -100,27 +103,33 @@ void add_input(HealthReport& report, const InertialStatus& now, const InertialSt
   add_count(report, "barometer/refused", now.refused_pressure, before.refused_pressure,
             "baro lines refused: barometer.source is not input");
   add_count(report, "input/not_of_this_role", now.not_of_this_role, before.not_of_this_role,
-            "samples that a base station has no use for, left out");
-  add_count(report, "input/clock_steps", now.clock_steps, before.clock_steps, "a sender's clock was set");
+            "IMU, wheel and base samples, which a base station does not use");
+  add_count(report, "input/clock_steps", now.clock_steps, before.clock_steps,
+            "times that a sender's clock was set");
   add_count(report, "input/dropped_by_kernel", now.dropped_by_kernel, before.dropped_by_kernel,
-            "datagrams dropped by the kernel: the machine is too busy");
+            "datagrams dropped by the kernel: the machine is overloaded");
   add_count(report, "input/no_memory", now.samples_without_memory, before.samples_without_memory,
             "samples dropped: no free chunk of shared memory");
 }
 
-std::vector<std::string> news(const HealthReport& report, LevelChanges& changes) {
+std::vector<std::string> level_changes(const HealthReport& report, LevelChanges& known) {
   std::vector<std::string> lines;
   for (std::uint32_t i = 0; i < report.entry_count; ++i) {
     const ipc::HealthEntry& entry = report.entries[i];
-    if (auto line = changes.note(entry.name, entry.level, entry.message)) lines.push_back(std::move(*line));
+    if (auto line = known.note(entry.name, entry.level, entry.message)) lines.push_back(std::move(*line));
   }
   return lines;
 }
 
 void add_refusals(HealthReport& report, const std::vector<std::string>& realtime_refusals) {
   for (std::size_t i = 0; i < realtime_refusals.size(); ++i) {
-    report.add("realtime/" + std::to_string(i + 1), HealthLevel::kWarning, realtime_refusals[i], 0.0);
+    add_entry(report, "realtime/" + std::to_string(i + 1), HealthLevel::kWarning, realtime_refusals[i], 0.0);
   }
+}
+
+void add_library_faults(HealthReport& report, std::uint64_t now, std::uint64_t before) {
+  add_count(report, "shared_memory/faults", now, before,
+            "faults that the shared-memory library reported and survived");
 }
 
 }  // namespace isobar

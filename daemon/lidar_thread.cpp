@@ -7,31 +7,21 @@ namespace isobar {
 
 LidarThread::LidarThread(const velodyne::VelodyneConfig& config, const std::string& address,
                          std::uint16_t port, ThreadSettings settings)
-    : settings_(std::move(settings)),
-      receiver_(address, port),
+    : receiver_(address, port),
       decoder_(config),
       publisher_(ipc::topics::kLidarScan),
-      deadline_(settings_.deadline_ms) {}
+      deadline_(settings.deadline_ms),
+      worker_(std::move(settings), receiver_, [this] { loop(); }) {}
 
 LidarThread::~LidarThread() {
-  stop();
+  worker_.stop();
   if (loaned_ != nullptr) publisher_.discard(loaned_);
 }
 
-void LidarThread::start() {
-  thread_ = std::thread([this] { loop(); });
-}
-
-void LidarThread::stop() noexcept {
-  receiver_.stop();
-  if (thread_.joinable()) thread_.join();
-}
-
 void LidarThread::loop() noexcept {
-  (void)apply_to_this_thread(settings_);
   loaned_ = publisher_.loan();
   receive_until_stopped(
-      receiver_, heartbeat_, [this](const ReceivedDatagram& datagram) { take_packet(datagram); },
+      receiver_, worker_.heartbeat(), [this](const ReceivedDatagram& datagram) { take_packet(datagram); },
       [this] {
         report();
         pause();
@@ -39,42 +29,43 @@ void LidarThread::loop() noexcept {
 }
 
 void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
-  own_.last_packet_ns = datagram.stamp_ns;
-  Scan& scan = loaned_ != nullptr ? *loaned_ : unpublished_;
-  if (decoder_.add_packet(datagram.payload, datagram.stamp_ns, scan).scan_complete) hand_over();
+  draft_status_.last_packet_ns = datagram.stamp_ns;
+  Scan& scan = loaned_ != nullptr ? *loaned_ : spare_scan_;
+  if (decoder_.add_packet(datagram.payload, datagram.stamp_ns, scan).scan_complete) publish_scan();
 }
 
-void LidarThread::hand_over() noexcept {
-  pacing_.scan_ended((loaned_ != nullptr ? *loaned_ : unpublished_).end_stamp_ns);
+void LidarThread::publish_scan() noexcept {
+  pacing_.scan_ended((loaned_ != nullptr ? *loaned_ : spare_scan_).end_stamp_ns);
   if (loaned_ != nullptr) {
     const std::int64_t end_ns = loaned_->end_stamp_ns;
     publisher_.publish(loaned_);
     deadline_.note(end_ns, RobotClock::now_ns());
   } else {
-    ++own_.scans_without_memory;
+    ++draft_status_.scans_without_memory;
   }
   loaned_ = publisher_.loan();
 }
 
-// Only after a packet that is of now: what has gathered in the socket is fetched first.
+// Drain the backlog before sleeping: pause only after a packet younger than a millisecond.
 void LidarThread::pause() noexcept {
-  constexpr std::int64_t kOfNowNs = 1'000'000;
+  constexpr std::int64_t kFreshNs = 1'000'000;
   constexpr std::int64_t kNsPerMs = 1'000'000;
   const std::int64_t now_ns = RobotClock::now_ns();
-  if (now_ns - own_.last_packet_ns > kOfNowNs) return;
+  if (now_ns - draft_status_.last_packet_ns > kFreshNs) return;
   if (const std::int64_t pause_ns = pacing_.pause_ns(now_ns); pause_ns > 0) {
     receiver_.pause(static_cast<int>(pause_ns / kNsPerMs));
   }
 }
 
 void LidarThread::report() noexcept {
-  if (decoder_.counters().wrong_model > own_.counters.wrong_model) {
-    decoder_.wrong_model_message().copy(own_.wrong_model_message.data(), own_.wrong_model_message.size() - 1);
+  if (decoder_.counters().wrong_model > draft_status_.counters.wrong_model) {
+    auto& message = draft_status_.wrong_model_message;
+    decoder_.wrong_model_message().copy(message.data(), message.size() - 1);
   }
-  own_.counters = decoder_.counters();
-  own_.punctuality = deadline_.status();
-  own_.dropped_by_kernel = receiver_.dropped_by_kernel();
-  status_.put(own_);
+  draft_status_.counters = decoder_.counters();
+  draft_status_.punctuality = deadline_.status();
+  draft_status_.dropped_by_kernel = receiver_.dropped_by_kernel();
+  status_.put(draft_status_);
 }
 
 }  // namespace isobar

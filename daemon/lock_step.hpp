@@ -1,53 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pipeline in lock step: every sample passes all stages before the next one is looked at. No scan is
-// dropped, and the same input gives the same output to the last bit. The live daemon runs the same stages,
-// one thread each.
+// The pipeline in lock step: every sample passes all stages before the next one. No scan is dropped, and the
+// same input gives the same output, bit for bit. The live daemon runs the same stages, one thread each.
 //
 //   packets ─▶ decoder ─▶ scan ──────────────┐
 //   samples ─▶ prior estimator ─▶ prior ─────┴▶ registration ─▶ pose, registered scan ─▶ map ─▶ snapshot
 #pragma once
 
-#include <Eigen/Geometry>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <vector>
 
 #include "core/estimates.hpp"
 #include "core/map/local_map.hpp"
 #include "core/prior/prior_estimator.hpp"
-#include "core/registration/registration.hpp"
-#include "daemon/silence.hpp"
+#include "daemon/registration_stage.hpp"
+#include "daemon/scan_queue.hpp"
+#include "daemon/stage_settings.hpp"
 #include "drivers/velodyne/velodyne_decoder.hpp"
 #include "run/recording/recording_reader.hpp"
 
 namespace isobar {
 
-/// Everything that the stages need to know.
-struct StageSettings {
-  velodyne::VelodyneConfig lidar;
-  PriorConfig prior;
-  RegistrationConfig registration;
-  MapConfig map;
-  Method method = Method::k3Dof;
-  Eigen::Isometry3d T_base_lidar = Eigen::Isometry3d::Identity();
-};
-
-/// Receives what the pipeline makes.
-class EstimateSink {
- public:
-  virtual ~EstimateSink() = default;
-  /// A pose, stamps ascending. `prior` is the newest prior when it was made.
-  virtual void on_pose(const PoseEstimate& pose, const Prior& prior) = 0;
-};
-
 class LockStep {
  public:
-  /// `shelf`: takes the tiles that leave memory; null: they are forgotten.
+  /// @param sink receives the poses
+  /// @param shelf takes the tiles that leave memory; null: they are discarded
   LockStep(const StageSettings& settings, EstimateSink& sink, TileShelf* shelf = nullptr);
 
   void handle(const recording::Event& event);
-  /// Registers what still waits and puts the rest of the map on the shelf. Call once, at the end.
+  /// Registers the waiting scans and puts the rest of the map on the shelf. Call once, at the end.
   void finish();
 
   [[nodiscard]] const velodyne::VelodyneDecoder& decoder() const { return decoder_; }
@@ -59,23 +40,18 @@ class LockStep {
   void take_packet(const recording::Event& event);
   void take_imu(const ImuSample& sample);
   void queue_scan();
-  void register_waiting(bool even_without_prior);
-  void register_oldest();
-  void bridge_silence();
-  void emit(const PoseEstimate& pose, bool from_scan);
+  void register_admissible();
 
-  EstimateSink& sink_;
   velodyne::VelodyneDecoder decoder_;
   PriorEstimator prior_estimator_;
-  Registration registration_;
+  RegistrationStage registration_;
   LocalMap map_;
 
+  std::int64_t clock_ns_ = 0;  ///< stands still until finish(): scans wait for priors without a time limit
   std::unique_ptr<Scan> filling_;
-  std::deque<std::unique_ptr<Scan>> waiting_;
+  ScanQueue<std::unique_ptr<Scan>> queue_;
   std::vector<std::unique_ptr<Scan>> spare_;
   RegisteredScan registered_;
-  Prior newest_prior_;
-  SilenceBridge silence_;
   std::uint64_t scans_ = 0;
 };
 

@@ -13,73 +13,61 @@ namespace isobar {
 
 MapThread::MapThread(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, double cloud_interval_s,
                      FileTileStore* store, ThreadSettings settings)
-    : settings_(std::move(settings)),
-      map_(config, T_base_lidar, store),
+    : map_(config, T_base_lidar, store),
       snapshots_(map_.snapshot()),
       scans_(ipc::topics::kRegisteredScan),
       clouds_(ipc::topics::kMapCloud),
       waiter_({&scans_.raw()}),
       store_(store),
       cloud_interval_ns_(static_cast<std::int64_t>(cloud_interval_s * 1e9)),
-      deadline_(settings_.deadline_ms) {}
-
-MapThread::~MapThread() { stop(); }
-
-void MapThread::start() {
-  thread_ = std::thread([this] { loop(); });
-}
-
-void MapThread::stop() noexcept {
-  waiter_.stop();
-  if (thread_.joinable()) thread_.join();
-}
+      deadline_(settings.deadline_ms),
+      worker_(std::move(settings), waiter_, [this] { loop(); }) {}
 
 void MapThread::loop() noexcept {
-  (void)apply_to_this_thread(settings_);
-  drain_until_stopped(waiter_, heartbeat_, [this] { drain(); });
+  drain_until_stopped(waiter_, worker_.heartbeat(), [this] { drain(); });
   map_.store_all();
-  say_what_is_lost();
+  log_tile_losses();
 }
 
-// Freshness wins: of several scans that wait only the newest goes into the map, the registration needs it
-// now.
+// Freshness wins: only the newest waiting scan enters the map, because the registration needs the map around
+// it now.
 void MapThread::drain() noexcept {
   auto newest = scans_.take();
   while (auto newer = scans_.take()) {
     newest = std::move(newer);
-    ++overtaken_;
+    ++superseded_;
   }
   if (newest) add(*newest);
-  say_what_is_lost();
-  own_.dropped_scans = scans_.dropped() + overtaken_;
-  own_.punctuality = deadline_.status();
-  own_.cells = map_.cell_count();
-  status_.put(own_);
+  log_tile_losses();
+  draft_status_.dropped_scans = scans_.dropped() + superseded_;
+  draft_status_.punctuality = deadline_.status();
+  draft_status_.cells = map_.cell_count();
+  status_.put(draft_status_);
 }
 
 void MapThread::add(const RegisteredScan& scan) noexcept {
   const CpuTimer timer;
   if (map_.update(scan)) {
     snapshots_.publish(map_.snapshot());
-    own_.update_ms = timer.elapsed_ms();
+    draft_status_.update_ms = timer.elapsed_ms();
   }
   deadline_.note(scan.handed_over_ns, RobotClock::now_ns());
   publish_cloud(scan.pose.stamp_ns);
 }
 
-void MapThread::say_what_is_lost() noexcept {
+void MapThread::log_tile_losses() noexcept {
   if (store_ == nullptr) return;
-  // The first of each kind; how many it became is in counters.csv.
+  // Only the first loss of each kind is logged; counters.csv has the totals.
   const TileStoreCounters& now = store_->counters();
-  if (now.refused > 0 && !said_.refused) {
-    spdlog::error("map: {}; tiles that leave memory are lost while that lasts, the pose goes on",
+  if (now.refused > 0 && !logged_.refused) {
+    spdlog::error("map: {}; until this ends, tiles that leave memory are lost; poses continue",
                   now.first_refusal);
   }
-  if (now.damaged > 0 && !said_.damaged) spdlog::error("map: {}; that tile is lost", now.first_damage);
-  if (now.forgotten > 0 && !said_.forgotten) {
-    spdlog::warn("map: map.max_disk_gb is reached; what left memory longest ago is forgotten from now on");
+  if (now.damaged > 0 && !logged_.damaged) spdlog::error("map: {}; that tile is lost", now.first_damage);
+  if (now.forgotten > 0 && !logged_.forgotten) {
+    spdlog::warn("map: map.max_disk_gb is reached; from now on the oldest stored tiles are deleted");
   }
-  said_ = {now.refused > 0, now.damaged > 0, now.forgotten > 0};
+  logged_ = {now.refused > 0, now.damaged > 0, now.forgotten > 0};
 }
 
 void MapThread::publish_cloud(std::int64_t stamp_ns) noexcept {

@@ -3,19 +3,28 @@
 
 #include <chrono>
 
-#include "daemon/worker_watch.hpp"
+#include "daemon/worker.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar {
 
-/// The life of a thread that lives on messages: `drain()` whenever some wait, and a last time when the waiter
-/// was stopped. It may not throw.
-/// @param limit without messages drain() is called so often; zero: never
-template <class Drain>
+/// Timeout of a loop that only messages and wake() wake.
+struct NoTimeout {
+  std::chrono::nanoseconds operator()() const noexcept { return {}; }
+};
+
+/// Loop of a thread that consumes messages: one beat and one `drain()` per wake-up, and a last `drain()`
+/// after the waiter was stopped.
+/// @param drain handles all waiting messages; must not throw
+/// @param timeout returns the longest wait before the next round; zero: unlimited
+template <class Drain, class Timeout = NoTimeout>
 void drain_until_stopped(ipc::Waiter& waiter, Heartbeat& heartbeat, const Drain& drain,
-                         std::chrono::nanoseconds limit = {}) noexcept {
-  const bool limited = limit.count() > 0;
-  while ((limited ? waiter.wait_for(limit) : waiter.wait()) != ipc::Waiter::Event::kStopped) {
+                         const Timeout& timeout = {}) noexcept {
+  const auto wait = [&] {
+    const std::chrono::nanoseconds limit = timeout();
+    return limit.count() > 0 ? waiter.wait_for(limit) : waiter.wait();
+  };
+  while (wait() != ipc::Waiter::Event::kStopped) {
     heartbeat.beat();
     drain();
   }

@@ -10,26 +10,14 @@
 namespace isobar {
 
 OutputThread::OutputThread(files::RunOutput& output, ThreadSettings settings)
-    : settings_(std::move(settings)),
-      output_(&output),
+    : output_(&output),
       poses_(ipc::topics::kPose),
       priors_(ipc::topics::kPrior),
-      waiter_({&poses_.raw()}) {}
-
-OutputThread::~OutputThread() { stop(); }
-
-void OutputThread::start() {
-  thread_ = std::thread([this] { loop(); });
-}
-
-void OutputThread::stop() noexcept {
-  waiter_.stop();
-  if (thread_.joinable()) thread_.join();
-}
+      waiter_({&poses_.raw()}),
+      worker_(std::move(settings), waiter_, [this] { loop(); }) {}
 
 void OutputThread::loop() noexcept {
-  (void)apply_to_this_thread(settings_);
-  drain_until_stopped(waiter_, heartbeat_, [this] { drain(); });
+  drain_until_stopped(waiter_, worker_.heartbeat(), [this] { drain(); });
 }
 
 void OutputThread::drain() noexcept {
@@ -39,7 +27,7 @@ void OutputThread::drain() noexcept {
     try {
       output_->add_pose(*pose, newest_prior_);
     } catch (const std::exception& error) {
-      spdlog::error("{}; poses are no longer written, they still go out", error.what());
+      spdlog::error("{}; poses are still published but no longer written", error.what());
       output_ = nullptr;
     }
   }

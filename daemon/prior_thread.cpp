@@ -9,58 +9,47 @@
 namespace isobar {
 namespace {
 
-/// An IMU sample wakes this thread, the slow sensors do not, as only an IMU sample makes a prior. While it is
-/// silent they are looked at so often: their queues hold 256 samples, and the health report wants to know
-/// that they come.
-constexpr std::chrono::milliseconds kWithoutImu(100);
+/// Polling interval without an IMU. Only IMU samples wake this thread, since only they produce priors; the
+/// slow sensors are polled, so that their queues (256 samples) do not overflow and the health report sees
+/// them.
+constexpr std::chrono::milliseconds kPollWithoutImu(100);
 
 }  // namespace
 
 PriorThread::PriorThread(const PriorConfig& config, ThreadSettings settings)
-    : settings_(std::move(settings)),
-      estimator_(config),
+    : estimator_(config),
       imu_(ipc::topics::kImu),
       barometer_(ipc::topics::kBarometer),
       base_barometer_(ipc::topics::kBaseBarometer),
       wheel_(ipc::topics::kWheel),
       publisher_(ipc::topics::kPrior),
       waiter_({&imu_.raw()}),
-      deadline_(settings_.deadline_ms) {}
-
-PriorThread::~PriorThread() { stop(); }
-
-void PriorThread::start() {
-  thread_ = std::thread([this] { loop(); });
-}
-
-void PriorThread::stop() noexcept {
-  waiter_.stop();
-  if (thread_.joinable()) thread_.join();
-}
+      deadline_(settings.deadline_ms),
+      worker_(std::move(settings), waiter_, [this] { loop(); }) {}
 
 void PriorThread::loop() noexcept {
-  (void)apply_to_this_thread(settings_);
   drain_until_stopped(
-      waiter_, heartbeat_, [this] { drain(); }, kWithoutImu);
+      waiter_, worker_.heartbeat(), [this] { drain(); }, [] { return kPollWithoutImu; });
 }
 
-// Seen here, behind all the ways in which a sample comes: by UDP or over DDS.
+// Counted here, where samples from UDP and from DDS arrive on the same topics.
 template <class Sample>
 ipc::Received<Sample> PriorThread::take(ipc::Subscriber<Sample>& from, datagram::Kind kind) noexcept {
   ipc::Received<Sample> sample = from.take();
   if (sample) {
-    ++own_.samples[static_cast<std::size_t>(kind)];
-    own_.last_sample_ns[static_cast<std::size_t>(kind)] = sample->stamp_ns;
+    ++draft_status_.samples[static_cast<std::size_t>(kind)];
+    draft_status_.last_sample_ns[static_cast<std::size_t>(kind)] = sample->stamp_ns;
   }
   return sample;
 }
 
-// The slow sensors first: what they measured before an IMU sample belongs into its prior.
+// Slow sensors first: a measurement older than an IMU sample contributes to that sample's prior.
 void PriorThread::drain() noexcept {
   using datagram::Kind;
   while (const auto sample = take(base_barometer_, Kind::kBasePressure)) {
-    if (sample->station < own_.base_stations.size())
-      own_.base_stations[sample->station].add(sample->stamp_ns);
+    if (sample->station < draft_status_.base_stations.size()) {
+      draft_status_.base_stations[sample->station].add(sample->stamp_ns);
+    }
     estimator_.add_base_pressure(*sample);
   }
   while (const auto sample = take(barometer_, Kind::kPressure)) estimator_.add_pressure(*sample);
@@ -72,19 +61,20 @@ void PriorThread::drain() noexcept {
     deadline_.note(prior.stamp_ns, RobotClock::now_ns());
     describe(prior);
   }
-  own_.counters = estimator_.counters();
-  own_.punctuality = deadline_.status();
-  own_.barometers = estimator_.barometers();
-  own_.dropped_samples = imu_.dropped() + barometer_.dropped() + base_barometer_.dropped() + wheel_.dropped();
-  status_.put(own_);
+  draft_status_.counters = estimator_.counters();
+  draft_status_.punctuality = deadline_.status();
+  draft_status_.barometers = estimator_.barometers();
+  draft_status_.dropped_samples =
+      imu_.dropped() + barometer_.dropped() + base_barometer_.dropped() + wheel_.dropped();
+  status_.put(draft_status_);
 }
 
 void PriorThread::describe(const Prior& prior) noexcept {
-  own_.stamp_ns = prior.stamp_ns;
-  own_.height_m = prior.height_m;
-  own_.height_variance_m2 = prior.height_variance_m2;
-  own_.height_source = prior.height_source;
-  own_.attitude_valid = prior.attitude_valid;
+  draft_status_.stamp_ns = prior.stamp_ns;
+  draft_status_.height_m = prior.height_m;
+  draft_status_.height_variance_m2 = prior.height_variance_m2;
+  draft_status_.height_source = prior.height_source;
+  draft_status_.attitude_valid = prior.attitude_valid;
 }
 
 }  // namespace isobar

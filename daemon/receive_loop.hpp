@@ -3,20 +3,20 @@
 
 #include <ctime>
 
-#include "daemon/worker_watch.hpp"
+#include "daemon/worker.hpp"
 #include "drivers/datagram/udp.hpp"
 
 namespace isobar {
 
-/// The life of a thread that lives on datagrams: `take(datagram)` for each of them, `report()` after each and
-/// five times a second without, each time with a sign of life. Returns once the receiver was stopped. Neither
-/// may throw.
+/// Loop of a thread that receives datagrams: `take(datagram)` for each datagram; a beat and `report()` after
+/// each datagram and every 200 ms without one. Returns after the receiver was stopped. Both must not throw.
 template <class Take, class Report>
 void receive_until_stopped(UdpReceiver& receiver, Heartbeat& heartbeat, const Take& take,
                            const Report& report) noexcept {
   constexpr int kReportEveryMs = 200;
-  // A socket that fails at once, again and again, must not keep a core from threads of lower priority.
-  constexpr timespec kAfterError{0, 10'000'000};
+  // Pause of 10 ms: a socket that fails at once, repeatedly, must not keep a core from threads of lower
+  // priority.
+  constexpr timespec kPauseAfterError{0, 10'000'000};
   ReceivedDatagram datagram;
   for (;;) {
     heartbeat.beat();
@@ -30,7 +30,7 @@ void receive_until_stopped(UdpReceiver& receiver, Heartbeat& heartbeat, const Ta
       case UdpReceiver::Status::kTimeout:
         break;
       case UdpReceiver::Status::kError:
-        nanosleep(&kAfterError, nullptr);
+        nanosleep(&kPauseAfterError, nullptr);
         break;
     }
     report();

@@ -53,8 +53,9 @@ std::vector<files::RunCount> collect_counts(const recording::RecordingReader& re
   std::vector<files::RunCount> counts;
   for (const recording::Count& count : reader.counts())
     counts.push_back({count.name, count.count, count.first_message});
-  append(counts, counts_of(pipeline.decoder().counters(), pipeline.decoder().wrong_model_message()));
-  append(counts, counts_of(pipeline.prior_estimator().counters()));
+  run_counts::append(counts,
+                     counts_of(pipeline.decoder().counters(), pipeline.decoder().wrong_model_message()));
+  run_counts::append(counts, counts_of(pipeline.prior_estimator().counters()));
   counts.push_back({"map cells seen through", pipeline.map().seen_through_count(), ""});
   return counts;
 }
@@ -137,7 +138,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   summary.map_points = output.map_points();
   summary.recorded_s = last_ns > first_ns ? static_cast<double>(last_ns - first_ns) * 1e-9 : 0.0;
   summary.counts = collect_counts(reader, pipeline);
-  append(summary.counts, map_counts);
+  run_counts::append(summary.counts, map_counts);
   if (sink.without_height() > 0 && reader.manifest().barometer) {
     summary.warnings.emplace_back("no height from pressure for " + std::to_string(sink.without_height()) +
                                   " scans: 3-DOF ran as 4-DOF there");

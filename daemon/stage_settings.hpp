@@ -1,23 +1,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From configuration (and recording) to what the stages need.
+// Settings of the stages, from the configuration and, in a replay, from the recording.
 #pragma once
 
+#include <Eigen/Geometry>
+
 #include "config/config.hpp"
-#include "daemon/lock_step.hpp"
+#include "core/map/local_map.hpp"
+#include "core/prior/prior_estimator.hpp"
+#include "core/registration/registration.hpp"
+#include "drivers/velodyne/velodyne_decoder.hpp"
 #include "run/recording/manifest.hpp"
 #include "run/tile_store/file_tile_store.hpp"
 
 namespace isobar {
 
-/// Settings of a live run. Throws ConfigError for a lidar model that has no driver.
+/// Settings of all stages.
+struct StageSettings {
+  velodyne::VelodyneConfig lidar;
+  PriorConfig prior;
+  RegistrationConfig registration;
+  MapConfig map;
+  Method method = Method::k3Dof;
+  Eigen::Isometry3d T_base_lidar = Eigen::Isometry3d::Identity();
+};
+
+/// Settings of a live run.
+/// @throws ConfigError for a lidar model without a driver
 StageSettings stage_settings(const Config& config);
 
-/// How the map of a run lies on the disk.
+/// Layout and limits of the map of a run on the disk.
 MapHeader map_header(const Config& config);
 TileStoreLimits map_limits(const Config& config);
 
-/// `config` with the sensors and mounts of a recording in place of its own. Throws DataError for a recording
-/// without lidar or IMU, or with a lidar that has no driver: nothing can be registered without them.
+/// `config` with its sensors and mounts replaced by those of a recording.
+/// @throws DataError for a recording without lidar or IMU, or with a lidar model without a driver
 Config with_sensors_of(const recording::Manifest& manifest, Config config);
 
 }  // namespace isobar

@@ -8,64 +8,52 @@
 namespace isobar {
 namespace {
 
-/// Memory of the noise, in samples: some seconds of a 32 Hz barometer.
+/// Memory of the noise estimate: 6 s of a 32 Hz barometer.
 constexpr double kNoiseMemorySamples = 200.0;
-/// The estimate is told once it rests on so many samples: by then its own error is below a third.
-constexpr std::uint64_t kSamplesToKnow = 50;
+/// The noise estimate is published from this many samples on: by then its own error is below a third.
+constexpr std::uint64_t kMinNoiseSamples = 50;
 
 }  // namespace
 
 StationThread::StationThread(const AltimeterConfig& config, const CompensationConfig& compensation,
                              ThreadSettings settings)
-    : settings_(std::move(settings)),
-      compensation_(compensation),
+    : compensation_(compensation),
       noise_({config.initial_noise_pa, config.noise_floor_pa, config.noise_ceiling_pa, kNoiseMemorySamples}),
       barometer_(ipc::topics::kBarometer),
       publisher_(ipc::topics::kBaseBarometer),
-      waiter_({&barometer_.raw()}) {}
-
-StationThread::~StationThread() { stop(); }
-
-void StationThread::start() {
-  thread_ = std::thread([this] { loop(); });
-}
-
-void StationThread::stop() noexcept {
-  waiter_.stop();
-  if (thread_.joinable()) thread_.join();
-}
+      waiter_({&barometer_.raw()}),
+      worker_(std::move(settings), waiter_, [this] { loop(); }) {}
 
 void StationThread::loop() noexcept {
-  (void)apply_to_this_thread(settings_);
-  drain_until_stopped(waiter_, heartbeat_, [this] { drain(); });
+  drain_until_stopped(waiter_, worker_.heartbeat(), [this] { drain(); });
 }
 
 void StationThread::drain() noexcept {
   while (const auto sample = barometer_.take()) take(*sample);
-  own_.dropped_samples = barometer_.dropped();
-  status_.put(own_);
+  draft_status_.dropped_samples = barometer_.dropped();
+  status_.put(draft_status_);
 }
 
 void StationThread::take(const PressureSample& raw) noexcept {
   PressureSample measured = raw;
   const SensorCompensation::Result result = compensation_.apply(measured);
-  own_.outside_calibration += result == SensorCompensation::Result::kOutside ? 1U : 0U;
-  own_.without_temperature += result == SensorCompensation::Result::kNoTemperature ? 1U : 0U;
-  // A sensor that is polled faster than it converts repeats its value, which is no measurement of noise.
-  const bool changed = own_.samples == 0 || measured.pressure_pa != own_.newest.pressure_pa;
-  if (own_.cadence.silent(measured.stamp_ns)) noise_.restart();
+  draft_status_.outside_calibration += result == SensorCompensation::Result::kOutside ? 1U : 0U;
+  draft_status_.without_temperature += result == SensorCompensation::Result::kNoTemperature ? 1U : 0U;
+  // A sensor polled faster than it converts repeats its value; repeats are no measurement of noise.
+  const bool changed = draft_status_.samples == 0 || measured.pressure_pa != draft_status_.newest.pressure_pa;
+  if (draft_status_.cadence.silent(measured.stamp_ns)) noise_.restart();
   if (changed) {
     noise_.add(measured.pressure_pa);
-    ++measured_;
-    own_.changed_ns = measured.stamp_ns;
+    ++noise_samples_;
+    draft_status_.changed_ns = measured.stamp_ns;
   }
-  ++own_.samples;
-  own_.cadence.add(measured.stamp_ns);
-  own_.newest = measured;
-  if (std::isnan(measured.variance_pa2) && measured_ >= kSamplesToKnow) {
-    own_.newest.variance_pa2 = noise_.variance();
+  ++draft_status_.samples;
+  draft_status_.cadence.add(measured.stamp_ns);
+  draft_status_.newest = measured;
+  if (std::isnan(measured.variance_pa2) && noise_samples_ >= kMinNoiseSamples) {
+    draft_status_.newest.variance_pa2 = noise_.variance();
   }
-  if (!publisher_.send(own_.newest)) ++own_.samples_without_memory;
+  if (!publisher_.send(draft_status_.newest)) ++draft_status_.samples_without_memory;
 }
 
 }  // namespace isobar

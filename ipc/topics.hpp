@@ -43,6 +43,8 @@ struct HealthEntry {
 /// The health of isobard, once a second.
 struct HealthReport {
   static constexpr std::uint32_t kMaxEntries = 64;
+  /// Name of the entry that counts those that did not fit; the last place is kept for it.
+  static constexpr std::string_view kDroppedName = "health/dropped";
 
   std::int64_t stamp_ns = 0;
   std::uint32_t entry_count = 0;     ///< entries[0 … entry_count-1] are valid
@@ -50,20 +52,32 @@ struct HealthReport {
 
   HealthReport() {}  // NOLINT: user-written, so that loaning a chunk does not zero it all
 
-  /// Appends an entry; texts that are too long are cut. False, and nothing happens, when the report is full.
-  bool add(std::string_view name, HealthLevel level, std::string_view message, double value) noexcept {
-    if (entry_count >= kMaxEntries) {
-      return false;
+  /// Appends an entry; texts that are too long are cut.
+  /// @return false when the report is full: the entry is dropped, and the last entry, a warning named
+  /// kDroppedName,
+  ///         counts the dropped entries
+  [[nodiscard]] bool add(std::string_view name, HealthLevel level, std::string_view message,
+                         double value) noexcept {
+    constexpr std::uint32_t kLast = kMaxEntries - 1;
+    if (entry_count < kLast) {
+      write(entries[entry_count++], name, level, message, value);
+      return true;
     }
-    HealthEntry& entry = entries[entry_count++];
+    const double dropped = entry_count == kMaxEntries ? entries[kLast].value + 1.0 : 1.0;
+    write(entries[kLast], kDroppedName, HealthLevel::kWarning, "entries dropped: this report is full",
+          dropped);
+    entry_count = kMaxEntries;
+    return false;
+  }
+
+ private:
+  static void write(HealthEntry& entry, std::string_view name, HealthLevel level, std::string_view message,
+                    double value) noexcept {
     copy_text(name, entry.name, HealthEntry::kNameBytes);
     copy_text(message, entry.message, HealthEntry::kMessageBytes);
     entry.value = value;
     entry.level = level;
-    return true;
   }
-
- private:
   static void copy_text(std::string_view from, char* to, std::size_t capacity) noexcept {
     const std::size_t length = from.size() < capacity - 1 ? from.size() : capacity - 1;
     std::memcpy(to, from.data(), length);

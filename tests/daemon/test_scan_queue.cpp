@@ -110,9 +110,9 @@ TEST_CASE("of a gap longer than can be told every scan is counted and the newest
   queue.push(scan(101), 101 * kRevolution);
   CHECK(queue.take(101 * kRevolution, 101 * kRevolution));
   CHECK(queue.dropped_count() == 100);
-  REQUIRE(queue.dropped().size() == Queue::kMaxTold);
+  REQUIRE(queue.dropped().size() == Queue::kMaxListed);
   CHECK(queue.dropped().back().sequence == 100);
-  CHECK(queue.dropped().front().sequence == 101 - Queue::kMaxTold);
+  CHECK(queue.dropped().front().sequence == 101 - Queue::kMaxListed);
 }
 
 TEST_CASE("numbers that wrap are no gap, and numbers that start again are none either") {
@@ -127,6 +127,22 @@ TEST_CASE("numbers that wrap are no gap, and numbers that start again are none e
   queue.push(std::make_unique<FakeScan>(FakeScan{0, 3 * kRevolution}), 3 * kRevolution);
   CHECK(queue.take(3 * kRevolution, 3 * kRevolution));
   CHECK(queue.dropped_count() == 69);
+}
+
+TEST_CASE(
+    "in lock step every scan is registered in order: with its priors, when the queue is full, or at the "
+    "end") {
+  Queue queue(ScanQueueConfig{.reach_ns = 0, .wait_ns = 1, .admission = isobar::ScanAdmission::kEvery});
+  for (std::uint32_t i = 1; i <= 4; ++i) queue.push(scan(i), 0);
+  CHECK_FALSE(queue.take(0, kRevolution - 1));
+  REQUIRE(queue.take(0, kRevolution)->sequence == 1);  // the prior reaches the end of scan 1 only
+  CHECK_FALSE(queue.take(0, kRevolution));
+  for (std::uint32_t i = 5; i <= 6; ++i) queue.push(scan(i), 0);
+  REQUIRE(queue.take(0, kRevolution)->sequence == 2);  // five wait: the oldest goes on without its priors
+  CHECK_FALSE(queue.take(0, kRevolution));
+  for (std::uint32_t i = 3; i <= 6; ++i) REQUIRE(queue.take(1, kRevolution)->sequence == i);
+  CHECK(queue.empty());
+  CHECK(queue.dropped_count() == 0);
 }
 
 }  // namespace isobar::test::test_scan_queue

@@ -144,16 +144,24 @@ TEST_CASE("a waiter wakes for any of its readers, times out without data, and en
   CHECK(waiter.wait() == Waiter::Event::kStopped);
 }
 
-TEST_CASE("a health report cuts what is too long and refuses what is too much") {
+TEST_CASE(
+    "a health report cuts texts that are too long, and counts the entries that do not fit in its last one") {
   HealthReport report;
   const std::string longer(200, 'x');
   REQUIRE(report.add(longer, HealthLevel::kWarning, longer, 1.5));
   CHECK(std::string_view(report.entries[0].name) == std::string(HealthEntry::kNameBytes - 1, 'x'));
   CHECK(std::string_view(report.entries[0].message) == std::string(HealthEntry::kMessageBytes - 1, 'x'));
-  while (report.entry_count < HealthReport::kMaxEntries) {
+  while (report.entry_count < HealthReport::kMaxEntries - 1) {
     REQUIRE(report.add("name", HealthLevel::kOk, "", 0.0));
   }
-  CHECK_FALSE(report.add("name", HealthLevel::kOk, "", 0.0));
+  for (double dropped = 1.0; dropped <= 3.0; dropped += 1.0) {
+    CHECK_FALSE(report.add("name", HealthLevel::kOk, "", 0.0));
+    REQUIRE(report.entry_count == HealthReport::kMaxEntries);
+    const HealthEntry& last = report.entries[HealthReport::kMaxEntries - 1];
+    CHECK(std::string_view(last.name) == HealthReport::kDroppedName);
+    CHECK(last.level == HealthLevel::kWarning);
+    CHECK(last.value == dropped);
+  }
 }
 
 TEST_CASE("another process reads what this one writes") {

@@ -61,6 +61,7 @@ rm "$work/run" # the value freezes
 wait_for "barometer: error: barometer $device: the same value again and again" "$work/iio.log"
 stop "$daemon"
 grep -q '^baro lines refused,3' "$work/iio/counters.csv" || fail "the refused lines are not in counters.csv: $(grep refused "$work/iio/counters.csv")"
+grep -q '^shared memory faults,0' "$work/iio/counters.csv" || fail "counters.csv does not count the faults of shared memory"
 readings=$(grep '^barometer readings,' "$work/iio/counters.csv" | cut -d, -f2)
 [ "$readings" -ge 10 ] || fail "only $readings readings"
 ok "$readings readings, 3 datagrams refused"

@@ -65,8 +65,8 @@ struct Rig {
                   ThreadSettings{"barometer", 0, {}}),
         reader(ipc::topics::kBarometer),
         waiter({&reader.raw()}),
-        monitor(config(), {}) {
-    barometer.start();
+        monitor(config()) {
+    barometer.worker().start();
   }
   static Config config() {
     Config config;
@@ -156,35 +156,8 @@ TEST_CASE("a thread that waits five seconds for its next try ends at once when i
   rig.live.change([](auto& chip) { chip.unplugged = true; });
   rig.count(2'000ms);
   const auto before = std::chrono::steady_clock::now();
-  rig.barometer.stop();
+  rig.barometer.worker().stop();
   CHECK(std::chrono::steady_clock::now() - before < 1s);
-}
-
-TEST_CASE("health is reported once a second, and at once when the barometer fails or comes back") {
-  HealthMonitor monitor(Rig::config(), {});
-  StatusSnapshot now;
-  now.now_ns = 5'000'000'000;
-  now.barometer.present = true;
-  int reports = 0;
-  const auto look = [&] {
-    now.now_ns += 100'000'000;
-    if (!monitor.due(now)) return;
-    ipc::HealthReport report;
-    monitor.fill(now, report);
-    ++reports;
-  };
-  now.barometer.device.state = BarometerState::kMeasuring;
-  for (int i = 0; i < 10; ++i) look();
-  CHECK(reports == 0);  // within a second all sensors have had their chance
-  look();
-  CHECK(reports == 1);
-  for (int i = 0; i < 3; ++i) look();
-  CHECK(reports == 1);
-  now.barometer.device.state = BarometerState::kSilent;
-  look();
-  CHECK(reports == 2);
-  for (int i = 0; i < 30; ++i) look();
-  CHECK(reports == 5);
 }
 
 }  // namespace isobar::test::test_barometer_thread

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "daemon/silence.hpp"
+#include "daemon/silence_bridge.hpp"
 
 #include <doctest/doctest.h>
 
-namespace isobar::test::test_silence {
+namespace isobar::test::test_silence_bridge {
 
 using isobar::SilenceBridge;
 
@@ -36,4 +36,4 @@ TEST_CASE("five seconds without lidar give a pose every 100 ms after the first 2
   CHECK_FALSE(bridge.in_order(newest_ns));
 }
 
-}  // namespace isobar::test::test_silence
+}  // namespace isobar::test::test_silence_bridge

@@ -1,53 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "daemon/inertial_thread.hpp"
+#include "daemon/sample_thread.hpp"
 
 #include "daemon/receive_loop.hpp"
 
 namespace isobar {
 
-InertialThread::InertialThread(const std::string& address, std::uint16_t port, Takes takes,
-                               ThreadSettings settings)
-    : settings_(std::move(settings)),
-      takes_(takes),
+SampleThread::SampleThread(const std::string& address, std::uint16_t port, Takes takes,
+                           ThreadSettings settings)
+    : takes_(takes),
       receiver_(address, port),
       imu_(ipc::topics::kImu),
       barometer_(ipc::topics::kBarometer),
       base_barometer_(ipc::topics::kBaseBarometer),
-      wheel_(ipc::topics::kWheel) {}
+      wheel_(ipc::topics::kWheel),
+      worker_(std::move(settings), receiver_, [this] { loop(); }) {}
 
-InertialThread::~InertialThread() { stop(); }
-
-void InertialThread::start() {
-  thread_ = std::thread([this] { loop(); });
-}
-
-void InertialThread::stop() noexcept {
-  receiver_.stop();
-  if (thread_.joinable()) thread_.join();
-}
-
-void InertialThread::loop() noexcept {
-  (void)apply_to_this_thread(settings_);
+void SampleThread::loop() noexcept {
   receive_until_stopped(
-      receiver_, heartbeat_, [this](const ReceivedDatagram& datagram) { take_datagram(datagram); },
+      receiver_, worker_.heartbeat(), [this](const ReceivedDatagram& datagram) { take_datagram(datagram); },
       [this] { report(); });
 }
 
-void InertialThread::take_datagram(const ReceivedDatagram& received) noexcept {
+void SampleThread::take_datagram(const ReceivedDatagram& received) noexcept {
   parser_.begin(received.payload);
   datagram::Sample sample;
   while (parser_.next(sample)) {
     const bool is_barometer = sample.kind == datagram::Kind::kPressure;
     if (!(is_barometer ? takes_.barometer : takes_.others)) {
-      ++(is_barometer ? own_.refused_pressure : own_.not_of_this_role);
+      ++(is_barometer ? draft_status_.refused_pressure : draft_status_.not_of_this_role);
       continue;
     }
-    if (to_robot_clock(sample, received) && !publish(sample)) ++own_.samples_without_memory;
+    if (to_robot_clock(sample, received) && !publish(sample)) ++draft_status_.samples_without_memory;
   }
 }
 
-// False for a sample of a base station that is not of now.
-bool InertialThread::to_robot_clock(datagram::Sample& sample, const ReceivedDatagram& received) noexcept {
+// False for a base-station sample that BaseStationStream refuses (old, repeated, another sender).
+bool SampleThread::to_robot_clock(datagram::Sample& sample, const ReceivedDatagram& received) noexcept {
   const bool stamped = sample.stamp_ns() != 0;
   if (!stamped) sample.set_stamp_ns(received.stamp_ns);
   if (sample.kind == datagram::Kind::kBasePressure) {
@@ -60,7 +48,7 @@ bool InertialThread::to_robot_clock(datagram::Sample& sample, const ReceivedData
   return true;
 }
 
-bool InertialThread::publish(const datagram::Sample& sample) noexcept {
+bool SampleThread::publish(const datagram::Sample& sample) noexcept {
   switch (sample.kind) {
     case datagram::Kind::kImu:
       return imu_.send(sample.imu);
@@ -74,13 +62,13 @@ bool InertialThread::publish(const datagram::Sample& sample) noexcept {
   return true;
 }
 
-void InertialThread::report() noexcept {
-  own_.counters = parser_.counters();
-  own_.dropped_by_kernel = receiver_.dropped_by_kernel();
-  own_.clock_steps = 0;
-  for (const ClockAnchor& anchor : anchors_) own_.clock_steps += anchor.steps();
-  own_.base = base_.status();
-  status_.put(own_);
+void SampleThread::report() noexcept {
+  draft_status_.counters = parser_.counters();
+  draft_status_.dropped_by_kernel = receiver_.dropped_by_kernel();
+  draft_status_.clock_steps = 0;
+  for (const ClockAnchor& anchor : anchors_) draft_status_.clock_steps += anchor.steps();
+  draft_status_.base = base_.status();
+  status_.put(draft_status_);
 }
 
 }  // namespace isobar

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/graph.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include "daemon/health_entries.hpp"
+#include "daemon/health_reporter.hpp"
+#include "daemon/level_changes.hpp"
+#include "daemon/realtime.hpp"
+#include "daemon/report_schedule.hpp"
+#include "drivers/datagram/udp.hpp"
+#include "ipc/shared_memory.hpp"
+
+namespace isobar {
+namespace {
+
+std::vector<std::string> refusals_of(const WorkerGroup& workers, const RealtimeSettings& realtime) {
+  std::vector<std::string> refusals = workers.refused_settings();
+  if (realtime.enabled) {
+    if (std::string refusal = lock_memory(); !refusal.empty()) refusals.push_back(std::move(refusal));
+  }
+  return refusals;
+}
+
+/// The supervise loop: health reports to shared memory, level changes to the log, a fed watchdog while all
+/// threads live.
+void supervise(Graph& graph, Service& service, std::vector<std::string> realtime_refusals) {
+  HealthReporter reporter(graph, std::move(realtime_refusals));
+  ReportSchedule schedule;
+  LevelChanges known;
+  ipc::Publisher<ipc::HealthReport> publisher(ipc::topics::kHealth);
+  service.ready();
+  service.supervise([&] {
+    const std::int64_t now_ns = RobotClock::now_ns();
+    if (!schedule.due(now_ns, graph.barometer_state())) return false;
+    ipc::HealthReport report;
+    const bool alive = reporter.fill(now_ns, report);
+    publisher.send(report);
+    for (const std::string& line : level_changes(report, known)) spdlog::info("{}", line);
+    return alive;
+  });
+}
+
+}  // namespace
+
+void run(Graph& graph, Service& service, const RealtimeSettings& realtime) {
+  std::vector<std::string> refusals = refusals_of(graph.workers(), realtime);
+  graph.start();
+  spdlog::info("ready: {}", graph.inputs());
+  supervise(graph, service, std::move(refusals));
+  spdlog::info("stopping");
+  graph.stop();
+}
+
+}  // namespace isobar

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/station_monitor.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+
+#include "daemon/health_entries.hpp"
+#include "daemon/health_entry.hpp"
+
+namespace isobar {
+namespace {
+
+using ipc::HealthLevel;
+
+void add_barometer(const StationSnapshot& now, const StationSnapshot& before, const Config& config,
+                   ipc::HealthReport& report) {
+  const StationStatus& station = now.station;
+  const auto stuck_ns = static_cast<std::int64_t>(config.prior.altimeter.stuck_timeout_s * 1e9);
+  const double elapsed_s = before.now_ns == 0 ? 1.0 : static_cast<double>(now.now_ns - before.now_ns) * 1e-9;
+  const double rate_hz = per_second(station.samples, before.station.samples, elapsed_s);
+  const std::int64_t unchanged_ns = station.cadence.last_ns() - station.changed_ns;
+  if (now.barometer.present) {
+    add_barometer_device(report, config.barometer, now.barometer, before.barometer, now.now_ns, rate_hz);
+  } else if (unchanged_ns > stuck_ns && !station.cadence.silent(now.now_ns)) {
+    add_entry(report, "barometer", HealthLevel::kError,
+              fmt::format("stuck: {:.3f} Pa for {:.0f} s", station.newest.pressure_pa,
+                          static_cast<double>(unchanged_ns) * 1e-9),
+              0.0);
+  } else {
+    add_stream(report, "barometer", station.cadence.last_ns(), now.now_ns, station.cadence.limit_ns(),
+               rate_hz, "UDP port " + std::to_string(config.input.port));
+  }
+  if (station.samples == 0) return;
+  add_entry(report, "barometer/pressure", HealthLevel::kOk, "Pa", station.newest.pressure_pa);
+  if (!std::isnan(station.newest.temperature_c)) {
+    add_entry(report, "barometer/temperature", HealthLevel::kOk, "degrees C, of the sensor",
+              station.newest.temperature_c);
+  }
+  if (!std::isnan(station.newest.variance_pa2)) {
+    add_entry(report, "barometer/noise", HealthLevel::kOk, "Pa, standard deviation of a sample",
+              std::sqrt(station.newest.variance_pa2));
+  }
+}
+
+}  // namespace
+
+void StationMonitor::fill(const StationSnapshot& now, ipc::HealthReport& report) {
+  constexpr auto kBarometer = static_cast<std::size_t>(datagram::Kind::kPressure);
+  add_barometer(now, before_, config_, report);
+  add_count(report, "barometer/lost", now.input.counters.lost[kBarometer],
+            before_.input.counters.lost[kBarometer], "samples lost, by the gaps in their numbers");
+  add_count(report, "station/dropped", now.station.dropped_samples, before_.station.dropped_samples,
+            "samples dropped: they arrived faster than they were used");
+  add_count(report, "station/no_memory", now.station.samples_without_memory,
+            before_.station.samples_without_memory, "samples dropped: no free chunk of shared memory");
+  add_calibration(report, "barometer", now.station.outside_calibration, before_.station.outside_calibration,
+                  now.station.without_temperature, before_.station.without_temperature);
+  add_input(report, now.input, before_.input);
+  before_ = now;
+}
+
+}  // namespace isobar

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/health_reporter.hpp"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "daemon/health_entries.hpp"
+#include "daemon/health_entry.hpp"
+#include "daemon/report_schedule.hpp"
+
+namespace isobar::test::test_health_reporter {
+
+namespace {
+
+/// A graph without threads that reports more than fits.
+class TalkativeGraph final : public Graph {
+ public:
+  explicit TalkativeGraph(int entries) : entries_(entries) {}
+  void start() override {}
+  void stop() override {}
+  WorkerGroup& workers() override { return workers_; }
+  std::string inputs() const override { return {}; }
+  BarometerState barometer_state() const override { return {}; }
+  void fill_health(std::int64_t /*now_ns*/, ipc::HealthReport& report) override {
+    for (int i = 0; i < entries_; ++i) add_entry(report, "stage", ipc::HealthLevel::kOk, "", i);
+  }
+
+ private:
+  int entries_;
+  WorkerGroup workers_;
+};
+
+const ipc::HealthEntry* find(const ipc::HealthReport& report, const std::string& name) {
+  for (std::uint32_t i = 0; i < report.entry_count; ++i) {
+    if (name == report.entries[i].name) return &report.entries[i];
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+TEST_CASE("a report that is too long keeps the threads and counts what it dropped") {
+  TalkativeGraph graph(100);
+  HealthReporter reporter(graph, {"SCHED_FIFO refused"});
+  ipc::HealthReport report;
+  CHECK(reporter.fill(1'000'000'000, report));
+  REQUIRE(report.entry_count == ipc::HealthReport::kMaxEntries);
+  REQUIRE(find(report, "threads") != nullptr);
+  const ipc::HealthEntry* dropped = find(report, "health/dropped");
+  REQUIRE(dropped != nullptr);
+  CHECK(dropped->level == ipc::HealthLevel::kWarning);
+  // "threads", 100 entries and one refusal; one place is the counter's own.
+  CHECK(dropped->value == 1 + 100 + 1 - (ipc::HealthReport::kMaxEntries - 1));
+}
+
+TEST_CASE("a report that fits drops nothing and says so by having no such entry") {
+  TalkativeGraph graph(10);
+  HealthReporter reporter(graph, {});
+  ipc::HealthReport report;
+  CHECK(reporter.fill(1'000'000'000, report));
+  CHECK(report.entry_count == 11);
+  CHECK(find(report, "health/dropped") == nullptr);
+}
+
+TEST_CASE(
+    "faults of the shared-memory library have an entry from the first one on, a warning while they grow") {
+  ipc::HealthReport report;
+  add_library_faults(report, 0, 0);
+  CHECK(find(report, "shared_memory/faults") == nullptr);
+  add_library_faults(report, 2, 1);
+  REQUIRE(find(report, "shared_memory/faults") != nullptr);
+  CHECK(find(report, "shared_memory/faults")->level == ipc::HealthLevel::kWarning);
+  CHECK(find(report, "shared_memory/faults")->value == 2.0);
+  ipc::HealthReport later;
+  add_library_faults(later, 2, 2);
+  CHECK(find(later, "shared_memory/faults")->level == ipc::HealthLevel::kOk);
+}
+
+TEST_CASE("health is reported once a second, and at once when the barometer fails or recovers") {
+  ReportSchedule schedule;
+  std::int64_t now_ns = 5'000'000'000;
+  int reports = 0;
+  const auto tick = [&](BarometerState state, int times) {
+    for (int i = 0; i < times; ++i) {
+      now_ns += 100'000'000;
+      reports += schedule.due(now_ns, state) ? 1 : 0;
+    }
+  };
+  tick(BarometerState::kMeasuring, 10);
+  CHECK(reports == 0);  // within the first second every sensor has had its chance
+  tick(BarometerState::kMeasuring, 1);
+  CHECK(reports == 1);
+  tick(BarometerState::kMeasuring, 3);
+  CHECK(reports == 1);
+  tick(BarometerState::kSilent, 1);
+  CHECK(reports == 2);
+  tick(BarometerState::kSilent, 30);
+  CHECK(reports == 5);
+}
+
+}  // namespace isobar::test::test_health_reporter
