@@ -7,7 +7,7 @@
 namespace isobar {
 
 std::vector<files::RunCount> counts_of(const velodyne::VelodyneCounters& counters,
-                                const std::string& wrong_model_message) {
+                                       const std::string& wrong_model_message) {
   return {
       {"lidar packets", counters.packets, ""},
       {"lidar packets truncated", counters.truncated, ""},

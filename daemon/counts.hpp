@@ -16,7 +16,7 @@
 namespace isobar {
 
 std::vector<files::RunCount> counts_of(const velodyne::VelodyneCounters& counters,
-                                const std::string& wrong_model_message);
+                                       const std::string& wrong_model_message);
 std::vector<files::RunCount> counts_of(const PriorCounters& counters);
 std::vector<files::RunCount> counts_of(const datagram::Counters& counters);
 /// Counters of the base station that sends datagrams.
