@@ -56,7 +56,7 @@ void add_inputs(dds::DdsConfig& dds, SectionBuilder& s) {
          "Receive the base stations' pressure over DDS. true: base stations publish it there.");
   s.flag("receive_sensors", dds.receive_sensors,
          "Receive the robot's own sensors from the topics imu/data and wheel/odom, for robots whose drivers "
-         "are ROS 2 nodes. false: a sensor must not reach isobard on two ways.");
+         "are ROS 2 nodes. false: a sensor must not reach isobard in two ways.");
 }
 
 void add_propagator(PosePropagatorConfig& propagator, std::vector<Setting>& settings) {

@@ -90,14 +90,13 @@ void add_moving_ground(HeightConfig& height, SectionBuilder& s) {
       "by more than this and by moving_ground_sigma. 0.12: elevators are much faster.");
   s.number("moving_ground_sigma", &height.moving_ground_sigma, "", 2.0, 20.0,
            "Standard deviations by which the vertical speeds must also differ before the ground moves. 5: "
-           "never by noise.");
+           "practically never by noise.");
   s.number("ground_stopped_speed_m_s", &height.ground_stopped_speed_m_s, "m/s", 1e-3, 5.0,
            "Moving ground ends when the vertical speeds from acceleration and from wheels agree within this "
            "for ground_stopped_time_s. 0.04: a third of the speed at which it begins.");
-  s.number(
-      "ground_stopped_time_s", &height.ground_stopped_time_s, "s", 0.1, 10.0,
-      "Time that the vertical speeds must agree before moving ground ends. 1.2: longer than the crossing "
-      "of zero while an elevator brakes.");
+  s.number("ground_stopped_time_s", &height.ground_stopped_time_s, "s", 0.1, 10.0,
+           "Time that the vertical speeds must agree before moving ground ends. Shorter, noise could end a "
+           "ride.");
 }
 
 }  // namespace

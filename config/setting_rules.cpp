@@ -4,6 +4,7 @@
 #include <arpa/inet.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <type_traits>
@@ -34,28 +35,23 @@ bool is_name(const std::string& text) {
          text.back() != '/';
 }
 
-const char* text_rule_text(TextRule rule) {
-  switch (rule) {
-    case TextRule::kAny:
-      return "must be a text in quotation marks";
-    case TextRule::kIpv4:
-      return "must be an IPv4 address such as \"0.0.0.0\"";
-    case TextRule::kName:
-      return "must be 1 to 100 letters, digits, '_' or '/', with no '/' at the ends";
-    case TextRule::kNameOrEmpty:
-      return "must be empty, or up to 100 letters, digits, '_' or '/', with no '/' at the ends";
-    case TextRule::kInterface:
-      return "must be the name or the address of a network interface";
-  }
-  return "";
-}
+/// Rules of text values, in the order of TextRule.
+constexpr std::array kTextRules = {
+    "must be a text in quotation marks",
+    "must be an IPv4 address such as \"0.0.0.0\"",
+    "must be 1 to 100 letters, digits, '_' or '/', with no '/' at the ends",
+    "must be empty, or up to 100 letters, digits, '_' or '/', with no '/' at the ends",
+    "must be the name or the address of a network interface",
+};
 
 struct RuleText {
   const Setting& setting;
 
   std::string operator()(const double* /*value*/) const { return "must be a number" + range_text(setting); }
   std::string operator()(const bool* /*value*/) const { return "must be true or false"; }
-  std::string operator()(const std::string* /*value*/) const { return text_rule_text(setting.text_rule); }
+  std::string operator()(const std::string* /*value*/) const {
+    return kTextRules.at(static_cast<std::size_t>(setting.text_rule));
+  }
   std::string operator()(const Eigen::Vector3d* /*value*/) const {
     return "must be three numbers, each" + range_text(setting);
   }

@@ -132,7 +132,7 @@ void add_calibrate_command(CLI::App& app) {
       "temperature\n"
       "of the sensor. A recording's barometer.csv will do. What was taken for what is printed first.\n\n"
       "  isobar calibrate --sensor cold.csv warm.csv --reference station.csv --out dps310.toml\n\n"
-      "then, in isobar.toml:  [barometer]\n                       compensation_file = \"dps310.toml\"");
+      "then, in isobar.toml:  barometer.compensation_file = \"dps310.toml\"");
   command
       ->add_option("--sensor", options->logs.sensor.files,
                    "logs of the sensor, one or more; each is a recording")

@@ -235,6 +235,9 @@ TEST_CASE("Keys load alike in sections and spelled with dots, in any order") {
   const std::string expected =
       show_config(parse_config("[dds]\ndomain_id = 7\n[lidar]\nport = 9\n", "c.toml"));
   CHECK(show_config(parse_config("lidar.port = 9\ndds.domain_id = 7\n", "c.toml")) == expected);
+  CHECK(parse_config("barometer.source = \"iio\"\n[barometer.iio]\nrate_hz = 20\n", "c.toml")
+            .barometer.iio.rate_hz == 20);
+  fails("lidar.port = 9\n[lidar]\nmodel = \"VLP-16\"\n", "c.toml:2:");
   fails("lidar.port = 9\ndds.domain_id = 233\n",
         "c.toml:2:17: dds.domain_id: must be a whole number within 0 … 232 (got 233)");
 }
