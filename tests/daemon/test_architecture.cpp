@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The rules of the house that a compiler does not check: who may include what.
+// Rules of the house that no compiler checks: which folder may include which.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -41,37 +41,92 @@ bool starts_with_any(const std::string& text, const std::vector<std::string>& pr
   return false;
 }
 
+/// Headers of the system or of libraries that a folder must not name.
 void check_none(const std::string& folder, const std::vector<std::string>& forbidden) {
   const auto includes = includes_below(folder);
-  REQUIRE(includes.size() > 10);
+  REQUIRE(includes.size() > 5);
   for (const Include& include : includes) {
     CHECK_MESSAGE(!starts_with_any(include.what, forbidden), include.file << " includes " << include.what);
   }
 }
 
-}  // namespace
-
-TEST_CASE("core has no threads, no I/O, no logging, no clock, and knows nothing of who uses it") {
-  check_none("core",
-             {"thread", "mutex",      "condition_variable", "future", "iostream", "fstream", "cstdio",
-              "chrono", "filesystem", "unistd.h",           "sys/",   "spdlog",   "iceoryx", "dds/",
-              "toml++", "CLI/",       "drivers/",           "ipc/",   "config/",  "daemon/", "tools/"});
-}
-
-TEST_CASE("drivers build on core alone") {
-  check_none("drivers", {"spdlog", "iceoryx", "dds/", "CLI/", "ipc/", "config/", "daemon/", "tools/"});
-}
-
-TEST_CASE("the estimator names no DDS, and one pair of files names iceoryx") {
-  check_none("daemon", {"iceoryx"});
-  for (const Include& include : includes_below("daemon")) {
-    if (include.file.find("/daemon/bridge/") != std::string::npos) continue;
-    CHECK_MESSAGE(!starts_with_any(include.what, {"dds/", "ipc/dds/"}),
+/// Of the folders of this repository `folder` names only itself and these.
+void check_only(const std::string& folder, std::vector<std::string> allowed) {
+  const std::vector<std::string> folders = {"core/",       "drivers/", "run/",   "ipc/",  "config/",
+                                            "simulation/", "daemon/",  "tools/", "tests/"};
+  allowed.push_back(folder + "/");
+  const auto includes = includes_below(folder);
+  REQUIRE(includes.size() > 5);
+  for (const Include& include : includes) {
+    const bool is_ours = starts_with_any(include.what, folders);
+    CHECK_MESSAGE((!is_ours || starts_with_any(include.what, allowed)),
                   include.file << " includes " << include.what);
   }
-  for (const Include& include : includes_below("ipc")) {
-    if (include.file.find("/ipc/shared_memory.cpp") != std::string::npos) continue;
-    CHECK_MESSAGE(!starts_with_any(include.what, {"iceoryx"}), include.file << " includes " << include.what);
+}
+
+bool is_below(const Include& include, const std::string& part) {
+  return include.file.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "dependencies point one way: core, then drivers, ipc and run, then config, then daemon, then tools") {
+  check_only("core", {});
+  check_only("drivers", {"core/"});
+  check_only("ipc", {"core/", "drivers/"});
+  check_only("run", {"core/", "drivers/"});
+  check_only("config", {"core/", "drivers/", "ipc/", "run/"});
+  check_only("daemon", {"core/", "drivers/", "ipc/", "run/", "config/"});
+}
+
+TEST_CASE("only tools and tests name the simulator, which knows neither the service nor its configuration") {
+  check_only("simulation", {"core/", "drivers/", "run/"});
+  check_only("tools", {"core/", "drivers/", "ipc/", "run/", "config/", "daemon/", "simulation/"});
+}
+
+TEST_CASE("the estimator does not include what only the tools calibrate and fit with") {
+  for (const Include& include : includes_below("core")) {
+    if (is_below(include, "/core/calibration/")) continue;
+    CHECK_MESSAGE(!starts_with_any(include.what, {"core/calibration/"}),
+                  include.file << " includes " << include.what);
+  }
+}
+
+TEST_CASE("core has no threads, no I/O, no logging and no clock") {
+  check_none("core",
+             {"thread", "mutex", "condition_variable", "future", "iostream", "fstream", "cstdio", "chrono",
+              "filesystem", "unistd.h", "sys/", "spdlog", "iceoryx", "dds/", "toml++", "CLI/"});
+}
+
+TEST_CASE("only daemon and tools log or parse a command line") {
+  for (const char* folder : {"drivers", "ipc", "run", "config", "simulation"}) {
+    CAPTURE(folder);
+    check_none(folder, {"spdlog/spdlog", "spdlog/sinks", "CLI/"});
+  }
+}
+
+TEST_CASE("isobard includes no DDS; ipc/dds and the bridge do, and config knows the settings only") {
+  for (const char* folder : {"core", "drivers", "run", "config", "simulation"}) {
+    CAPTURE(folder);
+    check_none(folder, {"dds/", "ipc/dds/"});
+  }
+  for (const char* folder : {"daemon", "ipc"}) {
+    for (const Include& include : includes_below(folder)) {
+      if (is_below(include, "/daemon/bridge/") || is_below(include, "/ipc/dds/")) continue;
+      CHECK_MESSAGE(!starts_with_any(include.what, {"dds/", "ipc/dds/"}),
+                    include.file << " includes " << include.what);
+    }
+  }
+}
+
+TEST_CASE("one file includes iceoryx") {
+  for (const char* folder : {"core", "drivers", "ipc", "run", "config", "simulation", "daemon", "tools"}) {
+    for (const Include& include : includes_below(folder)) {
+      if (is_below(include, "/ipc/shared_memory.cpp")) continue;
+      CHECK_MESSAGE(!starts_with_any(include.what, {"iceoryx"}),
+                    include.file << " includes " << include.what);
+    }
   }
 }
 

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/service.hpp"
+
+#include <doctest/doctest.h>
+#include <signal.h>  // NOLINT(modernize-deprecated-headers): sigtimedwait is POSIX
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace isobar::test::test_service {
+
+namespace {
+
+/// The service manager's end of sd_notify(3).
+class NotifySocket {
+ public:
+  NotifySocket() : path_(std::filesystem::temp_directory_path() / ("notify-" + std::to_string(::getpid()))) {
+    socket_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path_.native().copy(address.sun_path, sizeof(address.sun_path) - 1);
+    std::filesystem::remove(path_);
+    REQUIRE(::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
+    ::setenv("NOTIFY_SOCKET", path_.c_str(), 1);
+  }
+  ~NotifySocket() {
+    ::unsetenv("NOTIFY_SOCKET");
+    ::close(socket_);
+    std::filesystem::remove(path_);
+  }
+  NotifySocket(const NotifySocket&) = delete;
+  NotifySocket& operator=(const NotifySocket&) = delete;
+
+  std::vector<std::string> messages() {
+    std::vector<std::string> all;
+    std::array<char, 512> bytes{};
+    for (ssize_t length = 0; (length = ::recv(socket_, bytes.data(), bytes.size(), 0)) > 0;) {
+      all.emplace_back(bytes.data(), static_cast<std::size_t>(length));
+    }
+    return all;
+  }
+
+ private:
+  std::filesystem::path path_;
+  int socket_ = -1;
+};
+
+/// Takes the pending SIGTERM off this process and unblocks both signals.
+void clear_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGTERM);
+  sigaddset(&set, SIGINT);
+  const timespec now{};
+  while (sigtimedwait(&set, nullptr, &now) > 0) {
+  }
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+}
+
+}  // namespace
+
+TEST_CASE("the supervise loop feeds the watchdog in ticks that found all alive, and ends with SIGTERM") {
+  using namespace std::chrono_literals;
+  NotifySocket manager;
+  {
+    Service service;
+    service.ready("up");
+    int ticks = 0;
+    service.supervise(
+        [&] {
+          if (++ticks == 4) ::kill(::getpid(), SIGTERM);
+          return ticks % 2 == 0;
+        },
+        1ms);
+    CHECK(ticks == 4);
+    CHECK_FALSE(service.wait_for(0ms));  // the stop signal is remembered
+  }
+  clear_signals();
+  CHECK(manager.messages() ==
+        std::vector<std::string>{"READY=1\nSTATUS=up", "WATCHDOG=1", "WATCHDOG=1", "STOPPING=1"});
+}
+
+}  // namespace isobar::test::test_service
