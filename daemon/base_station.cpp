@@ -19,8 +19,7 @@ BaseStationGraph::BaseStationGraph(const Config& config)
       station_(config.prior.altimeter, config.prior.compensation, scheduling_.station),
       barometer_(make_barometer_thread(config.barometer, scheduling_.barometer)),
       input_(config.input.address, config.input.port, {.barometer = barometer_ == nullptr, .others = false},
-             scheduling_.input),
-      monitor_(config) {
+             scheduling_.input) {
   // Start order: consumers first.
   workers_.add(station_.worker());
   workers_.add(input_.worker());
@@ -41,7 +40,9 @@ BarometerState BaseStationGraph::barometer_state() const {
 }
 
 void BaseStationGraph::fill_health(std::int64_t now_ns, ipc::HealthReport& report) {
-  monitor_.fill(status(now_ns), report);
+  const StationSnapshot now = status(now_ns);
+  fill_station_health(now, last_report_, config_, report);
+  last_report_ = now;
 }
 
 }  // namespace isobar

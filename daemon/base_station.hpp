@@ -9,7 +9,7 @@
 #include "daemon/graph.hpp"
 #include "daemon/sample_thread.hpp"
 #include "daemon/scheduling.hpp"
-#include "daemon/station_monitor.hpp"
+#include "daemon/station_health.hpp"
 #include "daemon/station_thread.hpp"
 #include "ipc/shared_memory.hpp"
 
@@ -37,7 +37,7 @@ class BaseStationGraph final : public Graph {
   StationThread station_;
   std::unique_ptr<BarometerThread> barometer_;
   SampleThread input_;
-  StationMonitor monitor_;
+  StationSnapshot last_report_;
   WorkerGroup workers_;  ///< last: stops all threads before the stages are destroyed
 };
 

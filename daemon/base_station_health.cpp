@@ -10,13 +10,13 @@ namespace {
 
 using ipc::HealthLevel;
 
-/// A second base station that was heard within this time is still one [ns].
+/// A second base station counts as present for this long after its last sample: base stations may send only once a second.
 constexpr std::int64_t kRivalMemoryNs = 10'000'000'000;
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
-/// A line of the counts.
-struct Line {
+/// Entry of one counter.
+struct CounterEntry {
   const char* name;
   const char* sentence;
   std::uint64_t now;
@@ -30,18 +30,17 @@ void add_base_station_state(const std::string& name, const BaseStationStatus& st
   if (!status.heard()) {
     add(name, HealthLevel::kStale, "nothing received yet on " + where, 0.0);
   } else if (status.left) {
-    add(name, HealthLevel::kError, "has ended; was on " + where, 0.0);
+    add(name, HealthLevel::kError, "has ended; it sent on " + where, 0.0);
   } else if (status.lost(now_ns)) {
     add(name, HealthLevel::kError,
         fmt::format("silent for {:.1f} s on {}", seconds(now_ns - status.last_ns), where), 0.0);
   } else if (status.rival_ns != 0 && now_ns - status.rival_ns < kRivalMemoryNs) {
-    add(name, HealthLevel::kWarning,
-        "another base station sends on " + where + "; the first one heard is used", 0.0);
+    add(name, HealthLevel::kWarning, "a second base station sends on " + where + "; the first one is used",
+        0.0);
   } else {
     const double rate_hz = status.interval_ns > 0 ? 1.0 / seconds(status.interval_ns) : 0.0;
     add(name, HealthLevel::kOk,
-        fmt::format("{:.1f} per second, its clock differs by {:+.1f} s", rate_hz,
-                    seconds(status.clock_ahead_ns)),
+        fmt::format("{:.1f} per second, clock offset {:+.1f} s", rate_hz, seconds(status.clock_ahead_ns)),
         rate_hz);
   }
 }
@@ -50,20 +49,21 @@ void add_base_station_counts(const std::string& name, const BaseStationStatus& n
                              const BaseStationStatus& before, const AddEntry& add) {
   using V = BaseVerdict;
   const auto samples = [&](const char* what, const char* sentence, V verdict) {
-    return Line{what, sentence, now.count(verdict), before.count(verdict)};
+    return CounterEntry{what, sentence, now.count(verdict), before.count(verdict)};
   };
-  const std::array<Line, 9> lines{{
-      samples("repeated", "samples that came before, refused: copies or a replay", V::kRepeated),
-      samples("outdated", "samples older than the newest, refused: overtaken or replayed", V::kOutdated),
-      samples("too_old", "samples that were on their way for too long, refused", V::kTooOld),
+  const std::array<CounterEntry, 9> lines{{
+      samples("repeated", "samples received before, refused: copies or a replay", V::kRepeated),
+      samples("outdated", "samples older than the newest, refused: out of order or replayed", V::kOutdated),
+      samples("too_old", "samples with too long a transmission time, refused", V::kTooOld),
       samples("ahead", "samples from the future, refused: its clock was set", V::kAhead),
-      samples("other_sender", "samples of another base station of the same name, refused", V::kOtherSender),
-      samples("unconfirmed", "first samples of a base that was started again, not yet used", V::kUnconfirmed),
-      {"outages", "times that it was silent and came back", now.outages, before.outages},
-      {"restarts", "times that it was started again", now.restarts, before.restarts},
-      {"clock_steps", "times that its clock was set", now.clock_steps, before.clock_steps},
+      samples("other_sender", "samples of another sender with the same name, refused", V::kOtherSender),
+      samples("unconfirmed", "first samples after a restart of the base station, not yet used",
+              V::kUnconfirmed),
+      {"outages", "silences that ended", now.outages, before.outages},
+      {"restarts", "restarts of the base station", now.restarts, before.restarts},
+      {"clock_steps", "steps of its clock", now.clock_steps, before.clock_steps},
   }};
-  for (const Line& line : lines) {
+  for (const CounterEntry& line : lines) {
     if (line.now == 0) continue;
     add(name + "/" + line.name, line.now > line.before ? HealthLevel::kWarning : HealthLevel::kOk,
         line.sentence, static_cast<double>(line.now));

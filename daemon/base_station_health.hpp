@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a base station's stream says of itself, in sentences; the same for both ways in.
+// Health entries of a base station's stream; the same for UDP (isobard) and DDS (isobar-dds).
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,17 @@
 
 namespace isobar {
 
-/// Takes one line of health: name, level, message, value.
+/// Adds one entry: name, level, message, value.
 using AddEntry = std::function<void(const std::string&, ipc::HealthLevel, const std::string&, double)>;
 
-/// One line `name`: is it there, how often does it send, is it alone.
+/// Adds the entry `name`: state, rate, clock offset, a competing station.
 /// @param now_ns robot clock
-/// @param where it is listened for
+/// @param where the input that receives it, such as a topic
 void add_base_station_state(const std::string& name, const BaseStationStatus& status, std::int64_t now_ns,
                             const std::string& where, const AddEntry& add);
 
-/// A line `name`/… for everything that was refused or happened at least once; a warning while it goes on.
-/// @param before the status of the call before
+/// Adds an entry `name`/… for each counter above zero, a warning while it grows.
+/// @param before the status at the last call
 void add_base_station_counts(const std::string& name, const BaseStationStatus& now,
                              const BaseStationStatus& before, const AddEntry& add);
 

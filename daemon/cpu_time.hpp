@@ -5,7 +5,7 @@
 
 namespace isobar {
 
-/// CPU time that the calling thread spends from here on.
+/// CPU time of the calling thread since construction.
 class CpuTimer {
  public:
   CpuTimer() : started_ms_(now_ms()) {}

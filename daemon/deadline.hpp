@@ -6,22 +6,23 @@
 
 namespace isobar {
 
-/// How punctual a stage was.
+/// Punctuality of a stage.
 struct DeadlineStatus {
   std::uint64_t outputs = 0;
-  std::uint64_t misses = 0;   ///< outputs that came later than the limit
-  std::int64_t worst_ns = 0;  ///< the longest that any output took
+  std::uint64_t misses = 0;   ///< outputs later than the limit
+  std::int64_t worst_ns = 0;  ///< longest time from input to output
   std::int64_t limit_ns = 0;
 };
 
-/// Counts the outputs of a stage that come later than its deadline. One thread.
+/// Counts the outputs of a stage that miss its deadline. One thread.
 class Deadline {
  public:
-  /// @param limit_ms from input to output, > 0
+  /// @param limit_ms allowed time from input to output, > 0
   explicit Deadline(double limit_ms) { status_.limit_ns = static_cast<std::int64_t>(limit_ms * 1e6); }
 
-  /// An output is there at `now_ns`; what it was made of was complete at `complete_ns`. Both on the robot
-  /// clock.
+  /// Records an output.
+  /// @param complete_ns when its input was complete, robot clock
+  /// @param now_ns when it was published, robot clock
   void note(std::int64_t complete_ns, std::int64_t now_ns) noexcept {
     const std::int64_t took_ns = now_ns - complete_ns;
     ++status_.outputs;

@@ -36,11 +36,10 @@ void add_count(HealthReport& report, const char* name, std::uint64_t now, std::u
 void add_deadline(HealthReport& report, const char* name, const DeadlineStatus& now,
                   const DeadlineStatus& before, const char* what) {
   if (now.outputs == 0) return;
-  add_entry(
-      report, name, now.misses > before.misses ? HealthLevel::kWarning : HealthLevel::kOk,
-      fmt::format("{} of {} {} later than {:.1f} ms, the worst {:.1f} ms", now.misses, now.outputs, what,
-                  static_cast<double>(now.limit_ns) * 1e-6, static_cast<double>(now.worst_ns) * 1e-6),
-      static_cast<double>(now.misses));
+  add_entry(report, name, now.misses > before.misses ? HealthLevel::kWarning : HealthLevel::kOk,
+            fmt::format("{} of {} {} later than {:.1f} ms, at most {:.1f} ms", now.misses, now.outputs, what,
+                        static_cast<double>(now.limit_ns) * 1e-6, static_cast<double>(now.worst_ns) * 1e-6),
+            static_cast<double>(now.misses));
 }
 
 void add_stream(HealthReport& report, const std::string& name, std::int64_t last_ns, std::int64_t now_ns,

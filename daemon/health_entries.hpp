@@ -15,8 +15,8 @@
 
 namespace isobar {
 
-/// Time without a sample after which a sensor counts as silent: 10 scans of a lidar at 10 Hz, a few tens to
-/// hundreds of samples of the others. Base stations have a limit of their own, from their cadence.
+/// Time without a sample after which a sensor counts as silent [ns]: many periods of each sensor, ten of a lidar at
+/// 10 Hz. The limit of a base station comes from its own cadence.
 inline constexpr std::int64_t kSensorSilenceNs = 1'000'000'000;
 
 /// Growth of a counter per second; 0 without elapsed time.

@@ -5,22 +5,21 @@
 
 namespace isobar {
 
-/// When the packets of a lidar are fetched. Nobody needs those of the middle of a scan at once: to wake for
-/// each of 750 a second costs four times what decoding them does. So they are fetched a few at a time, as
-/// network cards moderate their interrupts, and one by one near the end of the scan, which is where the last
-/// one ended plus its period. The kernel stamps packets when they come, so no time is lost but that of the
-/// processor. One thread.
+/// Pauses between reads of the lidar's socket, like interrupt moderation of a network card. To wake for each of 750
+/// packets a second costs four times as much as decoding them, and the packets of the middle of a scan are not urgent:
+/// they are read several at a time, those near the expected end of the scan (last end + last period) one by one. The
+/// kernel stamps packets on arrival, so their times do not change. One thread.
 class PacketPacing {
  public:
-  /// Between two looks at the socket: six or seven packets of a VLP-16, of the 90 that the kernel keeps.
+  /// Pause between two reads: six or seven packets of a VLP-16; the kernel buffers 90.
   static constexpr std::int64_t kPauseNs = 8'000'000;
-  /// From so long before the expected end on every packet is fetched at once: the motor holds its speed to a
-  /// few percent, and a pause must not reach the end.
+  /// No pause starts later than this before the expected end: the motor holds its speed to a few percent, and a pause
+  /// must not reach the end.
   static constexpr std::int64_t kMarginNs = kPauseNs + 4'000'000;
-  /// A scan that lasts longer is none of a lidar that turns.
+  /// Longest period of a rotating lidar: 4 Hz. A longer gap between scans gives no period.
   static constexpr std::int64_t kLongestScanNs = 250'000'000;
 
-  /// A scan is complete that ended at `end_stamp_ns`.
+  /// Records the end of a scan.
   void scan_ended(std::int64_t end_stamp_ns) noexcept {
     const std::int64_t period_ns = end_stamp_ns - last_end_ns_;
     const bool turns = last_end_ns_ != 0 && period_ns > 0 && period_ns <= kLongestScanNs;
@@ -28,7 +27,7 @@ class PacketPacing {
     last_end_ns_ = end_stamp_ns;
   }
 
-  /// How long to leave the socket alone now; 0: not at all.
+  /// Pause before the next read [ns]; 0: none.
   [[nodiscard]] std::int64_t pause_ns(std::int64_t now_ns) const noexcept {
     return expected_end_ns_ - now_ns >= kMarginNs ? kPauseNs : 0;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scheduling, affinity and memory locking of a thread of the pipeline.
+// Scheduling, affinity and memory locking.
 #pragma once
 
 #include <cstdint>
@@ -8,26 +8,27 @@
 
 namespace isobar {
 
-/// How one thread of the pipeline is scheduled, and when it is late.
+/// Name, scheduling and deadline of one thread.
 struct ThreadSettings {
-  std::string name;          ///< as `top -H` shows it, 15 characters at most
-  int fifo_priority = 0;     ///< SCHED_FIFO 1 … 99; 0 leaves the thread to the ordinary scheduler
-  std::vector<int> cpus{};   ///< cores that it may run on; empty: all
-  double deadline_ms = 1e3;  ///< from what it takes to what it makes; later is counted, see Deadline
+  std::string name;          ///< as in `top -H` and the health report, at most 15 characters
+  int fifo_priority = 0;     ///< SCHED_FIFO 1 … 99; 0: SCHED_OTHER
+  std::vector<int> cpus{};   ///< allowed cores; empty: all
+  double deadline_ms = 1e3;  ///< allowed time from input to output [ms], see Deadline
 };
 
-/// Applies the settings to the calling thread. Returns an empty string, or what was refused and how to allow
-/// it (a robot still drives without real-time rights; the health report says so).
+/// Applies name and scheduling to the calling thread.
+/// @return empty, or what the system refused and how to allow it
 [[nodiscard]] std::string apply_to_this_thread(const ThreadSettings& settings) noexcept;
 
-/// Applies each of the settings to a thread that ends at once; returns what was refused. A thread of the
-/// pipeline then meets no surprise.
+/// Applies each of the settings to a thread that ends at once, so that refusals are known before the pipeline starts.
+/// @return one sentence for each refusal
 [[nodiscard]] std::vector<std::string> try_settings(const std::vector<ThreadSettings>& settings);
 
-/// Page faults of the calling thread so far, minor and major. One system call.
+/// Minor and major page faults of the calling thread since its start. One system call.
 [[nodiscard]] std::uint64_t page_faults_of_this_thread() noexcept;
 
-/// Keeps all present and future pages of the process in memory. Returns an empty string or what was refused.
+/// Locks all present and future pages of the process in memory.
+/// @return empty, or what the system refused and how to allow it
 [[nodiscard]] std::string lock_memory() noexcept;
 
 }  // namespace isobar

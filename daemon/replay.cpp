@@ -16,7 +16,7 @@ namespace isobar {
 
 namespace {
 
-/// Writes what the pipeline makes, and remembers which height and method it worked with.
+/// Writes the poses and counts the scans that were registered with a method of fewer inputs than the configured one.
 class OutputSink : public EstimateSink {
  public:
   explicit OutputSink(files::RunOutput& output) : output_(output) {}
@@ -29,7 +29,7 @@ class OutputSink : public EstimateSink {
     without_height_ += without_imu ? 0 : 1;
   }
 
-  /// Scans that a method with less to go by registered.
+  /// Scans registered without a height from pressure, and without an IMU.
   [[nodiscard]] std::uint64_t without_height() const { return without_height_; }
   [[nodiscard]] std::uint64_t without_imu() const { return without_imu_; }
 
@@ -39,11 +39,11 @@ class OutputSink : public EstimateSink {
   std::uint64_t without_imu_ = 0;
 };
 
-void say_what_is_missing(const recording::Manifest& manifest, ReplaySummary& summary) {
+void warn_of_missing_sensors(const recording::Manifest& manifest, ReplaySummary& summary) {
   if (!manifest.barometer) summary.warnings.emplace_back("no [barometer]: 3-DOF runs as 4-DOF");
   if (manifest.barometer && !manifest.base_barometer) {
     summary.warnings.emplace_back(
-        "no [base_barometer]: the height is against the robot's own start, weather moves it");
+        "no [base_barometer]: the height is relative to the start and drifts with the weather");
   }
   if (!manifest.wheel) summary.warnings.emplace_back("no [wheel]: constant velocity between scans");
 }
@@ -51,8 +51,9 @@ void say_what_is_missing(const recording::Manifest& manifest, ReplaySummary& sum
 std::vector<files::RunCount> collect_counts(const recording::RecordingReader& reader,
                                             const LockStep& pipeline) {
   std::vector<files::RunCount> counts;
-  for (const recording::Count& count : reader.counts())
+  for (const recording::Count& count : reader.counts()) {
     counts.push_back({count.name, count.count, count.first_message});
+  }
   run_counts::append(counts,
                      counts_of(pipeline.decoder().counters(), pipeline.decoder().wrong_model_message()));
   run_counts::append(counts, counts_of(pipeline.prior_estimator().counters()));
@@ -60,37 +61,38 @@ std::vector<files::RunCount> collect_counts(const recording::RecordingReader& re
   return counts;
 }
 
-/// A sensor that is named but gave nothing usable is as good as missing: its file says why not.
-void say_what_is_useless(const recording::Manifest& manifest, const LockStep& pipeline,
-                         ReplaySummary& summary) {
+/// Warns of sensors in the manifest without a single usable sample. counters.csv has the reasons.
+void warn_of_unusable_sensors(const recording::Manifest& manifest, const LockStep& pipeline,
+                              ReplaySummary& summary) {
   const PriorCounters& used = pipeline.prior_estimator().counters();
-  const auto say = [&](bool named, std::uint64_t samples, const char* what) {
+  const auto warn = [&](bool named, std::uint64_t samples, const char* what) {
     if (named && samples == 0) summary.warnings.emplace_back(what);
   };
-  say(true, used.imu_accepted, "the [imu] gave no usable sample: gravity and motion are unknown");
-  say(manifest.barometer.has_value(), used.pressure_accepted,
-      "the [barometer] gave no usable sample: 3-DOF runs as 4-DOF");
-  say(manifest.base_barometer.has_value(), used.base_accepted,
-      "the [base_barometer] gave no usable sample: the height is against the robot's own start");
-  say(manifest.wheel.has_value(), used.wheel_accepted,
-      "the [wheel] gave no usable sample: constant velocity between scans");
+  warn(true, used.imu_accepted, "the [imu] gave no usable sample: gravity and motion are unknown");
+  warn(manifest.barometer.has_value(), used.pressure_accepted,
+       "the [barometer] gave no usable sample: 3-DOF runs as 4-DOF");
+  warn(manifest.base_barometer.has_value(), used.base_accepted,
+       "the [base_barometer] gave no usable sample: the height is relative to the start");
+  warn(manifest.wheel.has_value(), used.wheel_accepted,
+       "the [wheel] gave no usable sample: constant velocity between scans");
   if (summary.registered == 0) {
-    summary.warnings.emplace_back("no scan could be registered: the poses are no more than the prior's");
+    summary.warnings.emplace_back("no scan could be registered: all poses are the prior's");
   }
 }
 
-/// What became of the packets, by count.
+/// Counters of the lidar packets, in one line.
 std::string refusals(const std::vector<files::RunCount>& counts) {
   std::string text;
   for (const files::RunCount& count : counts) {
     const bool is_lidar = count.name.rfind("lidar", 0) == 0;
-    if (is_lidar && count.count > 0)
+    if (is_lidar && count.count > 0) {
       text += (text.empty() ? "" : ", ") + count.name + ": " + std::to_string(count.count);
+    }
   }
-  return text.empty() ? "the file holds no packet" : text;
+  return text.empty() ? "the file contains no packets" : text;
 }
 
-/// A scan that nobody could decode must not end in an empty trajectory without a word.
+/// A recording without a decodable scan is an error, not an empty trajectory.
 void refuse_empty_run(const ReplaySummary& summary, const LockStep& pipeline,
                       const std::filesystem::path& recording) {
   if (summary.scans > 0) return;
@@ -110,7 +112,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   const Config used = with_sensors_of(reader.manifest(), config);
   ReplaySummary summary;
   summary.warnings = reader.warnings();
-  say_what_is_missing(reader.manifest(), summary);
+  warn_of_missing_sensors(reader.manifest(), summary);
   if (reader.manifest().base_barometer) summary.base_clock = reader.base_clock().reason;
 
   files::RunOutput output(out);
@@ -147,7 +149,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
     summary.warnings.emplace_back("the IMU was silent for " + std::to_string(sink.without_imu()) +
                                   " scans: they were registered as 6-DOF");
   }
-  say_what_is_useless(reader.manifest(), pipeline, summary);
+  warn_of_unusable_sensors(reader.manifest(), pipeline, summary);
   output.close(summary.counts);
   refuse_empty_run(summary, pipeline, recording);
   summary.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();

@@ -12,22 +12,23 @@
 
 namespace isobar {
 
-/// What a replay did.
+/// Result of a replay.
 struct ReplaySummary {
   std::uint64_t scans = 0;
   std::uint64_t poses = 0;
   std::uint64_t registered = 0;
   std::uint64_t from_prior = 0;
   std::uint64_t map_points = 0;
-  double recorded_s = 0.0;  ///< span of the samples
+  double recorded_s = 0.0;  ///< time from the first to the last sample
   double wall_s = 0.0;
-  std::string base_clock;  ///< how the base station's clock was tied to the robot's; empty: no base
-  std::vector<std::string> warnings;  ///< of the manifest, and of what the run could not do
+  std::string base_clock;  ///< how the base station's clock was aligned with the robot's; empty: no base
+  std::vector<std::string> warnings;  ///< about the manifest, and about what the run could not use
   std::vector<files::RunCount> counts;
 };
 
 /// Runs the pipeline in lock step over a recording and writes the folder of the run (run_output.hpp).
-/// `progress` gets 0 … 1. Throws DataError, ConfigError, ServiceError.
+/// @param progress called with 0 … 1
+/// @throws DataError for a recording that cannot be used; ConfigError; ServiceError when the disk refuses
 ReplaySummary replay(const std::filesystem::path& recording, const Config& config,
                      const std::filesystem::path& out, const std::function<void(double)>& progress);
 

@@ -9,9 +9,9 @@
 
 namespace isobar {
 
-/// The newest value of one writer thread for any reader thread: a sequence lock. The writer never waits; a
-/// reader that meets a write tries again. (H.-J. Boehm, "Can seqlocks get along with programming language
-/// memory models?", 2012: the words are atomics, so that there is no data race.)
+/// Sequence lock: the newest value of one writer thread for any number of reader threads. The writer never waits; a
+/// reader retries when a write interferes. The words are atomics, so there is no data race (H.-J. Boehm, "Can seqlocks
+/// get along with programming language memory models?", 2012).
 template <class T>
 class SeqLock {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -20,13 +20,13 @@ class SeqLock {
  public:
   SeqLock() { put(T{}); }
 
-  /// Writer's thread only.
+  /// Writer thread only.
   void put(const T& value) noexcept {
     std::array<std::uint64_t, kWords> words{};
     std::memcpy(words.data(), &value, sizeof(T));
     const std::uint32_t before = sequence_.load(std::memory_order_relaxed);
     sequence_.store(before + 1, std::memory_order_relaxed);
-    // Each word is released after the odd number: whoever reads a new word also sees the odd number.
+    // Release order: a reader that sees a new word also sees the odd sequence number.
     for (std::size_t i = 0; i < kWords; ++i) words_[i].store(words[i], std::memory_order_release);
     sequence_.store(before + 2, std::memory_order_release);
   }

@@ -23,7 +23,7 @@ struct Entry {
   double value = 0.0;
 };
 
-/// All entries about "base", by name.
+/// All entries of the base station "base", by name.
 std::map<std::string, Entry> entries(const BaseStationStatus& now, const BaseStationStatus& before = {}) {
   std::map<std::string, Entry> result;
   const AddEntry add = [&result](const std::string& name, HealthLevel level, const std::string& message,
@@ -35,7 +35,7 @@ std::map<std::string, Entry> entries(const BaseStationStatus& now, const BaseSta
   return result;
 }
 
-BaseStationStatus well() {
+BaseStationStatus healthy() {
   BaseStationStatus status;
   status.samples[0] = 320;
   status.last_ns = kNow - kSecond / 10;
@@ -48,8 +48,8 @@ bool has(const Entry& entry, const char* words) { return entry.message.find(word
 
 }  // namespace
 
-TEST_CASE("a base station that is well has one line, with its rate and its clock") {
-  BaseStationStatus status = well();
+TEST_CASE("a healthy base station has one entry, with its rate and its clock offset") {
+  BaseStationStatus status = healthy();
   status.clock_ahead_ns = -3 * kSecond / 2;
   const auto all = entries(status);
   REQUIRE(all.size() == 1);
@@ -58,26 +58,26 @@ TEST_CASE("a base station that is well has one line, with its rate and its clock
   CHECK(has(all.at("base"), "-1.5 s"));
 }
 
-TEST_CASE("never heard, silent, ended and not alone are told apart, with the topic") {
+TEST_CASE("never received, silent, ended and in competition are distinct states; each names the topic") {
   CHECK(entries({}).at("base").level == HealthLevel::kStale);
-  BaseStationStatus silent = well();
+  BaseStationStatus silent = healthy();
   silent.last_ns = kNow - 7 * kSecond;
   CHECK(entries(silent).at("base").level == HealthLevel::kError);
   CHECK(has(entries(silent).at("base"), "silent for 7.0 s on base/fluid_pressure"));
-  BaseStationStatus left = well();
+  BaseStationStatus left = healthy();
   left.left = true;
   CHECK(entries(left).at("base").level == HealthLevel::kError);
   CHECK(has(entries(left).at("base"), "has ended"));
-  BaseStationStatus rival = well();
+  BaseStationStatus rival = healthy();
   rival.rival_ns = kNow - kSecond;
   CHECK(entries(rival).at("base").level == HealthLevel::kWarning);
-  CHECK(has(entries(rival).at("base"), "another base station"));
+  CHECK(has(entries(rival).at("base"), "second base station"));
   rival.rival_ns = kNow - 60 * kSecond;  // it has gone
   CHECK(entries(rival).at("base").level == HealthLevel::kOk);
 }
 
-TEST_CASE("whatever was refused has a line of its own, a warning only while it goes on") {
-  BaseStationStatus now = well();
+TEST_CASE("every kind of refusal has its own entry, a warning only while the count grows") {
+  BaseStationStatus now = healthy();
   for (std::size_t verdict = 1; verdict < now.samples.size(); ++verdict) now.samples[verdict] = 10 + verdict;
   now.restarts = 1;
   now.outages = 2;
@@ -96,13 +96,13 @@ TEST_CASE("whatever was refused has a line of its own, a warning only while it g
   }
 }
 
-TEST_CASE("the log gets a line when a level changes, and none when only the figures do") {
+TEST_CASE("the log gets a line when a level changes, and none when only the values change") {
   LevelChanges changes;
   CHECK(changes.note("imu", HealthLevel::kOk, "200.0 per second") == "imu: ok: 200.0 per second");
   CHECK_FALSE(changes.note("imu", HealthLevel::kOk, "199.0 per second"));
   CHECK(changes.note("imu", HealthLevel::kError, "silent") == "imu: error: silent");
   CHECK(changes.note("imu", HealthLevel::kStale, "") == "imu: waiting: ");
-  CHECK_FALSE(changes.note("lidar/lost", HealthLevel::kOk, "well from the start"));
+  CHECK_FALSE(changes.note("lidar/lost", HealthLevel::kOk, "ok from the start"));
   CHECK(changes.note("lidar/garbage", HealthLevel::kWarning, "17") == "lidar/garbage: warning: 17");
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-/// The entry about these outputs; without a name where there is none.
+/// The entry of these outputs; its name is empty when there is none.
 ipc::HealthEntry entry(const DeadlineStatus& now, const DeadlineStatus& before) {
   ipc::HealthReport report;
   report.entry_count = 0;
@@ -24,7 +24,7 @@ ipc::HealthEntry entry(const DeadlineStatus& now, const DeadlineStatus& before) 
 
 }  // namespace
 
-TEST_CASE("an output at the limit is in time, one beyond is a miss, and the worst is kept") {
+TEST_CASE("an output at the limit is in time, one beyond it is a miss, and the longest time is kept") {
   Deadline deadline(10.0);
   deadline.note(1'000 * kMs, 1'010 * kMs);
   CHECK(deadline.status().misses == 0);
@@ -36,7 +36,8 @@ TEST_CASE("an output at the limit is in time, one beyond is a miss, and the wors
   CHECK(deadline.status().worst_ns == 250 * kMs);
 }
 
-TEST_CASE("a miss is a warning with count, limit and worst value; later only the figures stay") {
+TEST_CASE(
+    "a miss is a warning with count, limit and longest time; without a new miss the entry is ok again") {
   Deadline deadline(10.0);
   CHECK(std::string(entry(deadline.status(), {}).name).empty());
   deadline.note(0, 4 * kMs);
@@ -46,7 +47,7 @@ TEST_CASE("a miss is a warning with count, limit and worst value; later only the
   const ipc::HealthEntry late = entry(deadline.status(), well);
   CHECK(late.level == ipc::HealthLevel::kWarning);
   CHECK(late.value == 1.0);
-  CHECK(std::string(late.message) == "1 of 2 scans later than 10.0 ms, the worst 31.0 ms");
+  CHECK(std::string(late.message) == "1 of 2 scans later than 10.0 ms, at most 31.0 ms");
   CHECK(entry(deadline.status(), deadline.status()).level == ipc::HealthLevel::kOk);
 }
 

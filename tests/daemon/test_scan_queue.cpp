@@ -22,7 +22,7 @@ struct FakeScan {
 };
 using Queue = isobar::ScanQueue<std::unique_ptr<FakeScan>>;
 
-/// The scan of this number of a lidar at 10 Hz, number 0 ends at time 0.
+/// Scan with this sequence number of a lidar at 10 Hz; number 0 ends at time 0.
 std::unique_ptr<FakeScan> scan(std::uint32_t sequence) {
   return std::make_unique<FakeScan>(FakeScan{sequence, sequence * kRevolution});
 }
@@ -35,7 +35,7 @@ std::vector<std::uint32_t> numbers(const Queue& queue) {
 
 }  // namespace
 
-TEST_CASE("scans that come one by one are all registered, as soon as the priors reach near their end") {
+TEST_CASE("scans that arrive one by one are all registered, each as soon as the priors reach its end") {
   Queue queue(ScanQueueConfig{.reach_ns = 6 * kMs, .wait_ns = 50 * kMs});
   for (std::uint32_t i = 0; i < 100; ++i) {
     const std::int64_t end_ns = i * kRevolution;
@@ -50,16 +50,16 @@ TEST_CASE("scans that come one by one are all registered, as soon as the priors 
   CHECK(queue.dropped().empty());
 }
 
-TEST_CASE("a scan whose priors stay away goes on without them when its patience ends") {
+TEST_CASE("a scan without priors is registered once it has waited long enough") {
   Queue queue(ScanQueueConfig{.reach_ns = 6 * kMs, .wait_ns = 50 * kMs});
-  queue.push(scan(3), 310 * kMs);  // ten milliseconds after its end: its priors may be late, too
+  queue.push(scan(3), 310 * kMs);  // arrives 10 ms after its end; the wait counts from here
   CHECK_FALSE(queue.take(360 * kMs - 1, 0));
   CHECK_FALSE(queue.empty());
   CHECK(queue.take(360 * kMs, 0));
   CHECK(queue.dropped_count() == 0);
 }
 
-TEST_CASE("after a stall the newest scan is registered, and the older ones are told in order") {
+TEST_CASE("after a stall the newest scan is registered, and the older ones are listed as dropped, in order") {
   Queue queue(ScanQueueConfig{});
   for (std::uint32_t i = 5; i < 8; ++i) queue.push(scan(i), i * kRevolution);
   const auto taken = queue.take(700 * kMs, 700 * kMs);
@@ -74,7 +74,7 @@ TEST_CASE("after a stall the newest scan is registered, and the older ones are t
   CHECK_FALSE(queue.take(800 * kMs, 800 * kMs));
 }
 
-TEST_CASE("a scan that still waits for its priors does not drop the one before, which has them") {
+TEST_CASE("a scan that still waits for its priors does not displace an older one that has them") {
   Queue queue(ScanQueueConfig{});
   queue.push(scan(1), 1 * kRevolution);
   queue.push(scan(2), 2 * kRevolution);
@@ -83,8 +83,7 @@ TEST_CASE("a scan that still waits for its priors does not drop the one before, 
   CHECK(queue.take(206 * kMs, 200 * kMs)->sequence == 2);
 }
 
-TEST_CASE(
-    "scans that never came are told between those that did, at the times at which they must have ended") {
+TEST_CASE("lost scans are listed between their neighbours, with interpolated end times") {
   Queue queue(ScanQueueConfig{});
   queue.push(scan(1), 1 * kRevolution);
   CHECK(queue.take(100 * kMs, 100 * kMs));
@@ -96,14 +95,14 @@ TEST_CASE(
     CHECK(dropped.end_stamp_ns == dropped.sequence * kRevolution);
 }
 
-TEST_CASE("of more waiting scans than there is room for the oldest goes, though none has its priors") {
+TEST_CASE("a full queue drops its oldest scan, although none has its priors") {
   Queue queue(ScanQueueConfig{});
   for (std::uint32_t i = 0; i < Queue::kMaxWaiting + 2; ++i) queue.push(scan(i), i * kRevolution);
   CHECK(numbers(queue) == std::vector<std::uint32_t>{0, 1});
   CHECK(queue.take(2 * kRevolution + 50 * kMs, 0)->sequence == 2);
 }
 
-TEST_CASE("of a gap longer than can be told every scan is counted and the newest are told") {
+TEST_CASE("a gap longer than the list is counted in full, and the newest scans are listed") {
   Queue queue(ScanQueueConfig{});
   queue.push(scan(0), 0 * kRevolution);
   CHECK(queue.take(0, 0));
@@ -115,7 +114,7 @@ TEST_CASE("of a gap longer than can be told every scan is counted and the newest
   CHECK(queue.dropped().front().sequence == 101 - Queue::kMaxListed);
 }
 
-TEST_CASE("numbers that wrap are no gap, and numbers that start again are none either") {
+TEST_CASE("neither a wrapped nor a restarted sequence number is a gap") {
   Queue queue(ScanQueueConfig{});
   queue.push(std::make_unique<FakeScan>(FakeScan{UINT32_MAX, 0}), 0);
   CHECK(queue.take(0, 0));

@@ -11,7 +11,7 @@ namespace isobar::test::test_seq_lock {
 
 namespace {
 
-/// A value that shows when it is put together from two writes.
+/// A value that shows a torn read: all words of one write are equal.
 struct Twelve {
   std::array<std::uint64_t, 12> words{};
 };

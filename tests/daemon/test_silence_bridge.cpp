@@ -14,7 +14,7 @@ TEST_CASE(
   CHECK(bridge.in_order(-5));
 }
 
-TEST_CASE("scans at 10 Hz never let a pose without a scan through, even when one is missing") {
+TEST_CASE("at 10 Hz no pose comes from the prior, not even when one scan is missing") {
   SilenceBridge bridge;
   bridge.posed(0, true);
   for (std::int64_t t_ns = 0; t_ns < 200'000'000; t_ns += 5'000'000) CHECK_FALSE(bridge.due(t_ns));

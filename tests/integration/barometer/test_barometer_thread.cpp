@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The thread that reads a barometer of this machine, in real time, on a model of a DPS310: samples in shared
+// The thread that reads a barometer attached to this machine, in real time on a model of a DPS310: samples in shared
 // memory, faults in the health report.
 #include "daemon/barometer_thread.hpp"
 
@@ -23,14 +23,14 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A chip that lives in real time; the test changes it while the thread reads it.
+/// A chip model that runs in real time; the test changes it while the thread reads it.
 struct LiveChip {
   LiveChip() { chip.noise_pa = 0.35; }
   void change(const std::function<void(dps310::ChipModel&)>& what) {
     const std::lock_guard lock(mutex);
     what(chip);
   }
-  /// Takes the chip to the present. Call under the lock.
+  /// Advances the model to the present. Call under the lock.
   void catch_up() { chip.run_until(RobotClock::now_ns() - start_ns + 2'000'000'000'000); }
 
   std::mutex mutex;
@@ -57,7 +57,7 @@ class LiveBus final : public dps310::RegisterBus {
   LiveChip* live_;
 };
 
-/// The thread, a reader of its topic, and what the health report says of it.
+/// The thread, a reader of its topic, and its entry in the health report.
 struct Rig {
   Rig()
       : barometer(std::make_unique<dps310::Sensor>(dps310::Settings{}, std::make_unique<LiveBus>(live),
@@ -73,7 +73,7 @@ struct Rig {
     config.barometer.source = "dps310";
     return config;
   }
-  /// Samples that came within `time`.
+  /// Number of samples received within `time`.
   int count(std::chrono::milliseconds time, PressureSample* last = nullptr) {
     const auto end = std::chrono::steady_clock::now() + time;
     int samples = 0;
@@ -86,7 +86,7 @@ struct Rig {
     }
     return samples;
   }
-  /// The entry "barometer" as the report has it now: level and words.
+  /// The entry "barometer" of a report made now: level and message.
   std::pair<ipc::HealthLevel, std::string> health() {
     StatusSnapshot now;
     now.now_ns = RobotClock::now_ns();
@@ -112,12 +112,12 @@ struct Rig {
 }  // namespace
 
 TEST_CASE(
-    "samples come at the sensor's rate; what happens to it is said with its place and is over when it is") {
+    "samples arrive at the sensor's rate; a fault is reported with its place, and only while it lasts") {
   Rig rig;
   rig.count(1'000ms);
   PressureSample last;
   const int samples = rig.count(2'000ms, &last);
-  // 64 are due; a busy machine may read some too late.
+  // 64 in 2 s; a busy machine may miss some.
   CHECK(samples >= 40);
   CHECK(samples <= 68);
   CHECK(std::abs(last.pressure_pa - 96'000.0) < 3.0);
@@ -151,7 +151,7 @@ TEST_CASE(
   CHECK(words == "DPS310 on /dev/i2c-1 at 0x77: the same bits again and again");
 }
 
-TEST_CASE("a thread that waits five seconds for its next try ends at once when it is told to") {
+TEST_CASE("a thread that waits five seconds before its next try stops at once") {
   Rig rig;
   rig.live.change([](auto& chip) { chip.unplugged = true; });
   rig.count(2'000ms);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One thread of another process, held: what a hung call or a starved core does to it.
+// Stops one thread of another process, as a hung system call or a starved core would.
 #pragma once
 
 #include <sys/ptrace.h>
@@ -16,12 +16,12 @@ namespace isobar::test {
 
 class StoppedThread {
  public:
-  /// Holds the thread of that name as long as this lives. One of the tester's threads makes and ends it.
+  /// Stops the thread of that name for the lifetime of this object. Construct and destroy in one thread (ptrace).
   StoppedThread(pid_t process, const std::string& name) : thread_(find(process, name)) {
     if (::ptrace(PTRACE_SEIZE, thread_, nullptr, nullptr) != 0 ||
         ::ptrace(PTRACE_INTERRUPT, thread_, nullptr, nullptr) != 0 ||
         ::waitpid(thread_, nullptr, __WALL) != thread_) {
-      throw std::runtime_error("the thread " + name + " cannot be held");
+      throw std::runtime_error("the thread " + name + " cannot be stopped");
     }
   }
   ~StoppedThread() { ::ptrace(PTRACE_DETACH, thread_, nullptr, nullptr); }

@@ -12,7 +12,7 @@ trap finish EXIT
 checks=0
 fail() { echo "FAILED: $*"; for log in "$work"/*.log; do echo "--- $log"; tail -n 20 "$log"; done; exit 1; }
 ok() { checks=$((checks + 1)); echo "ok: $*"; }
-# expect_exit CODE WORDS COMMAND…: the command ends with that code and says those words.
+# expect_exit CODE WORDS COMMAND…: the command ends with that code and its output has those words.
 expect_exit() {
   local code=$1 words=$2 got=0
   shift 2
@@ -55,7 +55,7 @@ pids+=("$!")
 "$isobar" play "$work/recording" --reference-out "$work/played" >"$work/play.log" 2>&1
 sleep 1
 
-# The bridge is killed without a word: the estimator goes on, and a new bridge finds it.
+# The bridge is killed by SIGKILL: the estimator goes on.
 kill -9 "$bridge_pid"
 kill -0 "$daemon" || fail "isobard ended with the bridge"
 ok "isobard lives on without the bridge"
@@ -79,8 +79,8 @@ largest=$(grep -o '"ate_max_m": *[-0-9.e]*' "$work/figures.json" | sed 's/.*: */
 awk -v e="$largest" 'BEGIN { exit !(e < 0.3) }' || fail "position off by $largest m"
 ok "position within 30 cm (largest error $largest m)"
 
-# isobard is stopped for two seconds: poses go on with the first scan that is of now. Those of the scans that
-# came meanwhile rest on what the queues have kept of the IMU, hence a metre.
+# isobard is stopped for two seconds: poses resume with the first new scan. Poses of the scans in between rest on the
+# IMU samples that the queues kept, hence the tolerance of a metre.
 "$isobard" --config "$work/isobar.toml" --output "$work/stopped" >"$work/stopped.log" 2>&1 &
 daemon=$!
 pids+=("$daemon")

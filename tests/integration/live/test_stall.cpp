@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// isobard whose threads are held for a while: poses go on with the newest scan, and nothing is dropped in
-// silence.
+// isobard with threads that are stopped for a while: poses resume with the newest scan, and every drop is counted.
 #include <doctest/doctest.h>
 #include <signal.h>  // NOLINT(modernize-deprecated-headers)
 #include <sys/socket.h>
@@ -33,7 +32,7 @@ using test::StoppedThread;
 
 constexpr std::int64_t kMs = 1'000'000;
 
-/// A drive of 20 s and the configuration for it, simulated once.
+/// A simulated drive of 20 s with its configuration, made once.
 struct Drive {
   std::string recording = std::filesystem::temp_directory_path() / "stall-recording";
   std::string config = std::filesystem::temp_directory_path() / "stall.toml";
@@ -57,11 +56,10 @@ struct Pose {
   std::int64_t received_ns = 0;
 };
 
-/// What passes through shared memory, from the outside. One in a process, so all tests share a run of
-/// isobard.
+/// A reader of shared memory outside isobard. A process can attach only once, so all tests share one run of isobard.
 class Tap {
  public:
-  /// Gathers for so long.
+  /// Collects messages for `duration`.
   void gather(std::chrono::milliseconds duration) {
     const auto end = std::chrono::steady_clock::now() + duration;
     while (std::chrono::steady_clock::now() < end) {
@@ -94,7 +92,7 @@ class Tap {
   ipc::Waiter waiter_{&scans_.raw(), &poses_.raw(), &reports_.raw()};
 };
 
-/// systemd's end of the watchdog.
+/// The service manager's end of the watchdog.
 class Manager {
  public:
   Manager() {
@@ -115,11 +113,11 @@ class Manager {
   }
   Manager(const Manager&) = delete;
   Manager& operator=(const Manager&) = delete;
-  /// Times that the watchdog was fed since the last call.
+  /// Number of watchdog feeds since the last call.
   int feeds() { return feeds_.exchange(0); }
 
  private:
-  // Always: a manager that does not listen would hold isobard up.
+  // At all times: a full socket would block isobard.
   void listen() {
     std::array<char, 512> message{};
     for (ssize_t length = 0; (length = ::recv(socket_, message.data(), message.size(), 0)) > 0;) {
@@ -132,13 +130,12 @@ class Manager {
   std::thread thread_;
 };
 
-/// Every scan has one pose at its end; a scan that was never seen by the registration, at where it must have
-/// ended.
+/// Every scan has one pose at its end; a scan that the registration never received, at its interpolated end.
 void check_one_pose_a_scan(const Tap& tap) {
   constexpr std::int64_t kRevolutionJitterNs = 5 * kMs;
   REQUIRE(!tap.poses.empty());
   for (const std::int64_t end_ns : tap.scan_ends_ns) {
-    if (end_ns > tap.poses.back().estimate.stamp_ns) continue;  // still on its way
+    if (end_ns > tap.poses.back().estimate.stamp_ns) continue;  // not yet registered
     int found = 0;
     for (const Pose& pose : tap.poses) {
       found += std::abs(pose.estimate.stamp_ns - end_ns) <= kRevolutionJitterNs ? 1 : 0;
@@ -147,8 +144,8 @@ void check_one_pose_a_scan(const Tap& tap) {
   }
 }
 
-/// In order of time, and never farther apart than a robot drives and `correction_m`, by which a registration
-/// may put a prior right.
+/// Poses are in order of time, and neighbours are no farther apart than 2 m/s allow plus `correction_m`, the largest
+/// correction of a prior by the registration.
 void check_steady(const std::vector<Pose>& poses, double correction_m) {
   for (std::size_t i = 1; i < poses.size(); ++i) {
     const PoseEstimate& before = poses[i - 1].estimate;
@@ -160,7 +157,7 @@ void check_steady(const std::vector<Pose>& poses, double correction_m) {
   }
 }
 
-/// The first that came after `received_after_ns` of a scan that ended after `ended_after_ns`.
+/// The first registered pose received after `received_after_ns` from a scan that ended after `ended_after_ns`.
 const Pose* first_registered(const std::vector<Pose>& poses, std::int64_t received_after_ns,
                              std::int64_t ended_after_ns) {
   for (const Pose& pose : poses) {
@@ -183,10 +180,10 @@ void held_registration(const ChildProcess& isobard, Tap& tap) {
   }
   const std::int64_t resumed_ns = RobotClock::now_ns();
   tap.gather(2500ms);
-  // A scan that the thread had in hand when it was held is finished first; it ended before.
+  // The scan in work when the thread was stopped is finished first; it ended before held_ns.
   const Pose* first = first_registered(tap.poses, resumed_ns, held_ns);
   REQUIRE(first != nullptr);
-  // The newest scan that was there: at most a revolution old, and what a loaded machine adds.
+  // The newest waiting scan: at most one revolution (100 ms) old, plus what a loaded machine adds.
   CHECK(first->estimate.stamp_ns > resumed_ns - 150 * kMs);
   int from_prior_in_hold = 0;
   for (const Pose& pose : tap.poses) {
@@ -199,7 +196,7 @@ void held_registration(const ChildProcess& isobard, Tap& tap) {
   check_one_pose_a_scan(tap);
   check_steady(tap.poses, 0.1);
   REQUIRE(tap.entry("registration/dropped") != nullptr);
-  // More where a loaded machine dropped some before or after.
+  // More when a loaded machine dropped others before or after.
   CHECK(tap.entry("registration/dropped")->value >= from_prior_in_hold);
   REQUIRE(tap.entry("registration/deadline") != nullptr);
   CHECK(tap.entry("registration/deadline")->value >= from_prior_in_hold);
@@ -217,11 +214,9 @@ void held_process(const ChildProcess& isobard, Tap& tap) {
     if (fresh == nullptr && pose.estimate.stamp_ns > resumed_ns) fresh = &pose;
   }
   REQUIRE(fresh != nullptr);
-  // Under a sanitizer, on a loaded machine, it was 640 ms; twenty scans that waited would be three times
-  // that.
+  // Measured: 640 ms under a sanitizer on a loaded machine. Working off twenty waiting scans would take three times that.
   CHECK(fresh->received_ns < resumed_ns + 1200 * kMs);
-  // Most of the IMU's samples of these two seconds are lost: the prior is right to a metre, as in
-  // live_test.sh.
+  // Most IMU samples of these two seconds are lost: the prior is accurate to a metre, as in test_live.sh.
   check_steady(tap.poses, 1.0);
   CHECK(first_registered(tap.poses, resumed_ns, resumed_ns) != nullptr);
 }
@@ -232,7 +227,7 @@ void hung_map(const ChildProcess& isobard, Tap& tap, Manager& manager) {
   CHECK(manager.feeds() >= 2);
   {
     const StoppedThread held(isobard.pid(), "map");
-    tap.gather(7s);  // five seconds of patience, one round
+    tap.gather(7s);  // WorkerGroup::kSilenceNs (5 s) and a report
     static_cast<void>(manager.feeds());
     tap.gather(3s);
     CHECK(manager.feeds() == 0);
@@ -248,12 +243,14 @@ void hung_map(const ChildProcess& isobard, Tap& tap, Manager& manager) {
 }  // namespace
 
 TEST_CASE(
-    "held threads: the newest scan first, dropped scans from the prior, a hung thread starves the watchdog") {
+    "after a stopped thread the newest scan is registered first, dropped scans get poses from the prior, and "
+    "a "
+    "hung thread starves the watchdog") {
   Manager manager;
   ChildProcess isobard({ISOBAR_DAEMON, "--config", drive().config});
   REQUIRE(isobard.read_until("ready:", 20s));
   std::optional<Tap> tap(std::in_place);
-  // Without any data all threads are alive, for longer than a hung one is waited for.
+  // Without data all threads stay alive, for longer than the limit of a hung one.
   tap->gather(7s);
   CHECK(manager.feeds() >= 5);
   hung_map(isobard, *tap, manager);
@@ -262,7 +259,7 @@ TEST_CASE(
   tap->gather(5s);
   held_registration(isobard, *tap);
   held_process(isobard, *tap);
-  tap.reset();  // nothing of shared memory may outlive isobard
+  tap.reset();  // an attachment must not outlive isobard
   isobard.signal(SIGTERM);
   CHECK(isobard.wait(20s) == 0);
 }

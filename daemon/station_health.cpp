@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "daemon/station_monitor.hpp"
+#include "daemon/station_health.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -45,19 +45,19 @@ void add_barometer(const StationSnapshot& now, const StationSnapshot& before, co
 
 }  // namespace
 
-void StationMonitor::fill(const StationSnapshot& now, ipc::HealthReport& report) {
+void fill_station_health(const StationSnapshot& now, const StationSnapshot& before, const Config& config,
+                         ipc::HealthReport& report) {
   constexpr auto kBarometer = static_cast<std::size_t>(datagram::Kind::kPressure);
-  add_barometer(now, before_, config_, report);
+  add_barometer(now, before, config, report);
   add_count(report, "barometer/lost", now.input.counters.lost[kBarometer],
-            before_.input.counters.lost[kBarometer], "samples lost, by the gaps in their numbers");
-  add_count(report, "station/dropped", now.station.dropped_samples, before_.station.dropped_samples,
+            before.input.counters.lost[kBarometer], "samples lost, by the gaps in their numbers");
+  add_count(report, "station/dropped", now.station.dropped_samples, before.station.dropped_samples,
             "samples dropped: they arrived faster than they were used");
   add_count(report, "station/no_memory", now.station.samples_without_memory,
-            before_.station.samples_without_memory, "samples dropped: no free chunk of shared memory");
-  add_calibration(report, "barometer", now.station.outside_calibration, before_.station.outside_calibration,
-                  now.station.without_temperature, before_.station.without_temperature);
-  add_input(report, now.input, before_.input);
-  before_ = now;
+            before.station.samples_without_memory, "samples dropped: no free chunk of shared memory");
+  add_calibration(report, "barometer", now.station.outside_calibration, before.station.outside_calibration,
+                  now.station.without_temperature, before.station.without_temperature);
+  add_input(report, now.input, before.input);
 }
 
 }  // namespace isobar

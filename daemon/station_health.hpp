@@ -19,17 +19,9 @@ struct StationSnapshot {
   StationStatus station;
 };
 
-/// Adds the status of a base station to a health report. Rates and growth are relative to the last call. One
-/// thread.
-class StationMonitor {
- public:
-  explicit StationMonitor(const Config& config) : config_(config) {}
-
-  void fill(const StationSnapshot& now, ipc::HealthReport& report);
-
- private:
-  Config config_;
-  StationSnapshot before_;
-};
+/// Adds the entries of a base station to a health report; rates and growth from `before` to `now`.
+/// @param before status at the last report; default-constructed: none yet
+void fill_station_health(const StationSnapshot& now, const StationSnapshot& before, const Config& config,
+                         ipc::HealthReport& report);
 
 }  // namespace isobar
