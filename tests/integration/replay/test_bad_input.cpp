@@ -43,7 +43,7 @@ TEST_CASE("without a base station the run goes on with the robot's barometer alo
   std::filesystem::path out;
   const auto summary = run(folder, out);
   CHECK(warns_of(summary, "no [base_barometer]"));
-  CHECK(bytes_of(out / "status.csv").find(",single,") != std::string::npos);
+  CHECK(bytes_of(out / "status.csv").find(",single_barometer,") != std::string::npos);
   CHECK(largest_error_m(short_drive(), out) < 0.3);
 }
 
