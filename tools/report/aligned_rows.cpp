@@ -8,7 +8,7 @@ namespace isobar::report {
 
 namespace {
 
-/// Characters of a UTF-8 text.
+/// Number of characters of a UTF-8 text: bytes that are not continuation bytes.
 std::size_t length(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));

@@ -6,10 +6,9 @@
 
 namespace isobar::report {
 
-/// The cells of one row.
 using Cells = std::vector<std::string>;
 
-/// A table for the terminal, a line a row: the first column stands left, the others right.
+/// A table for the terminal, one line per row: first column left-aligned, the others right-aligned.
 std::string aligned_rows(const std::vector<Cells>& rows);
 
 }  // namespace isobar::report

@@ -9,8 +9,8 @@
 
 namespace isobar::report {
 
-/// One box a row: median, quartiles, whiskers from the 5th to the 95th percentile, the median in figures at
-/// the right. The axis is logarithmic if the largest whisker is more than 25 times the smallest median.
+/// One box per row: median, quartiles, whiskers from the 5th to the 95th percentile, the median's value at
+/// the right. The axis is logarithmic when the largest whisker exceeds 25 times the smallest median.
 struct BoxPlot {
   struct Row {
     std::string name;
@@ -19,8 +19,8 @@ struct BoxPlot {
   };
 
   std::string x_label;
-  std::string unit;  ///< behind the median in figures
-  int decimals = 2;  ///< of that
+  std::string unit;  ///< of the median's value
+  int decimals = 2;  ///< of the median's value
   std::vector<Row> rows;
   double width = 1040.0;
 };

@@ -14,11 +14,11 @@ namespace isobar::report {
 
 namespace {
 
-constexpr double kWidth = 1040.0;
-constexpr std::size_t kMostPoints = 1'500;
-constexpr std::size_t kGroups = 16;
+constexpr std::size_t kMaxDrawnPoints = 1'500;  // per model: more would only enlarge the file
+constexpr std::size_t kGroups = 16;             // of samples, one median each
+constexpr double kMedianLinePx = 2.6;
 
-// Of Okabe and Ito (2008), as in the other reports.
+// One per model. Palette of Okabe and Ito (2008), as in the other reports.
 constexpr std::array<const char*, 7> kColours = {"#6b7280", "#9ca3af", "#d55e00", "#0072b2",
                                                  "#009e73", "#b07d00", "#aa3a86"};
 
@@ -27,7 +27,7 @@ const char* colour_of(CompensationModel model) { return kColours[static_cast<std
 struct Cloud {
   std::string name;
   std::string colour;
-  std::vector<Point> points;  ///< temperature, residual; by temperature
+  std::vector<Point> points;  ///< x: temperature [degC], y: residual [Pa]; ascending x
 };
 
 Cloud cloud_of(const ModelResult& result, std::span<const CalibrationRecording> recordings) {
@@ -43,7 +43,7 @@ Cloud cloud_of(const ModelResult& result, std::span<const CalibrationRecording> 
   return cloud;
 }
 
-/// Medians of equally many samples each.
+/// Median residual of each of kGroups groups of equally many samples.
 std::vector<Point> medians_of(const Cloud& cloud) {
   std::vector<Point> medians;
   const std::size_t count = cloud.points.size();
@@ -59,7 +59,7 @@ std::vector<Point> medians_of(const Cloud& cloud) {
   return medians;
 }
 
-/// Without the hundredth of the residuals that lies furthest out: a few spikes must not flatten the picture.
+/// Range of the residuals from the 0.5th to the 99.5th percentile: a few spikes must not flatten the picture.
 Range residual_range(const std::vector<Cloud>& clouds) {
   std::vector<double> residuals;
   for (const Cloud& cloud : clouds) {
@@ -67,6 +67,22 @@ Range residual_range(const std::vector<Cloud>& clouds) {
   }
   std::sort(residuals.begin(), residuals.end());
   return padded({quantile(residuals, 0.005), quantile(residuals, 0.995)}, 0.06, 0.1);
+}
+
+void draw_points(Picture& picture, const Cloud& cloud, const Axes& axes) {
+  const std::size_t stride = cloud.points.size() / kMaxDrawnPoints + 1;
+  for (std::size_t k = 0; k < cloud.points.size(); k += stride) {
+    const Point& point = cloud.points[k];
+    picture.circle({axes.x(point.x), axes.y(point.y)}, 1.6, cloud.colour, {cloud.colour, 0.0, "", 0.0});
+  }
+}
+
+/// A line through the medians with a white outline, which keeps it visible over the points.
+void draw_medians(Picture& picture, const Cloud& cloud, const Axes& axes) {
+  std::vector<Point> line;
+  for (const Point& median : medians_of(cloud)) line.push_back({axes.x(median.x), axes.y(median.y)});
+  picture.polyline(line, {"#ffffff", 5.0});
+  picture.polyline(line, {cloud.colour, kMedianLinePx});
 }
 
 }  // namespace
@@ -94,32 +110,19 @@ Picture residual_against_temperature(const Calibration& calibration, Compensatio
                                      std::span<const CalibrationRecording> recordings) {
   std::vector<Cloud> clouds{cloud_of(calibration.model(CompensationModel::kOffset), recordings)};
   if (chosen > CompensationModel::kOffset) clouds.push_back(cloud_of(calibration.model(chosen), recordings));
-  Picture picture(kWidth, 420.0);
+  Picture picture(1040.0, 420.0);
   std::vector<LegendEntry> legend;
-  legend.reserve(clouds.size());
-  for (const Cloud& cloud : clouds) legend.push_back({cloud.name, {cloud.colour, 2.6}});
-  const double top = draw_legend(picture, {68.0, 0.0}, kWidth - 82.0, legend) + 8.0;
-  const Box frame{68.0, top, kWidth - 82.0, 420.0 - top - 50.0};
+  for (const Cloud& cloud : clouds) legend.push_back({cloud.name, {cloud.colour, kMedianLinePx}});
+  const Box frame = frame_below_legend(picture, legend, 8.0);
   const Range temperatures = padded({calibration.range.lowest_c, calibration.range.highest_c}, 0.02, 1.0);
-  const Axes axes{frame, Scale::linear(temperatures, frame.x, frame.right(), 90.0),
-                  Scale::linear(residual_range(clouds), frame.bottom(), frame.y, 44.0),
+  const Axes axes{frame, Scale::linear(temperatures, frame.x, frame.right(), kXTickPx),
+                  Scale::linear(residual_range(clouds), frame.bottom(), frame.y, kYTickPx),
                   "temperature of the sensor [degC]", "reference − compensated [Pa]"};
   draw_axes(picture, axes);
   picture.begin_clip(frame, "temperature");
   picture.line({frame.x, axes.y(0.0)}, {frame.right(), axes.y(0.0)}, {"#6b7280", 1.0});
-  for (const Cloud& cloud : clouds) {
-    const std::size_t every = cloud.points.size() / kMostPoints + 1;
-    for (std::size_t k = 0; k < cloud.points.size(); k += every) {
-      const Point& point = cloud.points[k];
-      picture.circle({axes.x(point.x), axes.y(point.y)}, 1.6, cloud.colour, {cloud.colour, 0.0, "", 0.0});
-    }
-  }
-  for (const Cloud& cloud : clouds) {
-    std::vector<Point> line;
-    for (const Point& median : medians_of(cloud)) line.push_back({axes.x(median.x), axes.y(median.y)});
-    picture.polyline(line, {"#ffffff", 5.0});
-    picture.polyline(line, {cloud.colour, 2.6});
-  }
+  for (const Cloud& cloud : clouds) draw_points(picture, cloud, axes);
+  for (const Cloud& cloud : clouds) draw_medians(picture, cloud, axes);
   picture.end_clip();
   return picture;
 }

@@ -9,13 +9,14 @@
 
 namespace isobar::report {
 
-/// How a model is called beside the paper's: "A'_m, as it is" and "offset alone" for what is no model of it.
+/// A model's name in tables and charts: the paper's, or "A'_m, as it is" and "A'_m + offset" for kNone and
+/// kOffset, which the paper does not name.
 std::string calibration_row_name(CompensationModel model);
 
 /// The paper's box plot: |residual| by model.
 Picture residual_boxes(const Calibration& calibration);
 
-/// Residuals over the sensor's temperature after an offset alone and after `chosen`.
+/// Residuals against the sensor's temperature, with an offset alone and with the model `chosen`.
 Picture residual_against_temperature(const Calibration& calibration, CompensationModel chosen,
                                      std::span<const CalibrationRecording> recordings);
 

@@ -13,7 +13,7 @@ namespace isobar::report {
 
 namespace {
 
-/// One line of the table; the names of the paper where it has them.
+/// One row of the table, with the paper's name of the model.
 Cells row_of(const ModelResult& result, const ModelResult& offset) {
   Cells cells{calibration_row_name(result.model), std::to_string(free_coefficient_count(result.model))};
   if (!result.left_out.empty()) {
@@ -44,46 +44,35 @@ std::string spans_text(const Calibration& calibration, std::span<const Calibrati
          fixed(0.01 * (range.highest_pa - range.lowest_pa), 1) + " hPa)";
 }
 
-std::string html_table(const CalibrationReport& report) {
-  std::string html = "<div class=\"scroll\"><table><thead><tr>";
-  for (const std::string& cell : kHead) html += "<th>" + escaped(cell) + "</th>";
-  html += "</tr></thead><tbody>\n";
-  const ModelResult& offset = report.calibration.model(CompensationModel::kOffset);
-  for (const ModelResult& result : report.calibration.models) {
-    const Cells cells = row_of(result, offset);
-    const char* open = result.model == report.chosen ? "<td class=\"best\"" : "<td";
-    html += "<tr>";
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-      const bool fills = k + 1 == cells.size() && cells.size() < kHead.size();
-      html += std::string(open) +
-              (fills ? " colspan=\"" + std::to_string(kHead.size() - cells.size() + 1) + "\"" : "") + ">" +
-              escaped(cells[k]) + "</td>";
-    }
-    html += "</tr>\n";
+/// The row of a model that could not be fitted ends with a cell that spans the figures.
+std::vector<TableCell> html_row(const ModelResult& result, const CalibrationReport& report) {
+  const std::string css_class = result.model == report.chosen ? "best" : "";
+  std::vector<TableCell> row;
+  for (const std::string& text : row_of(result, report.calibration.model(CompensationModel::kOffset))) {
+    row.push_back({text, css_class});
   }
-  return html + "</tbody></table></div>\n";
+  row.back().columns = kHead.size() + 1 - row.size();
+  return row;
 }
 
-std::string html_list(const std::vector<std::string>& lines) {
-  std::string html = "<ul class=\"notes\">\n";
-  for (const std::string& line : lines) html += "<li>" + escaped(line) + "</li>\n";
-  return html + "</ul>\n";
+std::string models_table(const CalibrationReport& report) {
+  std::vector<std::vector<TableCell>> rows;
+  for (const ModelResult& result : report.calibration.models) rows.push_back(html_row(result, report));
+  return html_table(kHead, rows);
 }
 
 std::string tiles(const CalibrationReport& report) {
   const ModelResult& chosen = report.calibration.model(report.chosen);
   const ModelResult& offset = report.calibration.model(CompensationModel::kOffset);
-  std::string html = "<ul class=\"tiles\">\n";
-  html += tile("Model", model_name(report.chosen),
-               std::to_string(free_coefficient_count(report.chosen)) + " coefficients, condition number " +
-                   fixed(chosen.condition_number, 1));
-  html += tile("Residual, median |r|", fixed(chosen.residual.median_abs_pa, 2) + " Pa",
-               "after an offset alone " + fixed(offset.residual.median_abs_pa, 2) + " Pa");
-  html += tile("Residual, rms", fixed(chosen.residual.rms_pa, 2) + " Pa",
-               "after an offset alone " + fixed(offset.residual.rms_pa, 2) + " Pa");
-  html += tile("On data it was not fitted to, rms", fixed(chosen.cross_validated_rms_pa, 2) + " Pa",
-               "white noise of a sample " + fixed(white_noise_pa(chosen.residuals_pa), 2) + " Pa");
-  return html + "</ul>\n";
+  return tile_row({{"Model", model_name(report.chosen),
+                    std::to_string(free_coefficient_count(report.chosen)) +
+                        " coefficients, condition number " + fixed(chosen.condition_number, 1)},
+                   {"Residual, median |r|", fixed(chosen.residual.median_abs_pa, 2) + " Pa",
+                    "with an offset alone " + fixed(offset.residual.median_abs_pa, 2) + " Pa"},
+                   {"Residual, rms", fixed(chosen.residual.rms_pa, 2) + " Pa",
+                    "with an offset alone " + fixed(offset.residual.rms_pa, 2) + " Pa"},
+                   {"Cross-validated residual, rms", fixed(chosen.cross_validated_rms_pa, 2) + " Pa",
+                    "white noise of a sample " + fixed(white_noise_pa(chosen.residuals_pa), 2) + " Pa"}});
 }
 
 }  // namespace
@@ -96,7 +85,7 @@ std::string calibration_table(const Calibration& calibration,
   for (const ModelResult& result : calibration.models) {
     Cells cells = row_of(result, offset);
     if (!result.left_out.empty()) {
-      left_out += std::string(model_name(result.model)) + " was left out: " + result.left_out + "\n";
+      left_out += std::string(model_name(result.model)) + " left out: " + result.left_out + "\n";
     } else {
       rows.push_back(std::move(cells));
     }
@@ -108,25 +97,23 @@ std::string calibration_table(const Calibration& calibration,
 
 std::string render_calibration_report(const CalibrationReport& report) {
   const Calibration& calibration = report.calibration;
-  std::string html = "<h1>" + escaped(report.title) + "</h1>\n<p class=\"lead\">" +
-                     escaped(spans_text(calibration, report.recordings)) + ".</p>\n<p>Recommended is " +
-                     escaped(calibration.reason) + ".</p>\n<div class=\"command\">" +
-                     escaped(report.command) + "</div>\n" + tiles(report);
-  html +=
-      heading("Residual by model") +
-      figure(
-          residual_boxes(calibration), "Box plot of the residual by model",
-          "|reference − compensated| of all samples. Thick line: median; box: quartiles; whiskers: 5th and "
-          "95th percentiles.") +
-      html_table(report) + "<p>rms, unseen: " + escaped(calibration.validation) + ".</p>\n";
-  html += heading("Residual against temperature") +
-          figure(residual_against_temperature(calibration, report.chosen, report.recordings),
-                 "Residual against temperature, after an offset alone and after the model",
-                 "Points: samples, evenly taken. Lines: medians of groups of equally many samples.");
   std::vector<std::string> warnings = calibration.warnings;
   warnings.insert(warnings.end(), report.warnings.begin(), report.warnings.end());
-  if (!warnings.empty()) html += heading("To look at") + html_list(warnings);
-  html += heading("How the data were read") + html_list(report.notes);
+  std::string html =
+      page_head(report.title, spans_text(calibration, report.recordings) + ".", report.command) +
+      paragraph("Recommended is " + calibration.reason + ".") + tiles(report);
+  html +=
+      heading("Residual by model") +
+      figure(residual_boxes(calibration), "Box plot of the residual by model",
+             "|reference − compensated| of all samples. Thick line: median; box: quartiles; whiskers: 5th "
+             "and 95th percentiles.") +
+      models_table(report) + paragraph("rms, unseen: " + calibration.validation + ".");
+  html += heading("Residual against temperature") +
+          figure(residual_against_temperature(calibration, report.chosen, report.recordings),
+                 "Residual against temperature, with an offset alone and with the chosen model",
+                 "Points: every n-th sample. Lines: medians of groups of equally many samples.");
+  if (!warnings.empty()) html += heading("Warnings") + bullet_list(warnings);
+  html += heading("How the logs were read") + bullet_list(report.notes);
   return html_page(report.title, html);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What `isobar calibrate` found: a table for the terminal and a page with the paper's box plot.
+// Result of `isobar calibrate`: a table for the terminal, and a page with the paper's box plot.
 #pragma once
 
 #include <span>
@@ -12,19 +12,19 @@ namespace isobar::report {
 
 struct CalibrationReport {
   std::string title;
-  std::string command;  ///< that makes this report again, as typed
+  std::string command;  ///< the command line that makes this report
   Calibration calibration;
-  CompensationModel chosen = CompensationModel::kNone;  ///< the one that was written
+  CompensationModel chosen = CompensationModel::kNone;  ///< the model written to the file
   std::vector<CalibrationRecording> recordings;
   std::vector<std::string> notes;     ///< how the data were read and paired
-  std::vector<std::string> warnings;  ///< beside the calibration's own
+  std::vector<std::string> warnings;  ///< in addition to the calibration's
 };
 
-/// The table of all models, and what stands below it: samples, spans, recommendation, warnings.
+/// For the terminal: number and range of the samples, the table of all models, and the recommendation.
 std::string calibration_table(const Calibration& calibration,
                               std::span<const CalibrationRecording> recordings);
 
-/// The whole page.
+/// The page as HTML.
 std::string render_calibration_report(const CalibrationReport& report);
 
 }  // namespace isobar::report

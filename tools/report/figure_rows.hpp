@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The figures that every table shows: one list for the terminal, the report and the JSON file.
+// The list of figures, shared by the terminal's table, the report and the JSON file.
 #pragma once
 
 #include <span>
@@ -14,10 +14,10 @@ struct FigureRow {
   const char* label;    ///< in the report's table
   const char* unit;     ///< as shown
   const char* key;      ///< in the JSON file
-  const char* heading;  ///< in the terminal's table; null: not there
+  const char* heading;  ///< in the terminal's table; null: left out
   int decimals;         ///< as shown
   double scale;         ///< from the stored value to the shown one
-  bool is_signed;       ///< shown with its sign; the best is the one nearest to 0
+  bool is_signed;       ///< shown with its sign; the nearest to 0 is best
   bool is_ranked;       ///< the report marks the best method
   bool larger_is_better;
   double (*value)(const evaluation::MethodFigures& figures);  ///< NaN: unknown
@@ -25,7 +25,7 @@ struct FigureRow {
 
 std::span<const FigureRow> figure_rows();
 
-/// The value as shown, without its unit.
+/// The value as text in the row's unit, without the unit.
 std::string shown(const FigureRow& row, const evaluation::MethodFigures& figures);
 
 }  // namespace isobar::report

@@ -5,14 +5,14 @@
 #include <cmath>
 
 #include "core/statistics/distribution.hpp"
+#include "tools/report/row_chart.hpp"
 
 namespace isobar::report {
 
 namespace {
 
-constexpr double kHistogramTopMargin = 6.0;
-constexpr double kHistogramBottomMargin = 50.0;
-constexpr double kHistogramRightMargin = 150.0;
+constexpr double kHistogramTopMarginPx = 6.0;
+constexpr double kHistogramRightMarginPx = 150.0;  // for median and 99th percentile
 constexpr std::size_t kBins = 80;
 
 std::vector<double> finite_ascending(const std::vector<double>& values) {
@@ -42,49 +42,50 @@ void draw_bars(Picture& picture, const Scale& x, double base, double height,
   }
 }
 
+/// Median and 99th percentile: lines through the bars and values at the right.
+void draw_quantiles(Picture& picture, const Scale& x, double base, const HistogramChart& chart, double right,
+                    const std::vector<double>& sorted) {
+  const double median = quantile(sorted, 0.5);
+  const double p99 = quantile(sorted, 0.99);
+  const double top = base - chart.row_height + 6.0;
+  const double middle = base - 0.5 * chart.row_height;
+  picture.line({x(median), top}, {x(median), base}, {"#111827", 1.6});
+  picture.line({x(p99), top}, {x(p99), base}, {"#111827", 1.6, "4 3"});
+  picture.text({right + 10.0, middle - 3.0}, "median " + fixed(median, 1) + " " + chart.unit,
+               {13.0, "#1f2937", "start", true});
+  picture.text({right + 10.0, middle + 15.0}, "p99 " + fixed(p99, 1) + " " + chart.unit, {13.0, "#1f2937"});
+}
+
+void draw_row(Picture& picture, const HistogramChart& chart, const RowChart& rows, const Scale& x,
+              std::size_t i, const std::vector<double>& sorted) {
+  const Box& frame = rows.frame();
+  const double base = rows.bottom(i);
+  picture.line({frame.x, base}, {frame.right(), base}, {"#9ca3af"});
+  rows.draw_name(picture, i);
+  if (sorted.empty()) {
+    picture.text({frame.x + 12.0, rows.middle(i) + 5.0}, "no times recorded", {13.0, "#6b7280"});
+    return;
+  }
+  draw_bars(picture, x, base, chart.row_height - 12.0, sorted, chart.rows[i].colour);
+  draw_quantiles(picture, x, base, chart, frame.right(), sorted);
+}
+
 }  // namespace
 
 Picture draw(const HistogramChart& chart) {
-  double left = 60.0;
   double largest = 0.0;
   std::vector<std::vector<double>> sorted;
   for (const HistogramChart::Row& row : chart.rows) {
-    left = std::max(left, text_width(row.name, 14.0) + 18.0);
     sorted.push_back(finite_ascending(row.values));
     if (!sorted.back().empty()) largest = std::max(largest, 1.3 * quantile(sorted.back(), 0.99));
   }
-  const double inner = chart.row_height * static_cast<double>(chart.rows.size());
-  Picture picture(chart.width, kHistogramTopMargin + inner + kHistogramBottomMargin);
-  const Box frame{left, kHistogramTopMargin, chart.width - left - kHistogramRightMargin, inner};
-  const Axes axes{frame,
-                  Scale::linear({0.0, largest > 0.0 ? largest : 1.0}, frame.x, frame.right(), 90.0),
-                  Scale::linear({0.0, 1.0}, frame.bottom(), frame.y, frame.height),
-                  chart.x_label,
-                  "",
-                  false,
-                  false};
-  draw_axes(picture, axes);
-  for (std::size_t i = 0; i < chart.rows.size(); ++i) {
-    const HistogramChart::Row& row = chart.rows[i];
-    const double base = kHistogramTopMargin + chart.row_height * static_cast<double>(i + 1);
-    const double middle = base - 0.5 * chart.row_height;
-    picture.line({frame.x, base}, {frame.right(), base}, {"#9ca3af"});
-    picture.text({left - 10.0, middle + 5.0}, row.name, {14.0, "#1f2937", "end"});
-    if (sorted[i].empty()) {
-      picture.text({frame.x + 12.0, middle + 5.0}, "no times recorded", {13.0, "#6b7280"});
-      continue;
-    }
-    draw_bars(picture, axes.x, base, chart.row_height - 12.0, sorted[i], row.colour);
-    const double median = quantile(sorted[i], 0.5);
-    const double p99 = quantile(sorted[i], 0.99);
-    const double top = base - chart.row_height + 6.0;
-    picture.line({axes.x(median), top}, {axes.x(median), base}, {"#111827", 1.6});
-    picture.line({axes.x(p99), top}, {axes.x(p99), base}, {"#111827", 1.6, "4 3"});
-    picture.text({frame.right() + 10.0, middle - 3.0}, "median " + fixed(median, 1) + " " + chart.unit,
-                 {13.0, "#1f2937", "start", true});
-    picture.text({frame.right() + 10.0, middle + 15.0}, "p99 " + fixed(p99, 1) + " " + chart.unit,
-                 {13.0, "#1f2937"});
-  }
+  const RowChart rows({chart.width, chart.row_height, kHistogramTopMarginPx, kHistogramRightMarginPx},
+                      row_names(chart.rows));
+  const Scale x =
+      Scale::linear({0.0, largest > 0.0 ? largest : 1.0}, rows.frame().x, rows.frame().right(), kXTickPx);
+  Picture picture = rows.blank();
+  rows.draw_axis(picture, x, chart.x_label);
+  for (std::size_t i = 0; i < chart.rows.size(); ++i) draw_row(picture, chart, rows, x, i, sorted[i]);
   return picture;
 }
 

@@ -8,13 +8,13 @@
 
 namespace isobar::report {
 
-/// One histogram a row over a common axis, with median and 99th percentile marked. What lies beyond the axis
-/// is counted in its last bin.
+/// One histogram per row over a common axis, with median and 99th percentile marked. Values beyond the axis
+/// are counted in its last bin.
 struct HistogramChart {
   struct Row {
     std::string name;
     std::string colour;
-    std::vector<double> values;  ///< NaN is left out
+    std::vector<double> values;  ///< those that are not finite are left out
   };
 
   std::string x_label;

@@ -34,7 +34,7 @@ table { border-collapse: collapse; font-size: 14.5px; font-variant-numeric: tabu
 th, td { padding: 5px 14px 5px 0; text-align: right; border-bottom: 1px solid #e5e7eb; white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; }
 thead th { border-bottom: 2px solid #6b7280; vertical-align: bottom; }
-tr.group th { padding-top: 16px; text-align: left; color: #374151; border-bottom: 1px solid #9ca3af; }
+td.group { padding-top: 16px; font-weight: 700; color: #374151; border-bottom: 1px solid #9ca3af; }
 td.unit { text-align: left; color: #4b5563; }
 td.best { font-weight: 700; }
 td.lost { color: #b91c1c; font-weight: 700; }
@@ -47,6 +47,13 @@ dl { max-width: 92ch; font-size: 15px; } dt { font-weight: 600; margin-top: 10px
   .tiles .value { font-size: 20px; } }
 )css";
 
+std::string cell_html(const TableCell& cell) {
+  std::string tag = "<td";
+  if (!cell.css_class.empty()) tag += " class=\"" + cell.css_class + "\"";
+  if (cell.columns > 1) tag += " colspan=\"" + std::to_string(cell.columns) + "\"";
+  return tag + ">" + escaped(cell.text) + "</td>";
+}
+
 }  // namespace
 
 std::string html_page(const std::string& title, const std::string& body) {
@@ -56,15 +63,47 @@ std::string html_page(const std::string& title, const std::string& body) {
          "</main>\n</body>\n</html>\n";
 }
 
+std::string page_head(const std::string& title, const std::string& lead, const std::string& command) {
+  std::string html = "<h1>" + escaped(title) + "</h1>\n";
+  if (!lead.empty()) html += "<p class=\"lead\">" + escaped(lead) + "</p>\n";
+  if (!command.empty()) html += "<div class=\"command\">" + escaped(command) + "</div>\n";
+  return html;
+}
+
 std::string heading(const std::string& text) { return "<h2>" + escaped(text) + "</h2>\n"; }
+
+std::string paragraph(const std::string& text) { return "<p>" + escaped(text) + "</p>\n"; }
 
 std::string figure(const Picture& picture, const std::string& title, const std::string& caption) {
   return "<figure>\n" + picture.svg(title) + "<figcaption>" + escaped(caption) + "</figcaption>\n</figure>\n";
 }
 
-std::string tile(const std::string& label, const std::string& value, const std::string& more) {
-  return "<li><div class=\"label\">" + escaped(label) + "</div><div class=\"value\">" + escaped(value) +
-         "</div><div class=\"more\">" + escaped(more) + "</div></li>\n";
+std::string bullet_list(const std::vector<std::string>& lines) {
+  std::string html = "<ul class=\"notes\">\n";
+  for (const std::string& line : lines) html += "<li>" + escaped(line) + "</li>\n";
+  return html + "</ul>\n";
+}
+
+std::string tile_row(const std::vector<Tile>& tiles) {
+  std::string html = "<ul class=\"tiles\">\n";
+  for (const Tile& tile : tiles) {
+    html += "<li><div class=\"label\">" + escaped(tile.label) + "</div><div class=\"value\">" +
+            escaped(tile.value) + "</div><div class=\"more\">" + escaped(tile.remark) + "</div></li>\n";
+  }
+  return html + "</ul>\n";
+}
+
+std::string html_table(const std::vector<std::string>& head,
+                       const std::vector<std::vector<TableCell>>& rows) {
+  std::string html = "<div class=\"scroll\"><table>\n<thead><tr>";
+  for (const std::string& title : head) html += "<th>" + escaped(title) + "</th>";
+  html += "</tr></thead>\n<tbody>\n";
+  for (const std::vector<TableCell>& row : rows) {
+    html += "<tr>";
+    for (const TableCell& cell : row) html += cell_html(cell);
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
 }
 
 }  // namespace isobar::report

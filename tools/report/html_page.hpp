@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The look that all reports share: one page that opens without a network.
+// The look that all reports share: one HTML page that opens without a network.
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include "tools/report/svg.hpp"
 
@@ -11,10 +13,29 @@ namespace isobar::report {
 /// The whole page around `body`, which is HTML; `title` is text.
 std::string html_page(const std::string& title, const std::string& body);
 
-// The rest is given text and returns HTML.
+// All functions below take plain text and return HTML.
+
+/// Top of the page: title, a paragraph below it (may be empty), and the command that makes the page again
+/// (may be empty).
+std::string page_head(const std::string& title, const std::string& lead, const std::string& command);
 std::string heading(const std::string& text);
+std::string paragraph(const std::string& text);
 std::string figure(const Picture& picture, const std::string& title, const std::string& caption);
-/// One item of <ul class="tiles">.
-std::string tile(const std::string& label, const std::string& value, const std::string& more);
+std::string bullet_list(const std::vector<std::string>& lines);
+
+/// A figure in large type, with its name above and a remark below.
+struct Tile {
+  std::string label;
+  std::string value;
+  std::string remark;
+};
+std::string tile_row(const std::vector<Tile>& tiles);
+
+struct TableCell {
+  std::string text;
+  std::string css_class{};  ///< "best", "lost", "unit", "group" or empty
+  std::size_t columns = 1;  ///< columns that the cell spans
+};
+std::string html_table(const std::vector<std::string>& head, const std::vector<std::vector<TableCell>>& rows);
 
 }  // namespace isobar::report

@@ -9,12 +9,9 @@ namespace isobar::report {
 
 namespace {
 
-constexpr double kLineLeftMargin = 68.0;
-constexpr double kLineRightMargin = 14.0;
-constexpr double kLineBottomMargin = 50.0;
-constexpr double kLegendGap = 8.0;
-constexpr double kBandLabelHeight = 22.0;
-constexpr double kInvisiblePx = 0.15;
+constexpr double kLegendGapPx = 8.0;
+constexpr double kBandLabelHeightPx = 22.0;
+constexpr double kInvisiblePx = 0.15;  // no screen shows a line moved by less
 constexpr const char* kBandColour = "#eef2f7";
 
 void draw_bands(Picture& picture, const LineChart& chart, const Axes& axes) {
@@ -57,6 +54,19 @@ Range data_range(const LineChart& chart, const std::vector<double> Series::*valu
   for (const Series& series : chart.series)
     all.insert(all.end(), (series.*values).begin(), (series.*values).end());
   return range_of(all);
+}
+
+Axes axes_of(const LineChart& chart, const Box& frame) {
+  const Range x = chart.x_range.value_or(data_range(chart, &Series::x));
+  const Range all_y = data_range(chart, &Series::y);
+  if (chart.is_logarithmic) {
+    const Range y = chart.y_range.value_or(Range{0.8 * all_y.low, 1.25 * all_y.high});
+    return {frame, Scale::logarithmic(x, frame.x, frame.right()),
+            Scale::logarithmic(y, frame.bottom(), frame.y), chart.x_label, chart.y_label};
+  }
+  const Range y = chart.y_range.value_or(padded(all_y, 0.06, chart.min_y_width));
+  return {frame, Scale::linear(padded(x, 0.0), frame.x, frame.right(), kXTickPx),
+          Scale::linear(y, frame.bottom(), frame.y, kYTickPx), chart.x_label, chart.y_label};
 }
 
 }  // namespace
@@ -108,26 +118,19 @@ std::vector<Point> simplified(const std::vector<Point>& points, double tolerance
   return kept;
 }
 
-Picture draw(const LineChart& chart) {
-  Picture picture(chart.width, chart.height);
+std::vector<LegendEntry> legend_of(const std::vector<Series>& lines) {
   std::vector<LegendEntry> legend;
-  for (const Series& series : chart.series) {
+  for (const Series& series : lines) {
     if (!series.name.empty()) legend.push_back({series.name, series.stroke});
   }
-  const double inner_width = chart.width - kLineLeftMargin - kLineRightMargin;
-  const double top = draw_legend(picture, {kLineLeftMargin, 0.0}, inner_width, legend) +
-                     (chart.bands.empty() ? kLegendGap : kBandLabelHeight);
-  const Box frame{kLineLeftMargin, top, inner_width, chart.height - top - kLineBottomMargin};
-  const Range x = chart.x_range.value_or(data_range(chart, &Series::x));
-  const Range all_y = data_range(chart, &Series::y);
-  const Range y = chart.y_range.value_or(chart.is_logarithmic ? Range{0.8 * all_y.low, 1.25 * all_y.high}
-                                                              : padded(all_y, 0.06, chart.min_y_width));
-  const Axes axes{frame,
-                  chart.is_logarithmic ? Scale::logarithmic(x, frame.x, frame.right())
-                                       : Scale::linear(padded(x, 0.0), frame.x, frame.right(), 90.0),
-                  chart.is_logarithmic ? Scale::logarithmic(y, frame.bottom(), frame.y)
-                                       : Scale::linear(y, frame.bottom(), frame.y, 44.0),
-                  chart.x_label, chart.y_label};
+  return legend;
+}
+
+Picture draw(const LineChart& chart) {
+  Picture picture(chart.width, chart.height);
+  const Box frame = frame_below_legend(picture, legend_of(chart.series),
+                                       chart.bands.empty() ? kLegendGapPx : kBandLabelHeightPx);
+  const Axes axes = axes_of(chart, frame);
   draw_bands(picture, chart, axes);
   draw_axes(picture, axes);
   picture.begin_clip(frame, chart.id);

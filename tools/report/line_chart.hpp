@@ -9,7 +9,7 @@
 
 namespace isobar::report {
 
-/// A line through points of ascending x. A NaN interrupts it.
+/// A line through points; a value that is not finite interrupts it.
 struct Series {
   std::string name;
   Stroke stroke;
@@ -31,11 +31,11 @@ struct LineChart {
   std::string y_label;
   std::vector<Series> series;
   std::vector<Band> bands;
-  std::optional<Range> x_range;  ///< else all of the data
-  std::optional<Range> y_range;  ///< else all of the data; lines are cut at it
-  double min_y_width = 0.1;      ///< of a range taken from the data
-  bool zero_line = false;
-  bool is_logarithmic = false;  ///< both axes; all data are > 0
+  std::optional<Range> x_range;  ///< default: the data's
+  std::optional<Range> y_range;  ///< default: the data's; lines are clipped to it
+  double min_y_width = 0.1;      ///< smallest width of a default y range
+  bool zero_line = false;        ///< a line at y = 0
+  bool is_logarithmic = false;   ///< both axes; all data > 0
   double width = 1040.0;
   double height = 340.0;
   std::string id;  ///< unique in the page
@@ -43,11 +43,13 @@ struct LineChart {
 
 Picture draw(const LineChart& chart);
 
-/// At most four points for each pixel column (first, lowest, highest, last): looks the same, and is small.
+/// Legend entries of the lines that have a name.
+std::vector<LegendEntry> legend_of(const std::vector<Series>& lines);
+
+/// At most four points per pixel column (first, lowest, highest, last): same look, smaller file.
 std::vector<Point> thinned(const std::vector<Point>& points);
 
-/// Without the points that lie within `tolerance_px` of the line through those that stay (Douglas and Peucker
-/// 1973).
+/// Drops points within `tolerance_px` of the line through the remaining ones (Douglas and Peucker 1973).
 std::vector<Point> simplified(const std::vector<Point>& points, double tolerance_px);
 
 }  // namespace isobar::report

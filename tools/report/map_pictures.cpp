@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The report's two views of the map.
+// The report's side and plan views of the map.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,7 +18,7 @@ using evaluation::PosePair;
 
 constexpr double kCmPerM = 100.0;
 
-/// A direction of view: what of a position in the reference's frame goes right and up.
+/// An orthographic projection: directions in the reference's frame that point right and up.
 struct View {
   Eigen::Vector3d u = Eigen::Vector3d::UnitX();
   Eigen::Vector3d v = Eigen::Vector3d::UnitY();
@@ -26,8 +26,7 @@ struct View {
   std::string v_label;
 };
 
-/// Horizontal direction in which the path extends most [rad], 0 … pi, rounded to an axis if it is within 10
-/// degrees.
+/// Principal horizontal direction of the path [rad], 0 … pi, rounded to x or y within 10 degrees.
 double long_side_rad(const std::vector<evaluation::StampedPose>& poses) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const auto& pose : poses) mean += pose.position_m.head<2>() / static_cast<double>(poses.size());
@@ -65,7 +64,7 @@ View side_view(const evaluation::EvaluatedRun& run) {
   return view;
 }
 
-std::vector<MapPoint> seen(const std::vector<std::array<float, 3>>& points, const View& view) {
+std::vector<MapPoint> projected(const std::vector<std::array<float, 3>>& points, const View& view) {
   const Eigen::Vector3f u = view.u.cast<float>();
   const Eigen::Vector3f v = view.v.cast<float>();
   std::vector<MapPoint> result;
@@ -77,7 +76,7 @@ std::vector<MapPoint> seen(const std::vector<std::array<float, 3>>& points, cons
   return result;
 }
 
-/// Range of nearly all points: a few stray returns must not shrink the rest.
+/// Range from the 0.2nd to the 99.8th percentile: a few stray returns must not shrink the picture.
 Range range_of_most(const std::vector<MapPoint>& points, float MapPoint::*coordinate) {
   std::vector<double> values;
   values.reserve(points.size());
@@ -86,8 +85,8 @@ Range range_of_most(const std::vector<MapPoint>& points, float MapPoint::*coordi
   return {quantile(values, 0.002), quantile(values, 0.998)};
 }
 
-Series seen_path(const evaluation::EvaluatedRun& run, const evaluation::EvaluatedMethod& method,
-                 const View& view) {
+Series projected_path(const evaluation::EvaluatedRun& run, const evaluation::EvaluatedMethod& method,
+                      const View& view) {
   Series series{evaluation::display_name(method.name), method_stroke(run, method), {}, {}};
   for (const PosePair& pair : method.evaluation.pairs) {
     series.x.push_back(view.u.dot(pair.estimate.position_m));
@@ -96,7 +95,7 @@ Series seen_path(const evaluation::EvaluatedRun& run, const evaluation::Evaluate
   return series;
 }
 
-Series seen_reference(const evaluation::EvaluatedRun& run, const View& view) {
+Series projected_reference(const evaluation::EvaluatedRun& run, const View& view) {
   Series series{"Reference", kReferenceStroke, {}, {}};
   for (const auto& pose : run.reference.trajectory.poses) {
     series.x.push_back(view.u.dot(pose.position_m));
@@ -105,7 +104,7 @@ Series seen_reference(const evaluation::EvaluatedRun& run, const View& view) {
   return series;
 }
 
-/// Range of the paths and nearly all points, a little wider.
+/// Range of the paths and of nearly all points, with a margin.
 void set_ranges(MapView& map) {
   map.u = range_of(map.paths.front().x);
   map.v = range_of(map.paths.front().y);
@@ -121,7 +120,7 @@ void set_ranges(MapView& map) {
   map.v = padded(map.v, 0.03, 2.0);
 }
 
-/// How much higher than wide a metre must be drawn for the storeys to be told apart: 1, 2, 3, 5 or 10.
+/// Vertical exaggeration at which storeys can be told apart: 1, 2, 3, 5 or 10.
 double readable_exaggeration(const MapView& map) {
   constexpr double kLowestPx = 150.0;
   constexpr double kInnerPx = 900.0;
@@ -132,7 +131,7 @@ double readable_exaggeration(const MapView& map) {
   return 10.0;
 }
 
-/// A signed length in words: centimetres below a metre.
+/// A signed length, in centimetres below a metre.
 std::string length_label(double length_m) {
   if (std::abs(length_m) < 1.0) return fixed_signed(kCmPerM * length_m, 1) + " cm";
   return fixed_signed(length_m, 2) + " m";
@@ -143,9 +142,9 @@ MapView side_map(const evaluation::EvaluatedRun& run, const evaluation::Evaluate
   MapView map;
   map.u_label = view.u_label;
   map.v_label = view.v_label;
-  map.points = seen(method.map_points, view);
-  map.paths.push_back(seen_reference(run, view));
-  map.paths.push_back(seen_path(run, method, view));
+  map.points = projected(method.map_points, view);
+  map.paths.push_back(projected_reference(run, view));
+  map.paths.push_back(projected_path(run, method, view));
   for (const double level_m : evaluation::floor_levels_m(run)) {
     const evaluation::FloorHeight* floor = evaluation::floor_at(method, level_m, run.options.floor_gap_m);
     if (floor != nullptr) map.levels.push_back({level_m, length_label(floor->mean_error_m)});
@@ -169,12 +168,12 @@ std::vector<SideView> side_view_pictures(const evaluation::EvaluatedRun& run) {
   std::vector<SideView> pictures;
   for (std::size_t i = 0; i < maps.size(); ++i) {
     MapView& map = maps[i];
-    for (const MapView& other : maps) {  // the same window for both, so that they can be compared
+    for (const MapView& other : maps) {  // one window for all, so that they can be compared
       map.u = united(map.u, other.u);
       map.v = united(map.v, other.v);
     }
     map.v_exaggeration = readable_exaggeration(map);
-    if (map.v_exaggeration > 1.0) map.v_label += ", drawn " + fixed(map.v_exaggeration, 0) + " times higher";
+    if (map.v_exaggeration > 1.0) map.v_label += ", " + fixed(map.v_exaggeration, 0) + " times exaggerated";
     const bool is_tall = map.v.high - map.v.low > 0.8 * (map.u.high - map.u.low);
     map.width = is_tall ? 510.0 : 1040.0;  // tall ones stand side by side
     map.id = "side" + std::to_string(i);
@@ -187,10 +186,10 @@ Picture top_view_picture(const evaluation::EvaluatedRun& run) {
   View view{Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), "x [m]", "y [m]"};
   const auto make_map = [&] {
     MapView map;
-    map.points = seen(main_method(run).map_points, view);
-    map.paths.push_back(seen_reference(run, view));
+    map.points = projected(main_method(run).map_points, view);
+    map.paths.push_back(projected_reference(run, view));
     for (const evaluation::EvaluatedMethod& method : run.methods)
-      map.paths.push_back(seen_path(run, method, view));
+      map.paths.push_back(projected_path(run, method, view));
     set_ranges(map);
     return map;
   };

@@ -8,10 +8,11 @@ namespace isobar::report {
 
 namespace {
 
-constexpr double kMapLeftMargin = 68.0;
-constexpr double kMapBottomMargin = 50.0;
-constexpr double kShades = 48.0;
-constexpr double kImagePixelsPerPx = 1.5;  // sharp on denser screens and in print
+constexpr double kLevelLabelPx = 84.0;  // room right of the frame for the labels of floors
+constexpr double kMapLegendGapPx = 8.0;
+constexpr double kShades = 48.0;           // of grey, the first is transparent
+constexpr double kImagePixelsPerPx = 1.5;  // sharp on dense screens and in print
+constexpr double kMinMovePx = 0.7;         // points of a path that are closer are not drawn
 
 std::vector<std::array<std::uint8_t, 4>> grey_palette() {
   std::vector<std::array<std::uint8_t, 4>> palette{{255, 255, 255, 0}};
@@ -36,8 +37,43 @@ double bright_count(const std::vector<std::uint32_t>& counts) {
   return static_cast<double>(*rank);
 }
 
-/// What goes right of the frame: the levels' labels. The same for all, so that views can be compared.
-double right_margin(const MapView& view) { return view.levels.empty() ? 14.0 : 84.0; }
+/// Constant, not the width of the labels, so that two views have the same scale and can be compared.
+double right_margin(const MapView& view) { return view.levels.empty() ? kRightMarginPx : kLevelLabelPx; }
+
+/// The frame of the view, to scale and centred between the margins.
+Box frame_of(const MapView& view, double available_px, double top_px) {
+  const double width_m = view.u.high - view.u.low;
+  const double height_m = view.v_exaggeration * (view.v.high - view.v.low);
+  const double px_per_m = std::min(available_px / width_m, view.max_height / height_m);
+  return {kLeftMarginPx + 0.5 * (available_px - px_per_m * width_m), top_px, px_per_m * width_m,
+          px_per_m * height_m};
+}
+
+void draw_points(Picture& picture, const MapView& view, const Box& frame) {
+  if (view.points.empty()) return;
+  const auto pixels = [](double px) {
+    return static_cast<std::size_t>(std::max(1.0, std::round(kImagePixelsPerPx * px)));
+  };
+  picture.image(frame, png_data_uri(density_image(view.points, view.u, view.v, pixels(frame.width),
+                                                  pixels(frame.height))));
+}
+
+void draw_level(Picture& picture, const LevelMark& level, const Axes& axes) {
+  const double y = axes.y(level.v);
+  const double right = axes.frame.right();
+  picture.line({axes.frame.x, y}, {right + 6.0, y}, {"#b91c1c", 1.0, "5 4", 0.8});
+  picture.text({right + 10.0, y + 4.0}, level.label, {12.0, "#7f1d1d"});
+}
+
+void draw_path(Picture& picture, const Series& path, const Axes& axes) {
+  std::vector<Point> line;
+  for (std::size_t i = 0; i < path.x.size(); ++i) {
+    const Point p{axes.x(path.x[i]), axes.y(path.y[i])};
+    const bool moved = line.empty() || std::hypot(p.x - line.back().x, p.y - line.back().y) > kMinMovePx;
+    if (moved) line.push_back(p);
+  }
+  picture.polyline(simplified(line, 0.15), path.stroke);
+}
 
 }  // namespace
 
@@ -62,45 +98,18 @@ IndexedImage density_image(const std::vector<MapPoint>& points, const Range& u, 
 }
 
 Picture draw(const MapView& view) {
-  const double width_m = view.u.high - view.u.low;
-  const double height_m = view.v_exaggeration * (view.v.high - view.v.low);
-  const double margin = right_margin(view);
-  std::vector<LegendEntry> legend;
-  for (const Series& path : view.paths) {
-    if (view.legend && !path.name.empty()) legend.push_back({path.name, path.stroke});
-  }
-  const double available = view.width - kMapLeftMargin - margin;
-  const double px_per_m = std::min(available / width_m, view.max_height / height_m);
-  const double top = legend_height(available, legend) + 8.0;
-  const Box frame{kMapLeftMargin + 0.5 * (available - px_per_m * width_m), top, px_per_m * width_m,
-                  px_per_m * height_m};
-  Picture picture(view.width, top + frame.height + kMapBottomMargin);
-  draw_legend(picture, {kMapLeftMargin, 0.0}, available, legend);
-  const Axes axes{frame, Scale::linear(view.u, frame.x, frame.right(), 90.0),
-                  Scale::linear(view.v, frame.bottom(), frame.y, 44.0), view.u_label, view.v_label};
+  const std::vector<LegendEntry> legend = legend_of(view.paths);
+  const double available_px = view.width - kLeftMarginPx - right_margin(view);
+  const Box frame = frame_of(view, available_px, legend_height(available_px, legend) + kMapLegendGapPx);
+  Picture picture(view.width, frame.bottom() + kBottomMarginPx);
+  draw_legend(picture, {kLeftMarginPx, 0.0}, available_px, legend);
+  const Axes axes{frame, Scale::linear(view.u, frame.x, frame.right(), kXTickPx),
+                  Scale::linear(view.v, frame.bottom(), frame.y, kYTickPx), view.u_label, view.v_label};
   draw_axes(picture, axes);
-  const auto pixels = [](double px) {
-    return static_cast<std::size_t>(std::max(1.0, std::round(kImagePixelsPerPx * px)));
-  };
-  if (!view.points.empty()) {
-    picture.image(frame, png_data_uri(density_image(view.points, view.u, view.v, pixels(frame.width),
-                                                    pixels(frame.height))));
-  }
-  for (const LevelMark& level : view.levels) {
-    const double y = axes.y(level.v);
-    picture.line({frame.x, y}, {frame.right() + 6.0, y}, {"#b91c1c", 1.0, "5 4", 0.8});
-    picture.text({frame.right() + 10.0, y + 4.0}, level.label, {12.0, "#7f1d1d"});
-  }
+  draw_points(picture, view, frame);
+  for (const LevelMark& level : view.levels) draw_level(picture, level, axes);
   picture.begin_clip(frame, view.id);
-  for (const Series& path : view.paths) {
-    std::vector<Point> line;
-    for (std::size_t i = 0; i < path.x.size(); ++i) {
-      const Point p{axes.x(path.x[i]), axes.y(path.y[i])};
-      const bool moved = line.empty() || std::hypot(p.x - line.back().x, p.y - line.back().y) > 0.7;
-      if (moved) line.push_back(p);
-    }
-    picture.polyline(simplified(line, 0.15), path.stroke);
-  }
+  for (const Series& path : view.paths) draw_path(picture, path, axes);
   picture.end_clip();
   return picture;
 }

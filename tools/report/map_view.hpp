@@ -10,24 +10,24 @@
 
 namespace isobar::report {
 
-/// A point of the map seen from one side [m].
+/// A point of the map projected into the view [m].
 struct MapPoint {
   float u = 0.0F;  ///< to the right
   float v = 0.0F;  ///< up
 };
 
-/// How many points fall on each pixel, as shades of grey on a transparent ground; the shade grows with the
-/// logarithm of the number up to the 98th percentile of the pixels that have any.
+/// Density of the points: shades of grey on a transparent ground. The shade grows with the logarithm of the
+/// points in a pixel, up to the 98th percentile of the pixels that are not empty.
 IndexedImage density_image(const std::vector<MapPoint>& points, const Range& u, const Range& v,
                            std::size_t width, std::size_t height);
 
-/// Mean height of a floor in the reference, drawn across the view.
+/// A labelled line across the view at height v [m].
 struct LevelMark {
   double v = 0.0;
   std::string label;
 };
 
-/// The map from one side with trajectories over it, to scale.
+/// A projection of the map with trajectories drawn over it, to scale.
 struct MapView {
   std::string u_label;
   std::string v_label;
@@ -36,11 +36,10 @@ struct MapView {
   std::vector<LevelMark> levels;
   Range u;
   Range v;
-  double v_exaggeration = 1.0;  ///< pixels a metre in v over those in u
+  double v_exaggeration = 1.0;  ///< scale of v over scale of u
   double width = 1040.0;
-  double max_height = 700.0;  ///< the view is made narrower where it would be higher
-  bool legend = true;
-  std::string id;  ///< unique in the page
+  double max_height = 700.0;  ///< [px]; limits the scale
+  std::string id;             ///< unique in the page
 };
 
 Picture draw(const MapView& view);

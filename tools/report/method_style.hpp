@@ -8,9 +8,8 @@
 
 namespace isobar::report {
 
-/// Look of a method's lines and boxes: always the same for the six methods, from a list for other names. The
-/// colours are those of Okabe and Ito (2008), told apart with colour-blind eyes; dashes tell them apart
-/// without colour.
+/// Style of a method's lines and boxes: fixed for the six methods, from a list for other names. Palette of
+/// Okabe and Ito (2008), which colour-blind readers can tell apart; dashes tell lines apart without colour.
 Stroke method_stroke(const evaluation::EvaluatedRun& run, const evaluation::EvaluatedMethod& method);
 
 inline const Stroke kReferenceStroke{"#111827", 2.6};

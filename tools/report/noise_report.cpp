@@ -8,20 +8,23 @@ namespace isobar::report {
 
 namespace {
 
+constexpr double kMaxUncertainty = 0.5;  // relative; of an averaging time with few averages
+
 std::string tiles(const NoiseReport& report) {
   const SensorNoise& noise = report.noise;
-  std::string html = "<ul class=\"tiles\">\n";
-  html += tile("White noise of a sample, 1 sigma", fixed(noise.sigma_pa, 3) + " Pa",
-               fixed(report.cm_per_pa * noise.sigma_pa, 1) + " cm; from the Allan deviation " +
-                   fixed(noise.allan_sigma_pa(), 3) + " Pa");
-  html += tile("Bias instability", fixed(noise.parts.bias_instability, 3) + " Pa",
-               fixed(report.cm_per_pa * noise.parts.bias_instability, 2) + " cm");
-  html += tile("Random walk", fixed(noise.parts.walk, 4) + " Pa/√s",
-               "trend " + fixed(3600.0 * noise.parts.ramp, 0) + " Pa an hour");
-  html += tile("After a low-pass of " + fixed(report.chosen.delay_s, 2) + " s",
-               fixed(report.chosen.output_sigma_pa, 3) + " Pa",
-               fixed(report.cm_per_pa * report.chosen.output_sigma_pa, 2) + " cm of white noise");
-  return html + "</ul>\n";
+  const auto cm = [&](double pressure_pa, int decimals) {
+    return fixed(report.cm_per_pa * pressure_pa, decimals) + " cm";
+  };
+  return tile_row(
+      {{"White noise of a sample, 1 sigma", fixed(noise.sigma_pa, 3) + " Pa",
+        cm(noise.sigma_pa, 1) + "; from the Allan deviation " + fixed(noise.allan_sigma_pa(), 3) + " Pa"},
+       {"Bias instability", fixed(noise.parts.bias_instability, 3) + " Pa",
+        cm(noise.parts.bias_instability, 2)},
+       {"Random walk", fixed(noise.parts.walk, 4) + " Pa/√s",
+        "trend " + fixed(3600.0 * noise.parts.ramp, 0) + " Pa/h"},
+       {"After a low-pass with " + fixed(report.chosen.delay_s, 2) + " s of lag",
+        fixed(report.chosen.output_sigma_pa, 3) + " Pa",
+        cm(report.chosen.output_sigma_pa, 2) + " of white noise"}});
 }
 
 Picture series_picture(const NoiseReport& report) {
@@ -50,7 +53,7 @@ Picture allan_picture(const SensorNoise& noise) {
   Series below{"", {"#93c5fd", 1.0}, {}, {}};
   Series model{"white + instability + walk + trend", {"#b45309", 1.6, "6 4"}, {}, {}};
   for (const AllanPoint& point : noise.allan) {
-    if (point.uncertainty > 0.5 || !(point.deviation > 0.0)) continue;
+    if (point.uncertainty > kMaxUncertainty || !(point.deviation > 0.0)) continue;
     for (Series* series : {&measured, &above, &below, &model}) series->x.push_back(point.tau_s);
     measured.y.push_back(point.deviation);
     above.y.push_back(point.deviation * (1.0 + point.uncertainty));
@@ -62,33 +65,35 @@ Picture allan_picture(const SensorNoise& noise) {
 }
 
 std::string designs_table(const NoiseReport& report) {
-  std::string html =
-      "<div class=\"scroll\"><table><thead><tr><th>lag [s]</th><th>bandwidth [Hz]</th><th>gain</th>"
-      "<th>walk [Pa/√s]</th><th>noise left [Pa]</th><th>[cm]</th></tr></thead><tbody>\n";
+  std::vector<std::vector<TableCell>> rows;
   for (const FilterDesign& design : report.designs) {
-    html += "<tr><td>" + fixed(design.delay_s, 2) + "</td><td>" + fixed(design.bandwidth_hz, 3) +
-            "</td><td>" + fixed(design.gain, 4) + "</td><td>" + fixed(design.walk_pa_sqrt_s, 4) +
-            "</td><td>" + fixed(design.output_sigma_pa, 4) + "</td><td>" +
-            fixed(report.cm_per_pa * design.output_sigma_pa, 2) + "</td></tr>\n";
+    rows.push_back({{fixed(design.delay_s, 2)},
+                    {fixed(design.bandwidth_hz, 3)},
+                    {fixed(design.gain, 4)},
+                    {fixed(design.walk_pa_sqrt_s, 4)},
+                    {fixed(design.output_sigma_pa, 4)},
+                    {fixed(report.cm_per_pa * design.output_sigma_pa, 2)}});
   }
-  return html + "</tbody></table></div>\n";
+  return html_table({"lag [s]", "bandwidth [Hz]", "gain", "walk [Pa/√s]", "noise left [Pa]", "[cm]"}, rows);
 }
 
 }  // namespace
 
 std::string render_noise_report(const NoiseReport& report) {
-  std::string html = "<h1>" + escaped(report.title) + "</h1>\n<p class=\"lead\">" + escaped(report.source) +
-                     "</p>\n<div class=\"command\">" + escaped(report.command) + "</div>\n" + tiles(report);
-  html += heading("The samples") + figure(series_picture(report), "Pressure against time",
-                                          "All samples. Shaded: the still period that the figures are from.");
-  html += heading("Allan deviation") +
-          figure(allan_picture(report.noise), "Allan deviation against averaging time",
-                 "Overlapping. White noise falls with the square root of the averaging time, a random walk "
-                 "rises with it, a steady trend of the weather rises in proportion. Points that are less "
-                 "certain than 50 % are left out.");
+  std::string html = page_head(report.title, report.source, report.command) + tiles(report);
+  html +=
+      heading("Samples") + figure(series_picture(report), "Pressure against time",
+                                  "All samples. Shaded: the still period that the figures are taken from.");
+  html +=
+      heading("Allan deviation") +
+      figure(allan_picture(report.noise), "Allan deviation against averaging time",
+             "Overlapping Allan deviation. White noise falls with the square root of the averaging time, a "
+             "random walk rises with it, a steady trend of the weather rises in proportion. Points with an "
+             "uncertainty above 50 % are left out.");
   html += heading("Settings of the low-pass") +
-          "<p>Lag: how far the output is behind a pressure that changes steadily; it is known, and taken off "
-          "the output's time stamp. Bandwidth: motion slower than this passes.</p>\n" +
+          paragraph(
+              "Lag: delay of the output behind a steadily changing pressure; it is known, and subtracted "
+              "from the output's time stamp. Bandwidth: slower motion passes.") +
           designs_table(report);
   return html_page(report.title, html);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One page about a sensor's noise.
+// The page of `isobar noise`.
 #pragma once
 
 #include <string>
@@ -12,13 +12,13 @@ namespace isobar::report {
 
 struct NoiseReport {
   std::string title;
-  std::string source;   ///< which samples, in words
-  std::string command;  ///< that made it
+  std::string source;   ///< a sentence: number, rate and period of the samples
+  std::string command;  ///< the command line that makes this report
   SensorNoise noise;
-  double cm_per_pa = 8.5;             ///< height of a pascal at the place of the recording
+  double cm_per_pa = 8.5;             ///< height per pascal at the pressure of the log
   std::vector<FilterDesign> designs;  ///< settings of the low-pass to choose from
   FilterDesign chosen;
-  std::vector<double> times_s;  ///< of all samples, for the first picture
+  std::vector<double> times_s;  ///< of all samples
   std::vector<double> pressures_pa;
 };
 

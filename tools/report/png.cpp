@@ -40,8 +40,8 @@ std::string encode_png(const IndexedImage& image) {
   std::string header;
   append_u32(header, static_cast<std::uint32_t>(image.width));
   append_u32(header, static_cast<std::uint32_t>(image.height));
-  header += std::string("\x08\x03\x00\x00\x00",
-                        5);  // 8 bits, palette, deflate, no filter method but 0, not interlaced
+  // 8 bits per pixel, palette, deflate, filter method 0, not interlaced.
+  header += std::string("\x08\x03\x00\x00\x00", 5);
   std::string colours;
   std::string opacities;
   for (const auto& colour : image.palette) {

@@ -9,17 +9,18 @@
 
 namespace isobar::report {
 
-/// An image of palette indices, row by row from the top.
+/// An image of palette indices, row-major from the top left.
 struct IndexedImage {
   std::size_t width = 0;
   std::size_t height = 0;
   std::vector<std::uint8_t> pixels;                  ///< width * height
-  std::vector<std::array<std::uint8_t, 4>> palette;  ///< red, green, blue, opacity; at most 256
+  std::vector<std::array<std::uint8_t, 4>> palette;  ///< red, green, blue, opacity; at most 256 entries
 };
 
 /// PNG (ISO/IEC 15948), colour type 3 with transparency.
 std::string encode_png(const IndexedImage& image);
 
+/// Base64 (RFC 4648).
 std::string base64(const std::string& bytes);
 
 /// "data:image/png;base64,…"

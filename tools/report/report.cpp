@@ -28,7 +28,7 @@ std::string z_rpe_comparison(const evaluation::EvaluatedRun& run) {
   return "95th percentile " + fixed(100.0 * main_method(run).evaluation.figures.z_rpe.p95, 2) + " %";
 }
 
-/// What the main method reached, in four figures.
+/// Four figures of the main method.
 std::string tiles(const evaluation::EvaluatedRun& run) {
   const evaluation::EvaluatedMethod& method = main_method(run);
   const evaluation::MethodFigures& figures = method.evaluation.figures;
@@ -37,19 +37,18 @@ std::string tiles(const evaluation::EvaluatedRun& run) {
     if (std::isfinite(row.scan_ms)) times_ms.push_back(row.scan_ms);
   }
   const Distribution time = summarize(std::move(times_ms));
-  std::string html = "<ul class=\"tiles\">\n";
-  html += tile(evaluation::display_name(method.name) + ": error on z, median",
-               fixed(100.0 * figures.z_rpe.median, 2) + " %", z_rpe_comparison(run));
-  html += tile("Largest height error", fixed_signed(figures.largest_height_error_m, 2) + " m",
-               "at the end " + fixed_signed(figures.final_height_error_m, 2) + " m");
-  html +=
-      tile("Position error, rms", fixed(figures.ate_rms_m, 2) + " m",
-           fixed(100.0 * figures.ate_share, 2) + " % of " + fixed(figures.travelled_m, 1) + " m travelled");
+  std::vector<Tile> tiles{
+      {evaluation::display_name(method.name) + ": relative error on z, median",
+       fixed(100.0 * figures.z_rpe.median, 2) + " %", z_rpe_comparison(run)},
+      {"Largest height error", fixed_signed(figures.largest_height_error_m, 2) + " m",
+       "at the end " + fixed_signed(figures.final_height_error_m, 2) + " m"},
+      {"Position error (ATE), rms", fixed(figures.ate_rms_m, 2) + " m",
+       fixed(100.0 * figures.ate_share, 2) + " % of " + fixed(figures.travelled_m, 1) + " m travelled"}};
   if (time.count > 0) {
-    html += tile("Time per scan, median", fixed(time.median, 1) + " ms",
-                 "99th percentile " + fixed(time.p99, 1) + " ms");
+    tiles.push_back({"Time per scan, median", fixed(time.median, 1) + " ms",
+                     "99th percentile " + fixed(time.p99, 1) + " ms"});
   }
-  return html + "</ul>\n";
+  return tile_row(tiles);
 }
 
 std::string z_rpe_section(const evaluation::EvaluatedRun& run) {
@@ -65,7 +64,7 @@ std::string height_section(const evaluation::EvaluatedRun& run) {
   std::string html =
       heading("Height along the way") +
       figure(height_picture(run, {1040.0, 380.0}, "height"), "Height against travelled distance",
-             "Heights after the start poses were laid over each other." +
+             "Estimates moved so that all start poses coincide." +
                  std::string(evaluation::floor_levels_m(run).empty() ? "" : " Shaded: flat segments.")) +
       heading("Height error along the way") +
       figure(height_error_picture(run, {1040.0, 320.0}, std::nullopt, "error"),
@@ -73,8 +72,8 @@ std::string height_section(const evaluation::EvaluatedRun& run) {
   if (const std::optional<double> limit_m = close_up_limit_m(run)) {
     html += figure(height_error_picture(run, {1040.0, 280.0}, limit_m, "closeup"),
                    "Height error against travelled distance, close up",
-                   "The same, close up: " + evaluation::display_name(main_method(run).name) +
-                       " in full, the others cut off.");
+                   "Close-up: " + evaluation::display_name(main_method(run).name) +
+                       " in full, the other methods clipped.");
   }
   return html;
 }
@@ -88,9 +87,9 @@ std::string side_section(const evaluation::EvaluatedRun& run) {
             "</h3>\n" + view.picture.svg("Side elevation of the map of " + view.method) + "</div>\n";
   }
   return html +
-         "</div><figcaption>Points of the map, darker where there are more, with the path of the estimate "
-         "and of the "
-         "reference. Red: mean height of the reference on each floor, with the estimate's mean error there."
+         "</div><figcaption>Points of the map, darker where denser, with the paths of estimate and "
+         "reference. Red: "
+         "mean height of each floor in the reference, with the estimate's mean error."
          "</figcaption></figure>\n";
 }
 
@@ -99,41 +98,33 @@ std::string top_section(const evaluation::EvaluatedRun& run) {
   const std::string what =
       has_map ? "Map of " + evaluation::display_name(main_method(run).name) + " and paths" : "Paths";
   return heading(has_map ? "The map from above" : "The paths from above") +
-         figure(top_view_picture(run), what + " from above",
-                what + ", to scale." +
-                    (evaluation::floor_levels_m(run).size() > 1 ? " All floors lie over each other." : ""));
+         figure(
+             top_view_picture(run), what + " from above",
+             what + ", to scale." +
+                 (evaluation::floor_levels_m(run).size() > 1 ? " All floors are drawn on top of each other."
+                                                             : ""));
 }
 
 std::string time_section(const evaluation::EvaluatedRun& run) {
   const std::optional<Picture> picture = scan_time_picture(run, 1040.0);
   if (!picture) return "";
-  return heading("Time per scan") +
-         figure(*picture, "Histogram of the time per scan by method",
-                "From deskew to solution. Full line: median; dashed: 99th percentile. "
-                "Longer times are counted in the last bar.");
-}
-
-std::string notes_section(const evaluation::EvaluatedRun& run) {
-  if (run.notes.empty()) return "";
-  std::string html = heading("Notes") + "<ul class=\"notes\">\n";
-  for (const std::string& note : run.notes) html += "<li>" + escaped(note) + "</li>\n";
-  return html + "</ul>\n";
+  return heading("Time per scan") + figure(*picture, "Histogram of the time per scan by method",
+                                           "From deskewing to the solved pose. Solid line: median; dashed: "
+                                           "99th percentile. Times beyond the "
+                                           "axis are counted in the last bar.");
 }
 
 }  // namespace
 
 std::string render_report(const ReportInput& input) {
   const evaluation::EvaluatedRun& run = input.run;
-  std::string html = "<h1>" + escaped(input.title) + "</h1>\n";
-  if (!input.description.empty()) html += "<p class=\"lead\">" + escaped(input.description) + "</p>\n";
-  html += "<p>" + escaped(run_summary(run)) + "</p>\n";
-  if (!input.command.empty()) html += "<div class=\"command\">" + escaped(input.command) + "</div>\n";
-  html += tiles(run) + z_rpe_section(run) + height_section(run) + side_section(run) + top_section(run) +
-          time_section(run) + heading("All figures") + figures_table(run);
+  std::string html = page_head(input.title, input.description, input.command) + paragraph(run_summary(run)) +
+                     tiles(run) + z_rpe_section(run) + height_section(run) + side_section(run) +
+                     top_section(run) + time_section(run) + heading("All figures") + figures_table(run);
   const std::string floors = floors_table(run);
   if (!floors.empty()) html += heading("Height of each floor") + floors;
-  return html_page(input.title,
-                   html + notes_section(run) + heading("How these figures are made") + definitions(run));
+  if (!run.notes.empty()) html += heading("Notes") + bullet_list(run.notes);
+  return html_page(input.title, html + heading("Definitions") + definitions(run));
 }
 
 void write_report(const std::filesystem::path& file, const ReportInput& input) {

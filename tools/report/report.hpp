@@ -10,18 +10,19 @@
 namespace isobar::report {
 
 struct ReportInput {
-  std::string title;        ///< what was measured: "Three floors, seed 1"
-  std::string description;  ///< a sentence or two below it; may be empty
-  std::string command;      ///< that makes this report again, as typed
+  std::string title;        ///< the experiment, such as "Three floors, seed 1"
+  std::string description;  ///< a sentence or two below the title; may be empty
+  std::string command;      ///< the command line that makes this report; may be empty
   evaluation::EvaluatedRun run;
 };
 
 std::string render_report(const ReportInput& input);
 
-/// render_report() into a file. Throws ServiceError if it cannot be written.
+/// Writes render_report() to a file.
+/// @throws ServiceError naming the file when it cannot be written
 void write_report(const std::filesystem::path& file, const ReportInput& input);
 
-/// The README's picture: relative error on z by method beside the height along the way, as one SVG file.
+/// The README's picture as SVG: relative error on z by method, and the height along the way below it.
 std::string render_overview_svg(const ReportInput& input);
 
 }  // namespace isobar::report

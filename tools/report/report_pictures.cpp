@@ -37,13 +37,13 @@ Series method_series(const evaluation::EvaluatedRun& run, const evaluation::Eval
 
 Series reference_series(const evaluation::EvaluatedRun& run) {
   const auto& poses = run.reference.trajectory.poses;
-  // Wide, so that it can be seen below an estimate that lies on it.
+  // Wide, so that it shows below an estimate that lies on it.
   Series series{"Reference", {"#9ca3af", 6.0}, evaluation::travelled_distance_m(poses), {}};
   for (const evaluation::StampedPose& pose : poses) series.y.push_back(pose.position_m.z());
   return series;
 }
 
-/// The altimeter's heights in the reference's frame, at the poses of the same stamp; empty if there is no
+/// The altimeter's heights in the reference's frame, at the poses with the same stamp; empty without
 /// altimeter.
 Series altimeter_series(const evaluation::EvaluatedMethod& method) {
   Series series{"Altimeter", kAltimeterStroke, {}, {}};
@@ -59,7 +59,7 @@ Series altimeter_series(const evaluation::EvaluatedMethod& method) {
   return series;
 }
 
-/// The main method's altimeter, else that of the first method which has one.
+/// The altimeter of the main method, else of the first method that has one.
 Series altimeter_series(const evaluation::EvaluatedRun& run) {
   Series series = altimeter_series(main_method(run));
   for (auto method = run.methods.begin(); method != run.methods.end() && series.x.empty(); ++method) {
@@ -68,7 +68,7 @@ Series altimeter_series(const evaluation::EvaluatedRun& run) {
   return series;
 }
 
-/// The recording's segments along the way.
+/// The recording's segments over the travelled distance.
 std::vector<Band> segment_bands(const evaluation::EvaluatedRun& run) {
   const auto& poses = run.reference.trajectory.poses;
   const std::vector<double> distance_m = evaluation::travelled_distance_m(poses);
@@ -87,6 +87,20 @@ std::vector<Band> segment_bands(const evaluation::EvaluatedRun& run) {
 
 Range travelled_range(const evaluation::EvaluatedRun& run) {
   return {0.0, std::max(0.1, evaluation::travelled_distance_m(run.reference.trajectory.poses).back())};
+}
+
+/// An empty chart over the travelled distance, with the recording's segments.
+LineChart chart_along_way(const evaluation::EvaluatedRun& run, const std::string& y_label,
+                          const PictureSize& size, const std::string& id) {
+  LineChart chart;
+  chart.x_label = "travelled distance [m]";
+  chart.y_label = y_label;
+  chart.width = size.width;
+  chart.height = size.height;
+  chart.id = id;
+  chart.bands = segment_bands(run);
+  chart.x_range = travelled_range(run);
+  return chart;
 }
 
 double largest_height_error_m(const evaluation::EvaluatedMethod& method) {
@@ -125,14 +139,7 @@ Picture z_rpe_picture(const evaluation::EvaluatedRun& run, double width) {
 }
 
 Picture height_picture(const evaluation::EvaluatedRun& run, const PictureSize& size, const std::string& id) {
-  LineChart chart;
-  chart.x_label = "travelled distance [m]";
-  chart.y_label = "height [m]";
-  chart.width = size.width;
-  chart.height = size.height;
-  chart.id = id;
-  chart.bands = segment_bands(run);
-  chart.x_range = travelled_range(run);
+  LineChart chart = chart_along_way(run, "height [m]", size, id);
   chart.min_y_width = 1.0;
   chart.series.push_back(reference_series(run));
   Series altimeter = altimeter_series(run);
@@ -146,14 +153,7 @@ Picture height_picture(const evaluation::EvaluatedRun& run, const PictureSize& s
 
 Picture height_error_picture(const evaluation::EvaluatedRun& run, const PictureSize& size,
                              std::optional<double> limit_m, const std::string& id) {
-  LineChart chart;
-  chart.x_label = "travelled distance [m]";
-  chart.y_label = "height error [m]";
-  chart.width = size.width;
-  chart.height = size.height;
-  chart.id = id;
-  chart.bands = segment_bands(run);
-  chart.x_range = travelled_range(run);
+  LineChart chart = chart_along_way(run, "height error [m]", size, id);
   chart.zero_line = true;
   if (limit_m) chart.y_range = Range{-*limit_m, *limit_m};
   for (const evaluation::EvaluatedMethod& method : run.methods) {
@@ -163,6 +163,7 @@ Picture height_error_picture(const evaluation::EvaluatedRun& run, const PictureS
 }
 
 std::optional<double> close_up_limit_m(const evaluation::EvaluatedRun& run) {
+  // From this ratio of largest errors on, the main method is a flat line in the full picture.
   constexpr double kTooFlat = 5.0;
   const evaluation::EvaluatedMethod* contrast = contrast_method(run, false);
   const double main_m = std::max(0.02, largest_height_error_m(main_method(run)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The report's pictures, made from an evaluated run. Distances are those travelled by the reference.
+// The report's pictures of an evaluated run. Distances are travelled by the reference.
 #pragma once
 
 #include <optional>
@@ -16,37 +16,35 @@ struct PictureSize {
   double height = 340.0;
 };
 
-/// The method the report is about: "3dof" if it took part, else the first.
+/// The method that the report is about: "3dof" if present, else the first.
 const evaluation::EvaluatedMethod& main_method(const evaluation::EvaluatedRun& run);
-/// The other method with the largest height error, of those that have a map if `needs_map`; null if there is
-/// none.
+/// The other method with the largest height error, only of those with a map if `needs_map`; null without one.
 const evaluation::EvaluatedMethod* contrast_method(const evaluation::EvaluatedRun& run, bool needs_map);
 
-/// The paper's box plot of the relative error on z, a method a row.
+/// The paper's box plot of the relative error on z, one method per row.
 Picture z_rpe_picture(const evaluation::EvaluatedRun& run, double width);
 
 /// Height along the way: reference, altimeter, every method.
 Picture height_picture(const evaluation::EvaluatedRun& run, const PictureSize& size, const std::string& id);
 
-/// Height error along the way; cut at +-limit_m if given.
+/// Height error along the way, clipped at ±limit_m if given.
 Picture height_error_picture(const evaluation::EvaluatedRun& run, const PictureSize& size,
                              std::optional<double> limit_m, const std::string& id);
-/// Where to cut the second height error picture so that the main method can be seen; nothing if the first
-/// does.
+/// Limit of the close-up of the height error; nothing when the main method shows well in the full picture.
 std::optional<double> close_up_limit_m(const evaluation::EvaluatedRun& run);
 
-/// Maps from the side, of the main method and of the one furthest off in height. Empty if no map was given.
+/// Side elevations of the maps of the main method and of contrast_method(); empty without maps.
 struct SideView {
   std::string method;
   Picture picture;
-  bool is_half = false;  ///< two of them fit beside each other
+  bool is_half = false;  ///< half as wide as the page
 };
 std::vector<SideView> side_view_pictures(const evaluation::EvaluatedRun& run);
 
-/// Map of the main method (the reference's path alone if there is none) from above, with all paths.
+/// Plan view of all paths over the map of the main method, if it has one.
 Picture top_view_picture(const evaluation::EvaluatedRun& run);
 
-/// Time per scan of each method; nothing if no status says.
+/// Time per scan of each method; nothing without times in any status file.
 std::optional<Picture> scan_time_picture(const evaluation::EvaluatedRun& run, double width);
 
 }  // namespace isobar::report

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The report's tables and words, as HTML.
+// The report's tables and definitions, as HTML.
 #pragma once
 
 #include <string>
@@ -8,16 +8,16 @@
 
 namespace isobar::report {
 
-/// What was compared with what, as plain text.
+/// Number of estimates, reference, length and duration, as a plain sentence.
 std::string run_summary(const evaluation::EvaluatedRun& run);
 
-/// Every figure of every method; the best of each row in bold.
+/// All figures of all methods, the best of each row in bold.
 std::string figures_table(const evaluation::EvaluatedRun& run);
 
 /// Height error of each floor; empty without flat segments.
 std::string floors_table(const evaluation::EvaluatedRun& run);
 
-/// How each figure is defined, with this run's options.
+/// Definition of each figure, with this run's options.
 std::string definitions(const evaluation::EvaluatedRun& run);
 
 }  // namespace isobar::report

@@ -11,14 +11,16 @@ namespace {
 constexpr const char* kGridColour = "#e5e7eb";
 constexpr const char* kFrameColour = "#9ca3af";
 constexpr const char* kTickColour = "#4b5563";
-constexpr double kTickSize = 12.0;
-constexpr double kLegendRow = 20.0;
-constexpr double kLegendSample = 26.0;
-constexpr double kLegendGap = 20.0;
-constexpr std::size_t kMaxTicks = 60;  // ends the loop where numbers are too large to be counted up
-constexpr double kDecadesWithAllTicks = 3.0;
+constexpr double kTickSizePx = 12.0;
+constexpr double kLegendRowPx = 20.0;
+constexpr double kLegendSamplePx = 26.0;
+constexpr double kLegendGapPx = 20.0;
+// Bounds the loop where a step is lost in the rounding of a large value.
+constexpr std::size_t kMaxTicks = 60;
+// Logarithmic axes up to this width get ticks at 1, 2 and 5 of each decade, wider ones at 1 only.
+constexpr double kMaxDecadesWithAllTicks = 3.0;
 
-/// The step 1, 2 or 5 times a power of ten next above `rough`.
+/// The smallest of 1, 2, 5 times a power of ten that is at least `rough`.
 double round_step(double rough) {
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
   for (const double factor : {1.0, 2.0, 5.0}) {
@@ -34,16 +36,16 @@ std::string tick_label(double value, int decimals) {
 }
 
 double entry_width(const LegendEntry& entry) {
-  return kLegendSample + 7.0 + text_width(entry.name, 13.0) + kLegendGap;
+  return kLegendSamplePx + 7.0 + text_width(entry.name, 13.0) + kLegendGapPx;
 }
 
-/// Calls visit(entry, x, row) for each entry; returns the number of rows.
+/// Calls visit(entry, x_px, row) for each entry; returns the number of rows.
 template <typename Visit>
 int lay_out_legend(double width, const std::vector<LegendEntry>& entries, Visit&& visit) {
   double x = 0.0;
   int row = 0;
   for (const LegendEntry& entry : entries) {
-    if (x > 0.0 && x + entry_width(entry) - kLegendGap > width) {
+    if (x > 0.0 && x + entry_width(entry) - kLegendGapPx > width) {
       x = 0.0;
       ++row;
     }
@@ -81,7 +83,7 @@ Scale Scale::linear(const Range& values, double px_low, double px_high, double t
   const double width = values.high - values.low;
   const double count = std::max(1.0, std::abs(px_high - px_low) / tick_px);
   const double step = round_step(width / count);
-  if (!std::isfinite(step) || !(step > 0.0)) return scale;  // nothing that could be counted up
+  if (!std::isfinite(step) || !(step > 0.0)) return scale;  // an empty or endless range has no ticks
   const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 9);
   const double first = std::ceil(values.low / step - 1e-6);
   for (double i = first; i * step <= values.high + 1e-6 * step && scale.ticks_.size() < kMaxTicks; i += 1.0) {
@@ -93,7 +95,7 @@ Scale Scale::linear(const Range& values, double px_low, double px_high, double t
 Scale Scale::logarithmic(const Range& values, double px_low, double px_high) {
   Scale scale(values, px_low, px_high, true);
   if (!(values.low > 0.0) || !std::isfinite(values.high)) return scale;
-  const bool is_wide = std::log10(values.high / values.low) > kDecadesWithAllTicks;
+  const bool is_wide = std::log10(values.high / values.low) > kMaxDecadesWithAllTicks;
   for (int exponent = static_cast<int>(std::floor(std::log10(values.low))); exponent < 12; ++exponent) {
     for (const double factor : {1.0, 2.0, 5.0}) {
       const double value = factor * std::pow(10.0, exponent);
@@ -118,12 +120,12 @@ void draw_axes(Picture& picture, const Axes& axes) {
   for (const Tick& tick : axes.x.ticks()) {
     const double x = axes.x(tick.value);
     picture.line({x, frame.y}, {x, frame.bottom()}, {kGridColour});
-    picture.text({x, frame.bottom() + 17.0}, tick.label, {kTickSize, kTickColour, "middle"});
+    picture.text({x, frame.bottom() + 17.0}, tick.label, {kTickSizePx, kTickColour, "middle"});
   }
   for (const Tick& tick : axes.y.ticks()) {
     const double y = axes.y(tick.value);
     if (axes.y_grid) picture.line({frame.x, y}, {frame.right(), y}, {kGridColour});
-    if (axes.y_ticks) picture.text({frame.x - 8.0, y + 4.0}, tick.label, {kTickSize, kTickColour, "end"});
+    if (axes.y_ticks) picture.text({frame.x - 8.0, y + 4.0}, tick.label, {kTickSizePx, kTickColour, "end"});
   }
   picture.outline(frame, {kFrameColour});
   if (!axes.x_label.empty()) {
@@ -137,16 +139,22 @@ void draw_axes(Picture& picture, const Axes& axes) {
 }
 
 double legend_height(double width, const std::vector<LegendEntry>& entries) {
-  return kLegendRow * lay_out_legend(width, entries, [](const LegendEntry&, double, int) {});
+  return kLegendRowPx * lay_out_legend(width, entries, [](const LegendEntry&, double, int) {});
 }
 
 double draw_legend(Picture& picture, Point at, double width, const std::vector<LegendEntry>& entries) {
   const int rows = lay_out_legend(width, entries, [&](const LegendEntry& entry, double x, int row) {
-    const double y = at.y + kLegendRow * row + 0.5 * kLegendRow;
-    picture.line({at.x + x, y}, {at.x + x + kLegendSample, y}, entry.stroke);
-    picture.text({at.x + x + kLegendSample + 7.0, y + 4.5}, entry.name);
+    const double y = at.y + kLegendRowPx * row + 0.5 * kLegendRowPx;
+    picture.line({at.x + x, y}, {at.x + x + kLegendSamplePx, y}, entry.stroke);
+    picture.text({at.x + x + kLegendSamplePx + 7.0, y + 4.5}, entry.name);
   });
-  return kLegendRow * rows;
+  return kLegendRowPx * rows;
+}
+
+Box frame_below_legend(Picture& picture, const std::vector<LegendEntry>& entries, double gap_px) {
+  const double width = picture.width() - kLeftMarginPx - kRightMarginPx;
+  const double top = draw_legend(picture, {kLeftMarginPx, 0.0}, width, entries) + gap_px;
+  return {kLeftMarginPx, top, width, picture.height() - top - kBottomMarginPx};
 }
 
 }  // namespace isobar::report

@@ -12,10 +12,10 @@ namespace isobar::report {
 
 namespace {
 
-constexpr double kCm = 100.0;
+constexpr double kCmPerM = 100.0;
 constexpr const char* kColours[] = {"#2563eb", "#b45309", "#15803d", "#7c3aed"};  // NOLINT: a table
 
-/// A track in centimetres above its mean on the first plateau.
+/// A track in centimetres above the first level: its mean there equals the level's true height.
 Series centimetres(const HeightTrack& track, const Plateau& first, const std::string& name,
                    const Stroke& stroke) {
   double sum_m = 0.0;
@@ -27,7 +27,7 @@ Series centimetres(const HeightTrack& track, const Plateau& first, const std::st
   }
   const double zero_m = (count > 0.0 ? sum_m / count : track.heights_m.front()) - first.true_height_m;
   Series series{name, stroke, track.times_s, {}};
-  for (const double height_m : track.heights_m) series.y.push_back(kCm * (height_m - zero_m));
+  for (const double height_m : track.heights_m) series.y.push_back(kCmPerM * (height_m - zero_m));
   return series;
 }
 
@@ -45,7 +45,7 @@ Picture height_picture(const HeightPicture& picture, const std::string& id) {
   Series truth{"true", {"#dc2626", 1.8}, {}, {}, true};
   for (const Plateau& plateau : picture.plateaus) {
     truth.x.insert(truth.x.end(), {plateau.begin_s, plateau.end_s});
-    truth.y.insert(truth.y.end(), {kCm * plateau.true_height_m, kCm * plateau.true_height_m});
+    truth.y.insert(truth.y.end(), {kCmPerM * plateau.true_height_m, kCmPerM * plateau.true_height_m});
   }
   chart.series.push_back(std::move(truth));
   return draw(chart);
@@ -60,7 +60,7 @@ Picture error_picture(const SensitivityExperiment& experiment) {
     auto sensor = std::find(sensors.begin(), sensors.end(), row.sensor);
     if (sensor == sensors.end()) sensor = sensors.insert(sensors.end(), row.sensor);
     std::vector<double> sizes;
-    for (const double error_m : row.errors_m) sizes.push_back(kCm * std::abs(error_m));
+    for (const double error_m : row.errors_m) sizes.push_back(kCmPerM * std::abs(error_m));
     plot.rows.push_back({row.sensor + ", " + row_name(row),
                          kColours[static_cast<std::size_t>(sensor - sensors.begin()) % std::size(kColours)],
                          summarize(std::move(sizes))});
@@ -70,21 +70,17 @@ Picture error_picture(const SensitivityExperiment& experiment) {
 
 std::string figures_table(const SensitivityExperiment& experiment) {
   const bool many = !experiment.rows.empty() && experiment.rows.front().runs.size() > 1;
-  std::string html =
-      "<div class=\"scroll\"><table><thead><tr><th>sensor</th><th>errors</th><th>median [cm]</th><th>sd "
-      "[cm]</th>";
-  if (many) html += "<th>median of the worst run</th><th>sd of the worst run</th>";
-  html += "</tr></thead><tbody>\n";
-  const auto cell = [](double value_m) { return "<td>" + fixed(kCm * value_m, 2) + "</td>"; };
+  std::vector<std::string> head{"sensor", "errors", "median [cm]", "sd [cm]"};
+  if (many) head.insert(head.end(), {"median of the worst run", "sd of the worst run"});
+  const auto cell = [](double value_m) { return TableCell{fixed(kCmPerM * value_m, 2)}; };
+  std::vector<std::vector<TableCell>> rows;
   for (const ErrorRow& row : experiment.rows) {
     const OverRuns median = over_runs(row, &ErrorFigures::median_m);
     const OverRuns sd = over_runs(row, &ErrorFigures::sd_m);
-    html += "<tr><td>" + escaped(row.sensor) + "</td><td class=\"unit\">" + escaped(row_name(row)) + "</td>" +
-            cell(median.median_m) + cell(sd.median_m);
-    if (many) html += cell(median.worst_m) + cell(sd.worst_m);
-    html += "</tr>\n";
+    rows.push_back({{row.sensor}, {row_name(row), "unit"}, cell(median.median_m), cell(sd.median_m)});
+    if (many) rows.back().insert(rows.back().end(), {cell(median.worst_m), cell(sd.worst_m)});
   }
-  return html + "</tbody></table></div>\n";
+  return html_table(head, rows);
 }
 
 }  // namespace
@@ -102,22 +98,22 @@ std::string row_name(const ErrorRow& row) {
 }
 
 std::string render_sensitivity_report(const SensitivityReport& report) {
-  std::string html = "<h1>" + escaped(report.title) + "</h1>\n<p class=\"lead\">" +
-                     escaped(report.description) + "</p>\n<div class=\"command\">" + escaped(report.command) +
-                     "</div>\n";
+  std::string html = page_head(report.title, report.description, report.command);
   int number = 0;
   for (const SensitivityExperiment& experiment : report.experiments) {
-    html += heading(experiment.title) + "<p>" + escaped(experiment.caption) + "</p>\n";
+    html += heading(experiment.title) + paragraph(experiment.caption);
     for (const HeightPicture& picture : experiment.pictures) {
-      html += figure(height_picture(picture, "height" + std::to_string(number++)),
-                     picture.sensor + ": height against time",
-                     picture.sensor + ", moved above standing. Red: the true staircase, where it counts.");
+      html +=
+          figure(height_picture(picture, "height" + std::to_string(number++)),
+                 picture.sensor + ": height against time",
+                 picture.sensor +
+                     ", moved sensor above standing sensor. Red: the true height, where it is evaluated.");
     }
     html +=
         figure(error_picture(experiment), "Box plot of the steady-state errors",
-               "Thick line: median; box: quartiles; whiskers: 5th and 95th percentiles. An error is the "
-               "height gained since the level before, less the true step: of every settled sample (what is "
-               "off at any moment), and of each level's mean (what a robot that waits can reach).") +
+               "Thick line: median; box: quartiles; whiskers: 5th and 95th percentiles. Error: height gained "
+               "since the previous level, minus the true step. Of every settled sample: the error at any "
+               "moment; of the mean of each level: the error of a robot that waits.") +
         figures_table(experiment);
   }
   return html_page(report.title, html);

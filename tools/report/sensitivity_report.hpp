@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page of the sensitivity experiment: heights against time, and how far they are off.
+// The page of the sensitivity experiment: heights against time, and their errors.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace isobar::report {
 
-/// One series of errors over all runs, and each run's own figures.
+/// Errors of one kind of one sensor over all runs, and the figures of each run.
 struct ErrorRow {
   std::string sensor;
   bool filtered = false;
-  bool plateau_means = false;  ///< else every settled sample
+  bool plateau_means = false;  ///< of the mean of each level; else of every settled sample
   std::vector<double> errors_m;
   std::vector<ErrorFigures> runs;
 };
@@ -29,7 +29,7 @@ struct HeightPicture {
 
 struct SensitivityExperiment {
   std::string title;    ///< "Ten steps of 3 cm"
-  std::string caption;  ///< what was run, and what counts
+  std::string caption;  ///< source and conditions of the data
   std::vector<HeightPicture> pictures;
   std::vector<ErrorRow> rows;
 };
@@ -41,7 +41,7 @@ struct SensitivityReport {
   std::vector<SensitivityExperiment> experiments;
 };
 
-/// Median over the runs of a figure, and the worst run's; NaN without runs.
+/// A figure's median over the runs and its value in the worst run; NaN without runs.
 struct OverRuns {
   double median_m = 0.0;
   double worst_m = 0.0;

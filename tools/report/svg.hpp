@@ -8,13 +8,13 @@
 
 namespace isobar::report {
 
-/// Text for use between tags and in attributes.
+/// Escapes text for use between tags and in attributes; drops control characters.
 std::string escaped(std::string_view text);
 
-/// Fixed decimals with a dot; "–" for NaN; never "-0".
+/// A number with fixed decimals; "–" for NaN; "0", never "-0".
 std::string fixed(double value, int decimals);
 
-/// Like fixed(), with an explicit + for positive numbers and a true minus sign.
+/// Like fixed(), with a plus sign for positive numbers and U+2212 as minus sign.
 std::string fixed_signed(double value, int decimals);
 
 struct Point {
@@ -35,7 +35,7 @@ struct Box {
 struct Stroke {
   std::string colour = "#1f2937";
   double width = 1.0;
-  std::string dash{};  ///< as stroke-dasharray; empty for a full line
+  std::string dash{};  ///< stroke-dasharray; empty: solid line
   double opacity = 1.0;
 };
 
@@ -48,7 +48,7 @@ struct TextStyle {
   bool halo = false;  ///< white outline, for text over lines
 };
 
-/// A drawing of a given size.
+/// An SVG drawing of a given size [px].
 class Picture {
  public:
   Picture(double width, double height) : width_(width), height_(height) {}
@@ -60,18 +60,17 @@ class Picture {
   void outline(const Box& box, const Stroke& stroke, std::string_view fill = "none");
   void circle(Point centre, double radius, std::string_view fill, const Stroke& stroke);
   void text(Point at, std::string_view content, const TextStyle& style = {});
-  /// `data_uri` fills the box without smoothing.
+  /// Stretches an image, given as a data URI, over the box.
   void image(const Box& box, std::string_view data_uri);
   /// Draws another picture with its corner at `at`.
   void place(const Picture& picture, Point at);
-  /// Everything between begin_clip and end_clip is cut at the box. Not nested. `id` must be unique in the
-  /// page.
+  /// Clips what is drawn until end_clip() to the box. Does not nest. `id` must be unique in the page.
   void begin_clip(const Box& box, std::string_view id);
   void end_clip();
 
   [[nodiscard]] double width() const { return width_; }
   [[nodiscard]] double height() const { return height_; }
-  /// The whole <svg> element; `title` is what a screen reader says.
+  /// The <svg> element; `title` is read by screen readers.
   [[nodiscard]] std::string svg(std::string_view title) const;
 
  private:
@@ -80,7 +79,7 @@ class Picture {
   std::string body_;
 };
 
-/// Width of a text in the report's sans-serif face [px], within some 10 %.
+/// Approximate width of a text in the report's sans-serif typeface [px], to some 10 %.
 double text_width(std::string_view content, double size);
 
 }  // namespace isobar::report

@@ -42,7 +42,7 @@ TEST_CASE("the report is one well-formed file that loads nothing, with every sec
   CHECK_FALSE(contains(html, "href=\"http"));
   for (const char* section : {"Relative error on z", "Height along the way", "Height error along the way",
                               "The map from the side", "The map from above", "Time per scan", "All figures",
-                              "Height of each floor", "How these figures are made", "Altimeter"}) {
+                              "Height of each floor", "Definitions", "Altimeter"}) {
     CHECK_MESSAGE(contains(html, section), section);
   }
   CHECK(is_well_formed(render_overview_svg(input)));
