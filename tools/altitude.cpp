@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `isobar altitude`: the height of one barometer from its log, after the fact, against a base if there is
-// one.
+// `isobar altitude`: heights from one barometer's log, relative to a base station's log if there is one.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,12 +23,13 @@
 #include "tools/height_errors.hpp"
 #include "tools/inertial_heights.hpp"
 #include "tools/pressure_log.hpp"
+#include "tools/subcommand.hpp"
 
 namespace isobar::tools {
 
 namespace {
 
-// A base whose rows are further apart is a weather station.
+// A base with fewer rows than one in this time is a weather station.
 constexpr double kSlowBaseS = 5.0;
 
 struct AltitudeArguments {
@@ -47,25 +46,25 @@ struct AltitudeArguments {
 
 PressureLog read_log(const std::filesystem::path& file, const std::string& columns) {
   PressureLog log = read_new_values(file, parse_columns(columns));
-  if (log.samples.size() < 2) throw DataError(file.string() + ": holds a single sample");
+  if (log.samples.size() < 2) throw DataError(file.string() + ": fewer than two samples");
   std::printf("%s: %zu samples\n", file.c_str(), log.samples.size());
   for (const std::string& note : log.notes) std::printf("  %s\n", note.c_str());
   return log;
 }
 
-/// With an IMU there is no low-pass.
+/// Lag of the low-pass; 0 with an IMU, which replaces it.
 double lag_s(const AltitudeArguments& arguments) { return arguments.imu.empty() ? arguments.lag_s : 0.0; }
 
-/// The base's pressure as a function of time, and how it was made of its rows.
+/// The base's pressure as a function of time; `rows` are its samples.
 FilteredPressure read_base(const AltitudeArguments& arguments, const PressureLog& moved,
                            std::vector<PressureSample>& rows) {
   PressureLog base = read_log(arguments.base, arguments.base_columns);
   const double interval_s = seconds_between(base.samples.front().stamp_ns, base.samples.back().stamp_ns) /
                             static_cast<double>(base.samples.size() - 1);
   const bool slow = interval_s > kSlowBaseS;
-  // A station's few rows do not cover the run as a base's log does: its clock is what it says.
+  // The few rows of a weather station are too few to align its clock: it is trusted.
   std::printf(
-      "base: one row in %.2f s, %s\n", interval_s,
+      "base: one row per %.2f s, %s\n", interval_s,
       slow ? "smoothed as weather (level and rate); its clock is trusted" : tie_clocks(moved, base).c_str());
   rows = std::move(base.samples);
   return slow ? smooth_weather(rows) : filter_log(rows, lag_s(arguments));
@@ -89,9 +88,10 @@ HeightSeries carried_by_imu(const AltitudeArguments& arguments, const HeightSeri
       arguments.base.empty() ? HeightSource::kSingleBarometer : HeightSource::kDifferential;
   HeightSeries series = inertial_heights(read_imu(arguments.imu), raw, sigma_m, source);
   if (series.heights_m.empty()) {
-    throw DataError(arguments.imu.string() + ": no height: gravity was not found, or the times are others");
+    throw DataError(arguments.imu.string() +
+                    ": no heights: gravity was not found, or the times differ from the barometer's");
   }
-  std::printf("no low-pass: vertical acceleration carries the height, %.3f m of white noise a sample\n",
+  std::printf("no low-pass: vertical acceleration bridges the samples, each with %.3f m of white noise\n",
               sigma_m);
   return series;
 }
@@ -104,15 +104,16 @@ HeightSeries heights(const AltitudeArguments& arguments) {
   if (arguments.base.empty()) {
     base.stamps_ns = {filtered.stamps_ns.front()};
     base.pressures_pa = {filtered.pressures_pa.front()};
-    std::printf("no base: weather is in the height\n");
+    std::printf("no base: the heights contain the weather\n");
   } else {
     base = read_base(arguments, moved, rows);
   }
-  const double air_c = arguments.air_c.value_or(coldest_c({&moved.samples, &rows}).value_or(20.0));
+  const double air_c = arguments.air_c.value_or(coldest_c({&moved.samples, &rows}).value_or(kDefaultAirC));
   HeightSeries series = height_difference(filtered, base, air_c + kZeroCelsiusK);
   if (arguments.imu.empty()) {
-    std::printf("low-pass: lag %.2f s, taken off the stamps; white noise %.3f Pa a sample, %.3f Pa left\n",
-                filtered.design.delay_s, filtered.sigma_pa, filtered.design.output_sigma_pa);
+    std::printf(
+        "low-pass: lag %.2f s, subtracted from the stamps; white noise %.3f Pa per sample, %.3f Pa left\n",
+        filtered.design.delay_s, filtered.sigma_pa, filtered.design.output_sigma_pa);
   } else {
     const double m_per_pa = hypsometric_scale_m(air_c + kZeroCelsiusK) / filtered.pressures_pa.front();
     series = carried_by_imu(arguments, series, m_per_pa * std::hypot(filtered.sigma_pa, base.sigma_pa));
@@ -136,14 +137,14 @@ void write_heights(const std::filesystem::path& file, const HeightSeries& series
 void compare(const std::filesystem::path& file, const HeightSeries& series) {
   const auto reference = evaluation::parse_tum(files::read_text_file(file), file.string());
   const HeightErrors errors = height_errors(series, reference);
-  if (errors.count == 0) throw DataError(file.string() + ": no stamp of it is within the barometer's");
+  if (errors.count == 0) throw DataError(file.string() + ": shares no time with the barometer's log");
   std::printf(
-      "against %s, %zu heights, one constant offset (the mean, %+.3f m) taken off:\n"
-      "  rms %.4f m, largest %.4f m; reference moves by %.2f m\n",
+      "against %s: %zu heights, after subtraction of the mean difference, %+.3f m:\n"
+      "  rms %.4f m, largest %.4f m; height range of the reference %.2f m\n",
       file.c_str(), errors.count, errors.offset_m, errors.rms_m, errors.largest_m, errors.range_m);
 }
 
-void run(const AltitudeArguments& arguments) {
+void run_altitude(const AltitudeArguments& arguments) {
   const HeightSeries series = heights(arguments);
   std::printf("%zu heights over %.1f s, the last one %+.2f m above the first\n", series.heights_m.size(),
               seconds_between(series.stamps_ns.front(), series.stamps_ns.back()), series.heights_m.back());
@@ -154,25 +155,23 @@ void run(const AltitudeArguments& arguments) {
 }  // namespace
 
 void add_altitude_command(CLI::App& app) {
-  auto arguments = std::make_shared<AltitudeArguments>();
-  CLI::App* command = app.add_subcommand(
-      "altitude", "Heights from a barometer's log, against a base station or a weather station");
-  command->add_option("BAROMETER", arguments->barometer, "CSV of the moved barometer")->required();
-  command->add_option("--base", arguments->base,
-                      "CSV of the standing one; with less than a row in 5 s it is smoothed as weather");
-  command->add_option("--columns", arguments->columns, kColumnsHelp);
-  command->add_option("--base-columns", arguments->base_columns, "the same of the base");
-  command->add_option("--lag", arguments->lag_s, "lag of the low-pass [s]; 0: none")
+  const auto [command, options] = add_subcommand<AltitudeArguments>(
+      app, "altitude", "Heights from a barometer's log, against a base station or a weather station",
+      run_altitude);
+  command.add_option("BAROMETER", options.barometer, "CSV of the moved barometer")->required();
+  command.add_option(
+      "--base", options.base,
+      "CSV of the standing barometer; with less than one row in 5 s it is smoothed as weather");
+  command.add_option("--columns", options.columns, kColumnsHelp);
+  command.add_option("--base-columns", options.base_columns, "the same for the base");
+  command.add_option("--lag", options.lag_s, "lag of the low-pass [s]; 0: no low-pass")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 600.0));
-  command
-      ->add_option("--air", arguments->air_c, "air temperature [degC] (default: the coldest thermometer's)")
-      ->check(CLI::Range(-60.0, 60.0));
-  command->add_option("--imu", arguments->imu,
-                      "imu.csv of the moved one: its acceleration instead of a low-pass");
-  command->add_option("--reference", arguments->reference, "trajectory (TUM) to compare the height with");
-  command->add_option("--out", arguments->out, "CSV of the heights: t_ns,height_m");
-  command->callback([arguments] { run(*arguments); });
+  add_air_option(command, options.air_c);
+  command.add_option("--imu", options.imu,
+                     "imu.csv of the moved barometer: vertical acceleration replaces the low-pass");
+  command.add_option("--reference", options.reference, "trajectory (TUM format) to compare the heights with");
+  command.add_option("--out", options.out, "CSV file for the heights: t_ns,height_m");
 }
 
 }  // namespace isobar::tools

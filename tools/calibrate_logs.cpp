@@ -18,10 +18,10 @@ namespace {
 using recording::PressureLog;
 using report::fixed;
 
-// Sensor and reference further apart than this hang in different places, or one is in another unit.
-constexpr double kSamePlacePa = 5'000.0;
-// Changes of pressure that correlate like this have the same noise: no two sensors do.
-constexpr double kSameNoise = 0.99999;
+// 50 hPa, some 400 m: sensor and reference are in different places, or one is in another unit.
+constexpr double kMaxSamePlacePa = 5'000.0;
+// Correlation of pressure changes above which even the noise is equal: the logs are of one sensor.
+constexpr double kSameSensorCorrelation = 0.99999;
 
 std::vector<PressureLog> read_all(const LogSelection& selection, const char* role,
                                   std::vector<std::string>& notes) {
@@ -63,7 +63,7 @@ void put_in_order(std::vector<PressureLog>& logs) {
   for (std::size_t k = 1; k < logs.size(); ++k) {
     if (logs[k].samples.front().stamp_ns <= logs[k - 1].samples.back().stamp_ns) {
       throw DataError(logs[k].file + ": begins before " + logs[k - 1].file +
-                      " ends; with --paired each reference belongs to the sensor's log in the same place");
+                      " ends; for references of different sensor logs use --paired");
     }
   }
 }
@@ -79,10 +79,10 @@ double median_pa(std::span<const PressureLog> logs) {
 void require_one_place(std::span<const PressureLog> sensor, std::span<const PressureLog> reference) {
   const double sensor_pa = median_pa(sensor);
   const double reference_pa = median_pa(reference);
-  if (std::abs(sensor_pa - reference_pa) <= kSamePlacePa) return;
+  if (std::abs(sensor_pa - reference_pa) <= kMaxSamePlacePa) return;
   throw DataError(sensor.front().file + ": median pressure " + fixed(0.01 * sensor_pa, 1) +
                   " hPa, the reference's " + fixed(0.01 * reference_pa, 1) +
-                  " hPa: another place, or another unit than was found");
+                  " hPa: a different place, or a wrong unit");
 }
 
 std::string shift_sentence(const ClockShift& shift) {
@@ -90,8 +90,8 @@ std::string shift_sentence(const ClockShift& shift) {
   std::string text = "the reference's time is the sensor's " +
                      std::string(shift.shift_s < 0.0 ? "- " : "+ ") +
                      fixed(std::abs(shift.shift_s), decimals) + " s +- " + fixed(shift.sigma_s, decimals) +
-                     " s: there " + std::to_string(shift.changes) + " changes of pressure over " +
-                     fixed(shift.scale_s, decimals) + " s correlate by " + fixed(shift.correlation, 2);
+                     " s: " + std::to_string(shift.changes) + " changes of pressure over " +
+                     fixed(shift.scale_s, decimals) + " s then correlate by " + fixed(shift.correlation, 2);
   if (std::isfinite(shift.next_best_shift_s)) {
     text += "; next best " + fixed(shift.next_best_correlation, 2) + " at " +
             fixed(shift.next_best_shift_s, decimals) + " s";
@@ -99,12 +99,12 @@ std::string shift_sentence(const ClockShift& shift) {
   return text;
 }
 
-/// One shift for all sensor logs.
+/// Finds one shift for all sensor logs; notes it.
 double find_shift(std::span<const PressureLog> sensor, const PressureSeries& reference,
                   const CalibrationLogs& logs, std::vector<std::string>& notes) {
   if (logs.shift_s) {
-    notes.push_back("clocks: the reference's time is taken as the sensor's " + fixed(*logs.shift_s, 3) +
-                    " s later, as the command line says");
+    notes.push_back("clocks: the reference's clock is " + fixed(*logs.shift_s, 3) +
+                    " s ahead of the sensor's, by --shift");
     return *logs.shift_s;
   }
   if (is_same_file(logs.sensor, logs.reference)) {
@@ -115,13 +115,12 @@ double find_shift(std::span<const PressureLog> sensor, const PressureSeries& ref
   for (const PressureLog& log : sensor) series.push_back(series_of({&log, 1}));
   const ClockShift shift = find_clock_shift(series, reference, {logs.window_s, 0.0});
   if (!shift.doubt.empty()) {
-    throw DataError(sensor.front().file + ": how its clock differs from the reference's cannot be told, " +
+    throw DataError(sensor.front().file + ": the shift to the reference's clock is ambiguous, " +
                     shift.doubt + (shift.changes > 0 ? " (" + shift_sentence(shift) + ")" : "") +
-                    "; say it with --shift (0: they agree), or search further with --window");
+                    "; give it with --shift (0: equal clocks), or search further with --window");
   }
-  if (shift.correlation > kSameNoise) {
-    throw DataError(sensor.front().file +
-                    ": the reference is the sensor itself: even their noise is the same");
+  if (shift.correlation > kSameSensorCorrelation) {
+    throw DataError(sensor.front().file + ": the reference is the sensor itself: even their noise is equal");
   }
   notes.push_back("clocks: " + shift_sentence(shift));
   return shift.shift_s;
@@ -139,8 +138,8 @@ void pair(std::span<const PressureLog> sensor, std::span<const PressureLog> refe
     const auto say = [&](std::size_t count, const char* what) {
       if (count > 0) aligned.notes.push_back(log.file + ": " + what + ": " + std::to_string(count));
     };
-    say(counts.without_reference, "rows left out without a reference at their time");
-    say(counts.without_temperature, "rows left out without a temperature");
+    say(counts.without_reference, "rows left out, no reference at their time");
+    say(counts.without_temperature, "rows left out, no temperature");
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the logs of a sensor and of a reference to the moments that both have measured.
+// Reads the logs of a sensor and of a reference, aligns their clocks and pairs their samples.
 #pragma once
 
 #include <filesystem>
@@ -21,9 +21,9 @@ struct LogSelection {
 
 struct CalibrationLogs {
   LogSelection sensor;     ///< each file is a recording of its own
-  LogSelection reference;  ///< all files are one log, unless `paired`
-  bool paired = false;     ///< each sensor file belongs to the reference file in the same place
-  /// Reference's time minus sensor's [s]; without it the shift is searched.
+  LogSelection reference;  ///< together one log, unless `paired`
+  bool paired = false;     ///< the n-th sensor file belongs to the n-th reference file
+  /// Reference clock minus sensor clock [s]; without it, the shift is searched within ± window_s.
   std::optional<double> shift_s;
   double window_s = ShiftSearch{}.window_s;
 };
@@ -31,13 +31,14 @@ struct CalibrationLogs {
 struct AlignedLogs {
   std::vector<CalibrationRecording> recordings;
   bool has_temperature = false;
-  std::vector<std::string> notes;     ///< what was found out and counted, for the person
-  std::vector<std::string> warnings;  ///< what the person should look at
+  std::vector<std::string> notes;     ///< detected columns, units and shifts, rows left out
+  std::vector<std::string> warnings;  ///< for the user to check
 };
 
-/// Reads all logs, finds the shift of their clocks and pairs the samples. Throws DataError: what the logs
-/// themselves are refused for, references that overlap, a shift that cannot be told, pressures of different
-/// places, a reference that is the sensor.
+/// Reads all logs, finds the shift of their clocks and pairs the samples.
+/// @throws DataError when a log cannot be read, references overlap, the shift is ambiguous, the pressures are
+/// of different places, or the reference is the sensor itself
+/// @throws UsageError when `paired` logs differ in number
 AlignedLogs align_logs(const CalibrationLogs& logs);
 
 }  // namespace isobar::tools

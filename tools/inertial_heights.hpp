@@ -9,10 +9,12 @@
 
 namespace isobar::tools {
 
-/// Heights without lag: those of `raw` (no low-pass) carried along by the vertical acceleration of an IMU
-/// (InertialAltimeter). Its attitude is found from gravity and gyro, so it may be mounted at any angle. Both
-/// clocks are one. `sigma_m`: white noise of a raw height; `source`: what it was measured against. One height
-/// for each raw one, at the IMU's time; none before gravity is known.
+/// Heights without lag: barometric heights fused with the vertical acceleration of an IMU
+/// (InertialAltimeter). The IMU may be mounted at any angle: its attitude comes from gravity and gyro.
+/// @param raw heights without low-pass, on the IMU's clock
+/// @param sigma_m white noise of a raw height
+/// @param source reference of the raw heights
+/// @return one height per raw height, at the stamp of an IMU sample; none before gravity is found
 HeightSeries inertial_heights(std::span<const ImuSample> imu, const HeightSeries& raw, double sigma_m,
                               HeightSource source);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `isobar`: the person's tool. Exit codes: 0, 64 usage, 65 data, 69 service, 78 configuration.
+// `isobar`: the command-line tool. Exit codes: 0, 64 usage, 65 data, 69 service, 78 configuration.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -13,7 +13,7 @@ namespace {
 
 int run(int argc, char** argv) {
   CLI::App app{
-      "Isobar: lidar localisation that keeps its height, with air pressure.\n"
+      "Isobar: lidar localisation whose height comes from air pressure.\n"
       "Exit codes: 0 done, 64 usage, 65 bad data, 69 service unavailable, 78 bad configuration."};
   app.require_subcommand(1);
   app.set_version_flag("--version", ISOBAR_VERSION);
@@ -33,7 +33,7 @@ int run(int argc, char** argv) {
 #endif
   const auto named = [&](const CLI::App* command) { return command->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(named).empty()) {
-    throw isobar::UsageError(std::string(argv[1]) + ": no such command; `isobar --help` names them");
+    throw isobar::UsageError(std::string(argv[1]) + ": no such command; `isobar --help` shows all");
   }
   try {
     app.parse(argc, argv);
@@ -48,7 +48,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Whoever reads a pipe sees each line when it is printed.
+  // Line-buffered also in a pipe, so that its reader sees each line at once.
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   try {
     return run(argc, argv);

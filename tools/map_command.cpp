@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `isobar map`: what is in the map of a run, whether it is whole, and its points as a file.
+// `isobar map`: contents, check and export of the map of a run.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -12,8 +12,10 @@
 #include "core/errors.hpp"
 #include "core/map/map_tile.hpp"
 #include "run/files/map_export.hpp"
+#include "run/files/run_layout.hpp"
 #include "run/tile_store/file_tile_store.hpp"
 #include "tools/commands.hpp"
+#include "tools/subcommand.hpp"
 
 namespace isobar::tools {
 
@@ -22,18 +24,18 @@ namespace {
 using Store = std::unique_ptr<FileTileStore>;
 using Count = unsigned long long;
 
-/// The map of a folder, or the one in the folder of a run.
+/// Opens a map's folder, or the map in the folder of a run.
 Store open_map(const std::filesystem::path& directory) {
-  const std::filesystem::path inside = directory / "map";
+  const std::filesystem::path inside = directory / files::kMapDirectory;
   const bool is_run =
       !std::filesystem::exists(directory / "map.toml") && std::filesystem::exists(inside / "map.toml");
   return FileTileStore::open_to_read(is_run ? inside : directory);
 }
 
-/// What the opening found to be wrong, in words; nothing where all is well.
+/// Prints the damage found on opening; nothing without damage.
 void print_faults(const TileStoreCounters& counters) {
   if (counters.torn > 0) {
-    std::printf("torn: %llu tiles whose writing was cut off, or is going on\n", Count{counters.torn});
+    std::printf("torn: %llu tiles with an interrupted or unfinished write\n", Count{counters.torn});
   }
   if (counters.damaged > 0) std::printf("damaged: %llu\n", Count{counters.damaged});
   if (!counters.first_damage.empty()) std::printf("first: %s\n", counters.first_damage.c_str());
@@ -49,9 +51,15 @@ files::MapBox extent_of(const std::vector<TileKey>& keys, double tile_m) {
   return extent;
 }
 
-void run_info(const std::filesystem::path& directory) {
+struct MapOptions {
+  std::filesystem::path directory;
+  std::filesystem::path out;
+  std::vector<double> box;
+};
+
+void run_info(const MapOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
-  const Store store = open_map(directory);
+  const Store store = open_map(options.directory);
   const std::chrono::duration<double, std::milli> opened = std::chrono::steady_clock::now() - begin;
   const std::vector<TileKey> keys = store->keys();
   std::printf("tiles: %zu of %g m, cells of %g m\n", keys.size(), store->header().tile_m,
@@ -67,75 +75,88 @@ void run_info(const std::filesystem::path& directory) {
   print_faults(store->counters());
 }
 
-void run_check(const std::filesystem::path& directory) {
-  const Store store = open_map(directory);
-  print_faults(store->counters());
-  std::uint64_t bad = store->counters().damaged + store->counters().torn;
+struct TileCheck {
+  std::uint64_t unreadable = 0;  ///< damaged tiles, and tiles that this program cannot decode
+  std::uint64_t points = 0;
+};
+
+/// Reads every tile and prints the unreadable ones.
+TileCheck check_tiles(FileTileStore& store, const std::filesystem::path& directory) {
+  TileCheck result;
   std::vector<std::byte> bytes;
   std::vector<MapPoint> points;
-  const std::vector<TileKey> keys = store->keys();
-  std::uint64_t point_count = 0;
-  for (const TileKey& key : keys) {
+  for (const TileKey& key : store.keys()) {
     points.clear();
-    if (!store->take(key, bytes)) {
-      std::printf("%s\n", store->last_damage().c_str());
-      ++bad;
+    if (!store.take(key, bytes)) {
+      std::printf("%s\n", store.last_damage().c_str());
+      ++result.unreadable;
     } else if (!append_tile_points(bytes, points)) {
-      std::printf("%s: %s: its bytes are not a tile of this program\n", directory.c_str(),
-                  files::tile_name(key).c_str());
-      ++bad;
+      std::printf("%s: %s: cannot be decoded as a tile\n", directory.c_str(), files::tile_name(key).c_str());
+      ++result.unreadable;
     }
-    point_count += points.size();
+    result.points += points.size();
   }
-  if (bad > 0) {
-    throw DataError(directory.string() + ": " + std::to_string(bad) + " tiles or stretches are damaged, " +
-                    std::to_string(store->tile_count()) + " tiles can be read");
-  }
-  std::printf("%s: all right: %zu tiles, %llu points\n", directory.c_str(), keys.size(), Count{point_count});
+  return result;
 }
 
-void run_export(const std::filesystem::path& directory, const std::filesystem::path& out,
-                const std::vector<double>& corners) {
-  std::optional<files::MapBox> box;
-  if (!corners.empty()) {
-    box = files::MapBox{{corners[0], corners[1], corners[2]}, {corners[3], corners[4], corners[5]}};
-    if (!(box->lowest.array() <= box->highest.array()).all()) {
-      throw UsageError("--box: each of the first three numbers must not be above the one three behind it");
-    }
+void run_check(const MapOptions& options) {
+  const Store store = open_map(options.directory);
+  print_faults(store->counters());
+  const TileCheck tiles = check_tiles(*store, options.directory);
+  const std::uint64_t bad = store->counters().damaged + store->counters().torn + tiles.unreadable;
+  if (bad > 0) {
+    throw DataError(options.directory.string() + ": " + std::to_string(bad) +
+                    " tiles or records are damaged, " + std::to_string(store->tile_count()) +
+                    " tiles are readable");
   }
-  const Store store = open_map(directory);
-  files::PlyWriter ply(out);
+  std::printf("%s: no damage: %zu tiles, %llu points\n", options.directory.c_str(), store->tile_count(),
+              Count{tiles.points});
+}
+
+/// @throws UsageError when a lower corner is above the upper one
+std::optional<files::MapBox> box_of(const std::vector<double>& corners) {
+  if (corners.empty()) return std::nullopt;
+  const files::MapBox box{{corners[0], corners[1], corners[2]}, {corners[3], corners[4], corners[5]}};
+  if (!(box.lowest.array() <= box.highest.array()).all()) {
+    throw UsageError("--box: must be X0 <= X1, Y0 <= Y1, Z0 <= Z1");
+  }
+  return box;
+}
+
+void run_export(const MapOptions& options) {
+  const std::optional<files::MapBox> box = box_of(options.box);
+  const Store store = open_map(options.directory);
+  files::PlyWriter ply(options.out);
   const files::MapExport done = files::export_map(*store, store->header(), box, ply);
   ply.close();
   print_faults(store->counters());
-  std::printf("%llu points of %llu tiles in %s\n", Count{done.points}, Count{done.tiles}, out.c_str());
+  std::printf("%llu points of %llu tiles in %s\n", Count{done.points}, Count{done.tiles},
+              options.out.c_str());
   if (done.unreadable > 0) {
-    throw DataError(directory.string() + ": " + std::to_string(done.unreadable) +
-                    " tiles could not be read and are left out; the first: " + done.first_unreadable);
+    throw DataError(options.directory.string() + ": " + std::to_string(done.unreadable) +
+                    " tiles are unreadable and left out; the first: " + done.first_unreadable);
   }
+}
+
+/// Adds "map NAME DIR".
+template <typename Run>
+Subcommand<MapOptions> add_part(CLI::App& map, const char* name, const char* purpose, Run run) {
+  const auto part = add_subcommand<MapOptions>(map, name, purpose, run);
+  part.command.add_option("DIR", part.options.directory, "folder of a map, or of a run")->required();
+  return part;
 }
 
 }  // namespace
 
 void add_map_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("map", "Look at the map of a run, check it, export its points");
-  command->require_subcommand(1);
-  const auto directory = std::make_shared<std::filesystem::path>();
-  const auto takes_map = [&](const char* name, const char* what) {
-    CLI::App* part = command->add_subcommand(name, what);
-    part->add_option("DIR", *directory, "folder of a map, or of a run with the map in it")->required();
-    return part;
-  };
-  takes_map("info", "Tiles, bytes, extent, faults")->callback([directory] { run_info(*directory); });
-  takes_map("check", "Read everything; exit code 65 names what is damaged")->callback([directory] {
-    run_check(*directory);
-  });
-  CLI::App* to_file = takes_map("export", "Write the points as PLY, sorted by tile");
-  const auto out = std::make_shared<std::filesystem::path>();
-  const auto box = std::make_shared<std::vector<double>>();
-  to_file->add_option("--out", *out, "PLY file: x y z intensity")->required();
-  to_file->add_option("--box", *box, "only what is within X0 Y0 Z0 X1 Y1 Z1 [m]")->expected(6);
-  to_file->callback([directory, out, box] { run_export(*directory, *out, *box); });
+  CLI::App& map = *app.add_subcommand("map", "Show, check and export the map of a run");
+  map.require_subcommand(1);
+  add_part(map, "info", "Tiles, bytes, extent, damage", run_info);
+  add_part(map, "check", "Read every tile; exit code 65 when any is damaged", run_check);
+  const auto [command, options] =
+      add_part(map, "export", "Write the points as PLY, in the order of the tiles", run_export);
+  command.add_option("--out", options.out, "PLY file: x y z intensity")->required();
+  command.add_option("--box", options.box, "only points in the box X0 Y0 Z0 X1 Y1 Z1 [m]")->expected(6);
 }
 
 }  // namespace isobar::tools

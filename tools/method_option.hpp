@@ -16,7 +16,7 @@ inline constexpr std::array<Method, 6> kAllMethods = {Method::k6Dof,     Method:
                                                       Method::kOdometry, Method::k4DofAltitude,
                                                       Method::k4Dof,     Method::k3Dof};
 
-/// The method of a name as the command line spells it; nothing for any other word.
+/// The method of this name; nothing for an unknown name.
 inline std::optional<Method> method_of(std::string_view name) {
   for (const Method method : kAllMethods) {
     if (method_name(method) == name) return method;

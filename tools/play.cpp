@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `isobar play`: a recording as live traffic. Lidar packets go to the lidar's port, all other samples as
-// datagrams (drivers/datagram/datagram.hpp) to the input port, each at its time.
+// `isobar play`: sends a recording in real time: lidar packets to the lidar port, all other samples as
+// datagrams (drivers/datagram/datagram.hpp) to the input port.
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <memory>
 
 #include "core/errors.hpp"
 #include "drivers/datagram/datagram.hpp"
@@ -13,6 +12,7 @@
 #include "tools/commands.hpp"
 #include "tools/player.hpp"
 #include "tools/progress.hpp"
+#include "tools/subcommand.hpp"
 
 namespace isobar::tools {
 
@@ -26,7 +26,7 @@ struct PlayOptions {
   std::filesystem::path reference_out;
 };
 
-/// Writes reference and segments at the times at which they were played, for an evaluation of the live run.
+/// Writes reference and segments with stamps of the robot clock, for the evaluation of the live run.
 void write_shifted_reference(const PlayOptions& options, const recording::Manifest& manifest,
                              std::int64_t shift_ns) {
   if (!manifest.reference) throw DataError(options.recording.string() + ": has no reference to shift");
@@ -68,17 +68,17 @@ void play(const PlayOptions& options) {
 }  // namespace
 
 void add_play_command(CLI::App& app) {
-  auto options = std::make_shared<PlayOptions>();
-  CLI::App* command = app.add_subcommand("play", "Send a recording as live UDP traffic, in real time");
-  command->add_option("RECORDING", options->recording, "recording folder")->required();
-  command->add_option("--address", options->address, "where isobard listens")->capture_default_str();
-  command->add_option("--lidar-port", options->lidar_port,
-                      "UDP port of the lidar packets (default: the recording's)");
-  command->add_option("--input-port", options->input_port, "UDP port of the sample datagrams")
+  const auto [command, options] =
+      add_subcommand<PlayOptions>(app, "play", "Send a recording as UDP traffic in real time", play);
+  command.add_option("RECORDING", options.recording, "recording folder")->required();
+  command.add_option("--address", options.address, "IPv4 address of the machine that runs isobard")
       ->capture_default_str();
-  command->add_option("--reference-out", options->reference_out,
-                      "folder for reference.tum and segments.csv, shifted to the time of playing");
-  command->callback([options] { play(*options); });
+  command.add_option("--lidar-port", options.lidar_port,
+                     "UDP port of the lidar packets (default: the recording's)");
+  command.add_option("--input-port", options.input_port, "UDP port of the sample datagrams")
+      ->capture_default_str();
+  command.add_option("--reference-out", options.reference_out,
+                     "folder for reference.tum and segments.csv, shifted to the time of playing");
 }
 
 }  // namespace isobar::tools

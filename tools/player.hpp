@@ -12,18 +12,20 @@
 
 namespace isobar::tools {
 
-/// Sends a recording as its sensors did: lidar packets to the lidar's port, all other samples as datagrams
-/// (drivers/datagram/datagram.hpp) to the input port, each at its time.
+/// Sends a recording in real time: lidar packets to the lidar port, all other samples as datagrams
+/// (drivers/datagram/datagram.hpp) to the input port.
 class Player {
  public:
   /// @param address IPv4 address of the machine on which isobard runs
-  /// @throws ServiceError see UdpSender
+  /// @throws ServiceError when a socket cannot be opened
   Player(const std::string& address, std::uint16_t lidar_port, std::uint16_t input_port);
 
-  /// Ties the recording's time to the robot clock: its first event, of this stamp, is due in 200 ms, a moment
-  /// for the first samples of all streams to be due in order. Returns what is added to stamps.
+  /// Maps the recording's time to the robot clock: the first event, with this stamp, is due in 200 ms. The
+  /// pause lets the first samples of all streams go out in order.
+  /// @return offset that is added to all stamps [ns]
   std::int64_t start(std::int64_t first_stamp_ns);
-  /// Sleeps until the event is due, then sends it. Returns when that was, robot clock.
+  /// Sleeps until the event is due, then sends it.
+  /// @return time of sending on the robot clock [ns]
   std::int64_t send_when_due(const recording::Event& event);
 
  private:

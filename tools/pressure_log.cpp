@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/pressure_log.hpp"
 
-#include <sstream>
+#include <CLI/CLI.hpp>
 
 #include "core/errors.hpp"
 #include "core/plausibility.hpp"
 #include "core/stamp.hpp"
 #include "run/recording/base_clock.hpp"
+#include "tools/subcommand.hpp"
 
 namespace isobar::tools {
 
 namespace {
 
-/// Takes ":UNIT" off a column's name; empty where there is none.
+/// Removes ":UNIT" from a column's name and returns UNIT; empty without one.
 std::string take_unit(std::string& name) {
   const std::size_t colon = name.rfind(':');
   if (colon == std::string::npos) return {};
@@ -26,9 +27,7 @@ std::string take_unit(std::string& name) {
 recording::PressureColumns parse_columns(const std::string& text) {
   recording::PressureColumns columns;
   if (text.empty()) return columns;
-  std::vector<std::string> names;
-  std::istringstream stream(text);
-  for (std::string name; std::getline(stream, name, ',');) names.push_back(name);
+  std::vector<std::string> names = comma_separated(text);
   if (names.size() < 2 || names.size() > 3) {
     throw UsageError("--columns: \"" + text + "\": must be TIME[:UNIT],PRESSURE[:UNIT][,TEMPERATURE]");
   }
@@ -39,6 +38,11 @@ recording::PressureColumns parse_columns(const std::string& text) {
   columns.needs_temperature = names.size() > 2;
   if (columns.needs_temperature) columns.temperature = names[2];
   return columns;
+}
+
+void add_air_option(CLI::App& command, std::optional<double>& air_c) {
+  command.add_option("--air", air_c, "air temperature [degC] (default: the coldest sensor's)")
+      ->check(CLI::Range(-60.0, 60.0));
 }
 
 PressureLog read_new_values(const std::filesystem::path& file, const recording::PressureColumns& columns) {
@@ -53,7 +57,7 @@ PressureLog read_new_values(const std::filesystem::path& file, const recording::
     }
   }
   if (log.repeats > 0) {
-    log.notes.push_back("rows that repeat the value before them, left out: " + std::to_string(log.repeats));
+    log.notes.push_back("rows left out because they repeat the value before: " + std::to_string(log.repeats));
   }
   return log;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A barometer's CSV file, as the commands use it that look at its noise and heights.
+// A barometer's CSV file, for the commands on noise and heights.
 #pragma once
 
 #include <cstdint>
@@ -12,36 +12,50 @@
 #include "core/samples.hpp"
 #include "run/recording/pressure_log.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace isobar::tools {
 
-/// "TIME[:UNIT],PRESSURE[:UNIT][,TEMPERATURE]", for files whose columns or units are not found out from their
-/// header. Empty: they are. Throws UsageError.
+/// Parses "TIME[:UNIT],PRESSURE[:UNIT][,TEMPERATURE]". An empty text leaves columns and units to the file's
+/// header and values.
+/// @throws UsageError when the text has another form
 recording::PressureColumns parse_columns(const std::string& text);
 
-/// What --columns says in a command's help.
+/// Help text of --columns.
 inline constexpr const char* kColumnsHelp =
-    "TIME[:ns|us|ms|s],PRESSURE[:Pa|hPa|kPa][,TEMPERATURE]: which columns and units, where the file's header "
-    "does not tell";
+    "TIME[:ns|us|ms|s],PRESSURE[:Pa|hPa|kPa][,TEMPERATURE]: columns and units, if the header does not name "
+    "them";
 
-/// The samples of a log that are new conversions.
+/// Air temperature without --air and without a thermometer.
+inline constexpr double kDefaultAirC = 20.0;
+
+/// Adds --air, the air temperature [degC].
+void add_air_option(CLI::App& command, std::optional<double>& air_c);
+
+/// The samples of a log without repeated values.
 struct PressureLog {
   std::vector<PressureSample> samples;  ///< stamps ascend, no value twice in a row
-  std::uint64_t repeats = 0;       ///< rows with the value before, bit for bit: polled faster than converted
-  std::vector<std::string> notes;  ///< columns and units as found out, what was left out and why
+  std::uint64_t repeats =
+      0;  ///< rows left out because they repeat a value: the chip was polled faster than it converts
+  std::vector<std::string> notes;  ///< columns and units as detected, rows left out and why
 
   [[nodiscard]] std::vector<double> times_s() const;  ///< since the first sample
   [[nodiscard]] std::vector<double> pressures_pa() const;
 };
 
-/// recording::read_pressure_log() without the repeats. Throws DataError.
+/// recording::read_pressure_log() without repeated values.
+/// @throws DataError as read_pressure_log()
 PressureLog read_new_values(const std::filesystem::path& file,
                             const recording::PressureColumns& columns = {});
 
-/// Moves a base's stamps to the other log's clock (recording/base_clock.hpp); returns how, in words.
+/// Shifts the standing log's stamps to the moved log's clock (recording/base_clock.hpp).
+/// @return a sentence about the shift and its reason
 std::string tie_clocks(const PressureLog& moved, PressureLog& standing);
 
-/// Mean temperature of the coldest sensor: chips warm themselves, so it is the nearest to the air. Nothing
-/// where none has a thermometer.
+/// Mean temperature of the coldest sensor [degC]: chips warm themselves, so the coldest is nearest to the
+/// air's. Nothing without a thermometer.
 std::optional<double> coldest_c(std::initializer_list<const std::vector<PressureSample>*> logs);
 
 }  // namespace isobar::tools

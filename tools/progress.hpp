@@ -7,7 +7,7 @@
 
 namespace isobar::tools {
 
-/// A progress bar on stderr while a person watches; silent when stderr is no terminal.
+/// A progress bar on stderr; silent when stderr is not a terminal.
 class Progress {
  public:
   explicit Progress(std::string label);
@@ -15,9 +15,9 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// fraction: 0 … 1; redraws ten times a second at most.
+  /// @param fraction 0 … 1; drawn at most ten times per second
   void update(double fraction);
-  /// Draws the full bar and ends the line. Called by the destructor if not before.
+  /// Draws the full bar and ends the line. The destructor calls it if needed.
   void finish();
 
  private:

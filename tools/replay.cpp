@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `isobar replay`: the pipeline over a recording, as fast as it goes.
+// `isobar replay`: runs the pipeline over a recording as fast as possible.
 #include "daemon/replay.hpp"
-#include "core/names.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <string>
 
 #include "config/config_io.hpp"
@@ -14,6 +12,7 @@
 #include "tools/commands.hpp"
 #include "tools/method_option.hpp"
 #include "tools/progress.hpp"
+#include "tools/subcommand.hpp"
 
 namespace isobar::tools {
 
@@ -26,7 +25,7 @@ struct ReplayOptions {
   std::filesystem::path out;
 };
 
-/// Counters that always move; the others are worth a line when they are not zero.
+/// Counters of normal operation, which are not printed; the others are printed unless zero.
 bool is_ordinary(const std::string& name) {
   return name == "lidar packets" || name == "lidar returns" || name == "lidar scans" ||
          name == "imu samples" || name == "barometer samples" || name == "base samples" ||
@@ -53,7 +52,7 @@ void print_summary(const ReplaySummary& summary, const std::filesystem::path& ou
   std::printf("written: %s/trajectory.tum map.ply map/ status.csv counters.csv settings.toml\n", out.c_str());
 }
 
-void run(const ReplayOptions& options) {
+void run_replay(const ReplayOptions& options) {
   Config config = options.config.empty() ? Config{} : load_config(options.config);
   if (!options.method.empty()) {
     const auto method = method_of(options.method);
@@ -70,16 +69,15 @@ void run(const ReplayOptions& options) {
 }  // namespace
 
 void add_replay_command(CLI::App& app) {
-  auto options = std::make_shared<ReplayOptions>();
-  CLI::App* command = app.add_subcommand("replay", "Estimate poses and a map from a recording");
-  command->add_option("RECORDING", options->recording, "recording folder")->required();
-  command->add_option("--config", options->config, "TOML file; sensors and mounts come from the recording");
-  command->add_option("--method", options->method, method_names() + " (default: the configuration's)");
+  const auto [command, options] =
+      add_subcommand<ReplayOptions>(app, "replay", "Estimate poses and a map from a recording", run_replay);
+  command.add_option("RECORDING", options.recording, "recording folder")->required();
+  command.add_option("--config", options.config,
+                     "TOML file; its sensors and mounts are replaced by the recording's");
+  command.add_option("--method", options.method, method_names() + " (default: the configuration's)");
   command
-      ->add_option("--out", options->out,
-                   "folder for trajectory.tum, map.ply, map/, status.csv, settings.toml")
+      .add_option("--out", options.out, "folder for trajectory.tum, map.ply, map/, status.csv, settings.toml")
       ->required();
-  command->callback([options] { run(*options); });
 }
 
 }  // namespace isobar::tools

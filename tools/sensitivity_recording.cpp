@@ -19,7 +19,6 @@ namespace isobar::tools {
 
 namespace {
 
-/// Where a recording's two logs are.
 struct Files {
   std::filesystem::path moved;
   std::filesystem::path standing;
@@ -37,7 +36,7 @@ Files files_of(const RecordedRigRequest& request) {
     if (files.segments.empty() && fs::exists(segments)) files.segments = segments;
   }
   if (files.standing.empty()) {
-    throw UsageError("--base: the standing barometer's file is missing; the experiment compares two");
+    throw UsageError("--base: missing; it names the standing barometer's file");
   }
   return files;
 }
@@ -48,15 +47,15 @@ BarometerPair read_pair(const RecordedRigRequest& request, const Files& files,
   PressureLog moved = read_new_values(files.moved, columns);
   PressureLog standing = read_new_values(files.standing, columns);
   for (const auto& [file, log] : {std::pair{&files.moved, &moved}, std::pair{&files.standing, &standing}}) {
-    if (log->samples.size() < 100)
-      throw DataError(file->string() + ": fewer than 100 samples are no experiment");
+    if (log->samples.size() < 100) throw DataError(file->string() + ": fewer than 100 samples");
     for (const std::string& note : log->notes) notes.push_back(file->string() + ": " + note);
   }
   notes.push_back("clocks: " + tie_clocks(moved, standing));
   return {request.sensor, std::move(moved.samples), std::move(standing.samples)};
 }
 
-/// Levels that segments.csv names; a label that is a number is the level's true height in metres.
+/// The levels in segments.csv. Labels that are all numbers are true heights [m]; otherwise heights follow
+/// from the step's height and the measured directions.
 std::vector<Plateau> named_plateaus(const std::filesystem::path& file, const BarometerPair& pair,
                                     const StudyOptions& options) {
   auto segments = evaluation::parse_segments_csv(files::read_text_file(file), file.string());
@@ -82,8 +81,8 @@ std::vector<Plateau> named_plateaus(const std::filesystem::path& file, const Bar
   return plateaus;
 }
 
-/// What does not count on both sides of a step that was found, to some tenths of a second: a share of the
-/// time on a level, so that enough is left of short ones.
+/// Settling time before and after a step [s], whose time is known to some tenths of a second: a share of the
+/// time on a level, so that short levels keep most of their samples.
 double found_settle_s(const std::vector<double>& step_times_s) {
   if (step_times_s.size() < 2) return 1.5;
   const double dwell_s =
@@ -91,7 +90,7 @@ double found_settle_s(const std::vector<double>& step_times_s) {
   return std::clamp(0.15 * dwell_s, 0.5, 1.5);
 }
 
-/// Levels that the heights themselves show.
+/// The levels between steps that are found in the heights.
 std::vector<Plateau> found_plateaus(const RecordedRigRequest& request, const BarometerPair& pair,
                                     const StudyOptions& options, std::vector<std::string>& notes) {
   const HeightTrack track = raw_track(pair, options.air_temperature_k);
@@ -99,16 +98,16 @@ std::vector<Plateau> found_plateaus(const RecordedRigRequest& request, const Bar
   search.step_m = options.step_m;
   search.steps = request.steps;
   const FoundSteps found = find_steps(track, search);
-  constexpr double kTooUncertainS = 2.0;
+  constexpr double kMaxUncertaintyS = 2.0;
   const std::string advice = "; name the levels with --segments (t_start_ns,t_end_ns,label)";
-  if (found.uncertainty_s > kTooUncertainS) {
+  if (found.uncertainty_s > kMaxUncertaintyS) {
     throw DataError(request.recording.string() + ": steps of " + report::fixed(100.0 * options.step_m, 1) +
-                    " cm cannot be found in this noise (to " + report::fixed(found.uncertainty_s, 1) + " s)" +
-                    advice);
+                    " cm cannot be found in this noise (their times to " +
+                    report::fixed(found.uncertainty_s, 1) + " s)" + advice);
   }
   if (found.times_s.empty() || (request.steps > 0 && found.times_s.size() != request.steps)) {
     throw DataError(request.recording.string() + ": " + std::to_string(found.times_s.size()) +
-                    " steps of this height were found" + advice);
+                    " steps of this height found" + advice);
   }
   std::string note = std::to_string(found.times_s.size()) + " steps found, each to " +
                      report::fixed(found.uncertainty_s, 2) + " s:";
@@ -131,7 +130,8 @@ RecordedRig read_recorded_rig(const RecordedRigRequest& request) {
   options.lag_s = request.lag_s;
   options.settle_s = request.settle_s.value_or(0.0);
   options.air_temperature_k =
-      request.air_c.value_or(coldest_c({&rig.pair.moved, &rig.pair.standing}).value_or(20.0)) + kZeroCelsiusK;
+      request.air_c.value_or(coldest_c({&rig.pair.moved, &rig.pair.standing}).value_or(kDefaultAirC)) +
+      kZeroCelsiusK;
   rig.plateaus = files.segments.empty() ? found_plateaus(request, rig.pair, options, rig.notes)
                                         : shortened(named_plateaus(files.segments, rig.pair, options),
                                                     options.settle_s, options.settle_s);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A real rig's two logs, and the levels it stood on.
+// Two logs of a recorded rig, and the levels it stood on.
 #pragma once
 
 #include <cstddef>
@@ -13,18 +13,18 @@
 namespace isobar::tools {
 
 struct RecordedRigRequest {
-  /// Folder with barometer.csv (moved), base_barometer.csv (standing) and perhaps segments.csv; or the moved
-  /// barometer's file.
+  /// Folder with barometer.csv (moved), base_barometer.csv (standing) and optionally segments.csv; or the
+  /// moved barometer's file.
   std::filesystem::path recording;
-  std::filesystem::path base;      ///< the standing one's file, if not the folder's
-  std::filesystem::path segments;  ///< names the levels, if not the folder's; a label may be the height in m
+  std::filesystem::path base;      ///< the standing barometer's file; default: the folder's
+  std::filesystem::path segments;  ///< levels, a label may be the height [m]; default: the folder's
   std::string columns;             ///< see parse_columns()
   std::string sensor = "recorded";
   std::optional<double> step_m;  ///< true height of a step
-  std::size_t steps = 0;         ///< how many steps must be found; 0: as many as are seen
+  std::size_t steps = 0;         ///< required number of steps; 0: any
   std::optional<double> lag_s;
   std::optional<double> settle_s;
-  std::optional<double> air_c;  ///< else the colder thermometer's
+  std::optional<double> air_c;  ///< default: the colder sensor's
 };
 
 struct RecordedRig {
@@ -33,11 +33,12 @@ struct RecordedRig {
   std::filesystem::path standing_file;
   StudyOptions options;
   std::vector<Plateau> plateaus;
-  std::vector<std::string> notes;  ///< how it was read, for a person
+  std::vector<std::string> notes;  ///< columns, clocks and steps, as sentences
 };
 
-/// Throws UsageError where the standing barometer is missing, DataError where files are, where they hold
-/// nothing, and where steps can not be found in the noise or not as many as there are.
+/// @throws UsageError when no standing barometer is named
+/// @throws DataError when a file is missing or has too few samples, or when the steps cannot be found in the
+/// noise
 RecordedRig read_recorded_rig(const RecordedRigRequest& request);
 
 }  // namespace isobar::tools

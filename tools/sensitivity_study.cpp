@@ -11,10 +11,12 @@ namespace isobar::tools {
 
 namespace {
 
-// After this many lags a first-order low-pass has 2 % of a step left: 0.5 mm of 3 cm.
+// After four lags a first-order low-pass has 2 % of a step left: 0.5 mm of 3 cm.
 constexpr double kSettledLags = 4.0;
+// Default lag as a share of the shortest level, and its limits.
 constexpr double kLagShare = 0.1;
-constexpr double kLongestLagS = 3.0;
+constexpr double kMinLagS = 0.1;
+constexpr double kMaxLagS = 3.0;
 
 HeightTrack track_of(const FilteredPressure& moved, const FilteredPressure& standing, std::int64_t start_ns,
                      double air_temperature_k) {
@@ -47,15 +49,15 @@ SensorStudy study_pair(const BarometerPair& pair, std::vector<Plateau> plateaus,
   study.plateaus = std::move(plateaus);
   study.raw = raw_track(pair, options.air_temperature_k);
   study.lag_s = options.lag_s.value_or(
-      std::clamp(kLagShare * (shortest_s(study.plateaus) + 2.0 * options.settle_s), 0.1, kLongestLagS));
+      std::clamp(kLagShare * (shortest_s(study.plateaus) + 2.0 * options.settle_s), kMinLagS, kMaxLagS));
   const FilteredPressure moved = filter_log(pair.moved, study.lag_s);
   study.filtered = track_of(moved, filter_log(pair.standing, study.lag_s), pair.moved.front().stamp_ns,
                             options.air_temperature_k);
   study.sigma_pa = moved.sigma_pa;
   study.output_sigma_pa = moved.design.output_sigma_pa;
   study.raw_errors = staircase_errors(study.raw, study.plateaus);
-  // At its corrected stamp the output looks one lag ahead: it feels a step that early, and is over it so much
-  // sooner.
+  // With the delay subtracted from its stamp, the output reacts to a step one lag early and settles one lag
+  // earlier.
   study.filtered_errors = staircase_errors(
       study.filtered, shortened(study.plateaus, (kSettledLags - 1.0) * study.lag_s, study.lag_s));
   return study;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `isobar simulate`: a scenario and a seed become a recording folder.
+// `isobar simulate`: makes a recording from a scenario and a seed.
 #include "simulation/simulate.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <memory>
 #include <string>
 
 #include "core/errors.hpp"
 #include "tools/commands.hpp"
 #include "tools/progress.hpp"
+#include "tools/subcommand.hpp"
 
 namespace isobar::tools {
 
@@ -21,16 +21,16 @@ struct SimulateOptions {
   bool list = false;
 };
 
-void run(const SimulateOptions& options) {
+void run_simulate(const SimulateOptions& options) {
   if (options.list) {
     for (const simulation::ScenarioInfo& info : simulation::scenarios()) {
       std::printf("%-14s %s\n", info.name.c_str(), info.description.c_str());
     }
     return;
   }
-  if (options.request.name.empty()) throw UsageError("which scenario? `isobar simulate --list` names them");
+  if (options.request.name.empty()) throw UsageError("SCENARIO: missing; `isobar simulate --list` shows all");
   if (!(options.request.stop_after_s > 0.0)) throw UsageError("--stop-after: must be more than 0 s");
-  if (options.out_dir.empty()) throw UsageError("--out: the folder for the recording is missing");
+  if (options.out_dir.empty()) throw UsageError("--out: missing; it names the folder for the recording");
   Progress progress("simulate " + options.request.name);
   simulation::simulate(options.request, options.out_dir, [&](double fraction) { progress.update(fraction); });
   progress.finish();
@@ -40,17 +40,16 @@ void run(const SimulateOptions& options) {
 }  // namespace
 
 void add_simulate_command(CLI::App& app) {
-  const auto options = std::make_shared<SimulateOptions>();
-  CLI::App* command = app.add_subcommand("simulate", "Make a recording of a simulated robot");
-  command->add_option("SCENARIO", options->request.name, "one of those that --list names");
-  command->add_option("--seed", options->request.seed, "draws the world, the path and the sensors' errors")
+  const auto [command, options] =
+      add_subcommand<SimulateOptions>(app, "simulate", "Make a recording of a simulated robot", run_simulate);
+  command.add_option("SCENARIO", options.request.name, "name of a scenario; --list shows all");
+  command.add_option("--seed", options.request.seed, "random seed of world, path and sensor errors")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--out", options->out_dir, "folder for the recording, made if missing");
-  command->add_flag("--short", options->request.short_form, "30 to 60 s instead of the whole run");
-  command->add_option("--stop-after", options->request.stop_after_s, "cut the run short [s]");
-  command->add_flag("--list", options->list, "name the scenarios and end");
-  command->callback([options] { run(*options); });
+  command.add_option("--out", options.out_dir, "folder for the recording, created if missing");
+  command.add_flag("--short", options.request.short_form, "30 to 60 s instead of the whole run");
+  command.add_option("--stop-after", options.request.stop_after_s, "end the run after this time [s]");
+  command.add_flag("--list", options.list, "list the scenarios and exit");
 }
 
 }  // namespace isobar::tools

@@ -11,7 +11,7 @@ namespace isobar::files {
 
 namespace {
 
-constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
+constexpr std::size_t kBufferBytes = std::size_t{1} << 18;  // few system calls per megabyte
 
 struct FileCloser {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -32,7 +32,7 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t max_by
   for (;;) {
     const std::size_t got = std::fread(block.data(), 1, block.size(), handle.get());
     text.append(block, 0, got);
-    if (text.size() > max_bytes) throw DataError(file.string() + ": is larger than this tool reads");
+    if (text.size() > max_bytes) throw DataError(file.string() + ": is larger than " + std::to_string(max_bytes) + " bytes");
     if (got < block.size()) break;
   }
   if (std::ferror(handle.get()) != 0)
@@ -54,7 +54,7 @@ OutputFile::OutputFile(std::filesystem::path file) : path_(std::move(file)) {
 
 void OutputFile::write(const void* data, std::size_t bytes) {
   if (bytes == 0) return;
-  if (!file_) throw ServiceError(path_.string() + ": was closed before it was complete");
+  if (!file_) throw ServiceError(path_.string() + ": cannot be written: is closed");
   if (std::fwrite(data, 1, bytes, file_.get()) != bytes) fail("cannot be written");
 }
 

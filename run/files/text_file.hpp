@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Small file helpers of the report tools: a whole file as text, and a buffered file that says what went
-// wrong.
+// Whole text files, and a buffered output file. Every error names the file.
 #pragma once
 
 #include <cstdio>
@@ -11,14 +10,17 @@
 
 namespace isobar::files {
 
-/// The whole file. Throws DataError naming the file if it cannot be read, is a directory, or has more than
-/// `max_bytes` (a guard against being pointed at a device or at the wrong file).
+/// The content of a file.
+/// @param max_bytes guards against endless devices and wrong files
+/// @throws DataError naming the file when it cannot be read, is a directory, or is larger than `max_bytes`
 std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes = std::size_t{1} << 31);
 
-/// Writes the whole file. Throws ServiceError naming the file if that fails.
+/// Creates or replaces a file.
+/// @throws ServiceError naming the file when it cannot be written
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 
-/// A file being written, with a large buffer. Every failure throws ServiceError naming the file.
+/// A file open for writing, with a large buffer.
+/// @throws ServiceError naming the file when any operation fails
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path file);
@@ -26,7 +28,7 @@ class OutputFile {
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
   void seek(long offset);
-  /// Flushes and closes; nothing may be written afterwards. The destructor closes without a word.
+  /// Flushes and closes; later writes throw. The destructor closes, too, but cannot report errors.
   void close();
   [[nodiscard]] bool is_open() const { return file_ != nullptr; }
 

@@ -11,7 +11,7 @@
 
 namespace isobar::test {
 
-/// A folder of this test's own, removed with it.
+/// A new empty folder, removed by the destructor.
 class TemporaryFolder {
  public:
   TemporaryFolder() {

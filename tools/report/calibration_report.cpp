@@ -85,7 +85,7 @@ std::string calibration_table(const Calibration& calibration,
   for (const ModelResult& result : calibration.models) {
     Cells cells = row_of(result, offset);
     if (!result.left_out.empty()) {
-      left_out += std::string(model_name(result.model)) + " left out: " + result.left_out + "\n";
+      left_out += std::string(model_name(result.model)) + " was left out: " + result.left_out + "\n";
     } else {
       rows.push_back(std::move(cells));
     }

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include "run/files/text_file.hpp"
 #include "tools/report/html_page.hpp"
 #include "tools/report/report_pictures.hpp"
 #include "tools/report/report_tables.hpp"
@@ -125,10 +124,6 @@ std::string render_report(const ReportInput& input) {
   if (!floors.empty()) html += heading("Height of each floor") + floors;
   if (!run.notes.empty()) html += heading("Notes") + bullet_list(run.notes);
   return html_page(input.title, html + heading("Definitions") + definitions(run));
-}
-
-void write_report(const std::filesystem::path& file, const ReportInput& input) {
-  files::write_text_file(file, render_report(input));
 }
 
 std::string render_overview_svg(const ReportInput& input) {

@@ -2,7 +2,6 @@
 // The report: one HTML file that needs neither network nor scripts.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "run/evaluation/evaluated_run.hpp"
@@ -17,10 +16,6 @@ struct ReportInput {
 };
 
 std::string render_report(const ReportInput& input);
-
-/// Writes render_report() to a file.
-/// @throws ServiceError naming the file when it cannot be written
-void write_report(const std::filesystem::path& file, const ReportInput& input);
 
 /// The README's picture as SVG: relative error on z by method, and the height along the way below it.
 std::string render_overview_svg(const ReportInput& input);

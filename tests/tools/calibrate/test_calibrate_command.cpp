@@ -87,7 +87,7 @@ bool any_contains(const std::vector<std::string>& lines, const std::string& word
 
 }  // namespace
 
-TEST_CASE("isobar calibrate finds the clock, fits the sensor, and writes what the daemon loads") {
+TEST_CASE("isobar calibrate finds the clock shift, fits the sensor, and writes a file that the daemon loads") {
   const TemporaryFolder folder;
   Rig{}.write(folder.path());
   const auto path = [&](const char* name) { return (folder.path() / name).string(); };
@@ -111,12 +111,12 @@ TEST_CASE("isobar calibrate finds the clock, fits the sensor, and writes what th
       test::is_well_formed(html.substr(html.find("<main>"), html.find("</main>") + 7 - html.find("<main>"))));
   CHECK(html.find("Residual against temperature") != std::string::npos);
   CHECK(html.find("isobar calibrate --sensor") != std::string::npos);
-  // And the daemon's configuration takes it by its name.
+  // The daemon's configuration loads the file by name.
   write_text_file(path("isobar.toml"), "[barometer]\ncompensation_file = \"out.toml\"\n");
   CHECK(load_config(path("isobar.toml")).prior.compensation.model == CompensationModel::kSimple);
 }
 
-TEST_CASE("units are found and said, whatever they are called") {
+TEST_CASE("units are found from names or values, and reported") {
   const TemporaryFolder folder;
   for (const auto& [name, unit_pa, said] : std::vector<std::tuple<std::string, double, std::string>>{
            {"P_mbar", 100.0, "in hPa (column 'P_mbar', as the column's name says)"},
@@ -152,7 +152,7 @@ TEST_CASE("mistakes end with their exit code: usage 64, data 65") {
   CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--sensor-unit", "kPa"}) == 65);
   CHECK(calibrate_exit({"--sensor", day, "--reference", day}) == 65);
   CHECK(calibrate_exit({"--sensor", day, "--reference", station, station}) == 65);
-  // The clocks are an hour apart: no shift within a minute makes the logs alike.
+  // The clocks are an hour apart: no shift within a minute aligns the logs.
   CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--window", "0.02"}) == 65);
   // A copy of the sensor's log is no reference.
   std::filesystem::copy_file(day, path("copy.csv"));
@@ -160,7 +160,7 @@ TEST_CASE("mistakes end with their exit code: usage 64, data 65") {
   CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--out", path("no/folder.toml")}) == 69);
 }
 
-TEST_CASE("one temperature is an error until the person says that it will do") {
+TEST_CASE("logs at a single temperature are refused without --pressure-only") {
   const TemporaryFolder folder;
   Rig rig;
   rig.temperature_swing_k = 0.2;
@@ -175,7 +175,7 @@ TEST_CASE("one temperature is an error until the person says that it will do") {
         65);
 }
 
-TEST_CASE("paired logs have their own clocks, two columns of one file share one") {
+TEST_CASE("paired logs have a clock each; two columns of one file share a clock") {
   const TemporaryFolder folder;
   Rig{}.write(folder.path());
   CalibrationLogs logs;
@@ -202,9 +202,7 @@ TEST_CASE("paired logs have their own clocks, two columns of one file share one"
 }
 
 TEST_CASE(
-    "real sensors: the two hours between the clocks are found, and A_simple leaves at most 60 % of an "
-    "offset's "
-    "residual") {
+    "real sensors: the shift of two hours is found, and A_simple leaves at most 60 % of the residual of an offset") {
   for (const char* sensor : {"1_BME280", "2_BME280", "1_BME680", "2_BME680"}) {
     const CalibrationLogs logs = real_logs(sensor);
     if (logs.sensor.files.empty()) {
@@ -220,16 +218,15 @@ TEST_CASE(
             simple.median_abs_pa, " of ", offset.median_abs_pa, " Pa");
     CHECK(simple.rms_pa <= 0.6 * offset.rms_pa);
     CHECK(simple.median_abs_pa <= 0.6 * offset.median_abs_pa);
-    // Two hours, less up to two minutes: averages of a minute, stamped at its end, and two loggers set by
-    // hand.
+    // Two hours minus up to two minutes: averages over a minute stamped at its end, and two loggers set by hand.
     CHECK(any_contains(aligned.notes, "the reference's time is the sensor's - 71"));
-    // Three days and 6 hPa do not carry sixteen coefficients.
+    // Three days and 6 hPa do not suffice for sixteen coefficients.
     CHECK(calibration.models[calibration.recommended].model != CompensationModel::kFull);
     CHECK(uses_temperature(calibration.models[calibration.recommended].model));
   }
 }
 
-TEST_CASE("the table has a row for each model, the reason, and why models are missing") {
+TEST_CASE("the table has a row per model, the reason for the recommendation, and why models are missing") {
   const TemporaryFolder folder;
   Rig rig;
   rig.temperature_swing_k = 0.2;

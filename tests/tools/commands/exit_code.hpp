@@ -9,7 +9,7 @@
 
 namespace isobar::test {
 
-/// The exit code that `isobar` gives with one subcommand: 0, the error's, or 64 for what the parser refuses.
+/// Exit code of `isobar` with one subcommand: 0, the thrown error's, or 64 for a parse error.
 template <typename AddCommand>
 int exit_code(AddCommand add_command, std::vector<std::string> words) {
   CLI::App app;

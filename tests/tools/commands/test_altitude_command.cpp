@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Heights from logs: a made-up climb, and a real DPS310 beside survey-grade GNSS.
+// Heights from logs: a synthetic climb, and a real DPS310 beside survey-grade GNSS.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -32,7 +32,7 @@ int altitude(std::vector<std::string> words) {
   return isobar::test::exit_code(tools::add_altitude_command, std::move(words));
 }
 
-/// A minute in weather of 1 Pa/s; the moved one climbs at 0.2 m/s.
+/// A log of a minute in weather of 1 Pa/s, with a steady climb.
 std::string log(double climb_m_s, double dt_s, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0.0, 0.2);
@@ -48,7 +48,7 @@ std::filesystem::path ugv() { return std::filesystem::path(ISOBAR_SHARED_DATA) /
 
 }  // namespace
 
-TEST_CASE("isobar altitude writes heights, and ends with the right code on each mistake") {
+TEST_CASE("isobar altitude writes heights, and each mistake has its exit code") {
   const TemporaryFolder folder;
   const auto path = [&](const char* name) { return (folder.path() / name).string(); };
   write_text_file(path("moved.csv"), log(0.2, 0.03, 1));
@@ -64,7 +64,7 @@ TEST_CASE("isobar altitude writes heights, and ends with the right code on each 
   CHECK(altitude({path("moved.csv"), "--base", path("base.csv"), "--out", path("h.csv")}) == 0);
   const std::string heights = read_text_file(path("h.csv"));
   const std::size_t comma = heights.rfind(',');
-  // 12 m in a minute, less the last second that the delay takes off; weather of 60 Pa is 5 m.
+  // 12 m in a minute, minus the last second, which the delay cuts off; 60 Pa of weather would be 5 m.
   CHECK(std::stod(heights.substr(comma + 1)) == doctest::Approx(11.8).epsilon(0.02));
   CHECK(altitude({path("moved.csv"), "--base", path("station.csv"), "--reference", path("truth.tum")}) == 0);
   CHECK(altitude({path("moved.csv"), "--lag", "0"}) == 0);
@@ -77,7 +77,7 @@ TEST_CASE("isobar altitude writes heights, and ends with the right code on each 
   CHECK(altitude({path("one.csv")}) == 65);
 }
 
-TEST_CASE("with an IMU at any angle the height of an elevator's ride has no lag") {
+TEST_CASE("with an IMU at any mounting angle the height of an elevator ride has no lag") {
   // 20 s at rest, 1.5 m/s for 10 s with 1 m/s^2 at both ends, 10 s at rest; the IMU lies on its side.
   const auto accel = [](double t) {
     return t >= 20.0 && t < 21.5 ? 1.0 : t >= 30.0 && t < 31.5 ? -1.0 : 0.0;
@@ -117,13 +117,13 @@ TEST_CASE("with an IMU at any angle the height of an elevator's ride has no lag"
   CHECK(tools::inertial_heights({}, raw, 0.04, HeightSource::kDifferential).heights_m.empty());
 }
 
-TEST_CASE("on a real robot outdoors the height keeps to 12 cm rms of survey-grade GNSS") {
+TEST_CASE("on a real robot outdoors heights are within 12 cm rms of survey-grade GNSS") {
   if (!std::filesystem::exists(ugv() / "dps310.csv")) {
     MESSAGE("skipped: no shared data");
     return;
   }
-  // Nothing is tuned to this run: a lag of 1 s and the air temperature of the coldest thermometer. One
-  // constant is fitted, the mean difference, because a barometer does not know what GNSS counts from.
+  // Default settings: a lag of 1 s and the air temperature of the coldest sensor. Only the mean difference is fitted,
+  // because the zero of a barometer's height is arbitrary.
   const auto read = [](const char* file, const char* columns) {
     return tools::read_new_values(ugv() / file, tools::parse_columns(columns));
   };
@@ -149,8 +149,7 @@ TEST_CASE("on a real robot outdoors the height keeps to 12 cm rms of survey-grad
       CHECK(result.rms_m < 0.12);
     }
   }
-  // With its delay left in the stamps the low-pass would not do: 1 s at up to 0.12 m/s. This is what says
-  // that the delay is the right one.
+  // Proof of the delay: 1 s uncorrected at up to 0.12 m/s would make the low-pass worse than none.
   CHECK(errors(1.0, false).rms_m < errors(0.0, false).rms_m);
 }
 

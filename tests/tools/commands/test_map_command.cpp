@@ -21,7 +21,7 @@ int map_command(const std::vector<std::string>& words) {
   return isobar::test::exit_code(tools::add_map_command, all);
 }
 
-/// Puts the tiles of a map without points: this is about the commands, not about what is in a tile.
+/// Stores three tiles without points; the commands do not depend on the points.
 void put_tiles(FileTileStore& store) {
   Bytes bytes;
   for (int n = 0; n < 3; ++n) {
@@ -33,7 +33,7 @@ void put_tiles(FileTileStore& store) {
 
 }  // namespace
 
-TEST_CASE("a whole map is all right, in its folder and in that of its run, and can be exported") {
+TEST_CASE("an undamaged map passes info, check and export, by its own folder and by the run's") {
   const Scratch scratch;
   const std::string run = scratch.path().string();
   { put_tiles(*FileTileStore::create(scratch.path() / "map", {}, {})); }
@@ -47,7 +47,7 @@ TEST_CASE("a whole map is all right, in its folder and in that of its run, and c
   CHECK(map_command({"export", run, "--out", ply, "--box", "0", "0", "0", "1", "1", "1"}) == 0);
 }
 
-TEST_CASE("damage gives the exit code of bad data, and a file that cannot be written that of the service") {
+TEST_CASE("a damaged map exits with 65, an output file that cannot be written with 69") {
   const Scratch scratch;
   const std::string folder = scratch.path().string();
   {
@@ -63,13 +63,13 @@ TEST_CASE("damage gives the exit code of bad data, and a file that cannot be wri
   CHECK(map_command({"export", folder, "--out", folder + "/x.ply"}) == 65);
 }
 
-TEST_CASE("bytes that are no tile of this program are damage, too") {
+TEST_CASE("check counts a tile that cannot be decoded as damage") {
   const Scratch scratch;
   { REQUIRE(FileTileStore::create(scratch.path(), {}, {})->put({}, Bytes(100))); }
   CHECK(map_command({"check", scratch.path().string()}) == 65);
 }
 
-TEST_CASE("a folder without a map and a box inside out are refused") {
+TEST_CASE("a folder without a map and a box with swapped corners are refused") {
   const Scratch scratch;
   const std::string folder = scratch.path().string();
   CHECK(map_command({"info", folder}) == 65);

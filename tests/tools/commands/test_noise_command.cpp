@@ -27,7 +27,7 @@ int noise(std::vector<std::string> words) {
   return isobar::test::exit_code(tools::add_noise_command, std::move(words));
 }
 
-/// A still DPS310 for a minute, with two rows for every conversion.
+/// A log of a DPS310 at rest for a minute, two rows per conversion.
 std::string still_log(double factor) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal(0.0, 0.35);
@@ -58,7 +58,7 @@ std::ptrdiff_t says(const tools::PressureLog& log, const char* words) {
 
 }  // namespace
 
-TEST_CASE("isobar noise writes a report, and ends with the right code on each mistake") {
+TEST_CASE("isobar noise writes a report, and each mistake has its exit code") {
   const TemporaryFolder folder;
   const auto path = [&](const char* name) { return (folder.path() / name).string(); };
   write_text_file(path("still.csv"), still_log(1.0));
@@ -82,24 +82,24 @@ TEST_CASE("isobar noise writes a report, and ends with the right code on each mi
   CHECK(noise({"noise", path("empty.csv")}) == 65);
 }
 
-TEST_CASE("a pressure log leaves out repeats and bad rows, and counts them") {
+TEST_CASE("repeated and bad rows of a pressure log are left out and counted") {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "log.csv";
   write_text_file(file, still_log(1.0) + "1,2\n1700000000000000000,101000,20\n1800000000000000000,nan,20\n");
   const tools::PressureLog log = tools::read_new_values(file);
   CHECK(log.samples.size() == 60 * 32);
   CHECK(log.repeats == 60 * 32);
-  // A header, 3840 good rows, then the one with two fields and the one without a number.
+  // A header and 3840 good rows, then a row with two fields and a row without a number.
   CHECK(says(log, "no numbers: 2 (first: ") != 0);
   CHECK(says(log, ":3842: has 2 fields") != 0);
   CHECK(says(log, "time goes back: 1") != 0);
-  CHECK(says(log, "repeat the value before them, left out: 1920") != 0);
+  CHECK(says(log, "repeat the value before: 1920") != 0);
   CHECK(log.samples[1].stamp_ns - log.samples[0].stamp_ns == 31'250'000);
   CHECK(log.samples[0].temperature_c == 21.5);
 }
 
 TEST_CASE(
-    "a unit that is not the one of the column's name is refused, one that the name leaves open is said") {
+    "a unit that contradicts the column's name is refused; a unit found from the values is reported") {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "log.csv";
   write_text_file(file, still_log(0.01));
@@ -111,7 +111,7 @@ TEST_CASE(
   CHECK(says(tools::read_new_values(file), "pressure is in kPa (column 'pressure', the only unit") != 0);
 }
 
-TEST_CASE("other names and units of the columns are understood to the nanosecond") {
+TEST_CASE("named columns and units give stamps exact to the nanosecond") {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "log.csv";
   const auto first_stamp = [&](const char* columns, const std::string& text) {

@@ -74,8 +74,8 @@ std::string csv(const std::vector<PressureSample>& samples) {
 
 }  // namespace
 
-TEST_CASE("ten steps of 3 cm: a DPS310 pair and a ceramic pair keep to what the experiment asks for") {
-  // Asked for: median 0.6 and sd 0.6 cm, ceramic 1.5 cm; all air and sensor errors on, rigs 1 m apart.
+TEST_CASE("ten steps of 3 cm: errors of a DPS310 pair and of a ceramic pair are within the experiment's limits") {
+  // Limits: median 0.6 and sd 0.6 cm, ceramic 1.5 cm; with all air and sensor errors, rigs 1 m apart.
   const ErrorFigures mems = typical(&RigRun::dps310, 1.0);
   MESSAGE("DPS310: median ", 100.0 * mems.median_m, " cm, sd ", 100.0 * mems.sd_m, " cm");
   CHECK(mems.median_m < 0.006);
@@ -86,17 +86,17 @@ TEST_CASE("ten steps of 3 cm: a DPS310 pair and a ceramic pair keep to what the 
 }
 
 TEST_CASE(
-    "the rig has the errors it says: noise of both kinds, and turbulence that grows with the distance") {
+    "the simulated rig has its specified noise, and turbulence that grows with the distance") {
   RigRequest request;
   request.dwell_s = 60.0;
   CHECK(study(request, &RigRun::dps310).sigma_pa == doctest::Approx(0.35).epsilon(0.04).scale(0.0));
-  // 2.35 Pa, and the rounding to 1 Pa, 0.29.
+  // 2.35 Pa of noise and 0.29 Pa of rounding to 1 Pa.
   CHECK(study(request, &RigRun::ceramic).sigma_pa == doctest::Approx(2.37).epsilon(0.04).scale(0.0));
   CHECK(typical(&RigRun::dps310, 4.0).median_m > 1.3 * typical(&RigRun::dps310, 0.25).median_m);
   const RigRun once = simulation::simulate_rig(request);
   const RigRun again = simulation::simulate_rig(request);
   CHECK(once.ceramic.moved.back().pressure_pa == again.ceramic.moved.back().pressure_pa);
-  // 30 cm up in all.
+  // 30 cm higher at the end.
   const auto mean = [](const std::vector<PressureSample>& samples, std::size_t begin) {
     double sum = 0.0;
     for (std::size_t i = begin; i < begin + 500; ++i) sum += samples[i].pressure_pa / 500.0;
@@ -108,7 +108,7 @@ TEST_CASE(
   CHECK(moved_pa - standing_pa == doctest::Approx(-0.3 / 0.0847).epsilon(0.15).scale(0.0));
 }
 
-TEST_CASE("isobar experiment sensitivity writes its report, from the simulator and from a recorded rig") {
+TEST_CASE("isobar experiment sensitivity writes its report from simulated and from recorded rigs") {
   const TemporaryFolder folder;
   const auto path = [&](const char* name) { return (folder.path() / name).string(); };
   CHECK(sensitivity({"--runs", "2", "--dwell", "10", "--out", path("simulated")}) == 0);
@@ -118,7 +118,7 @@ TEST_CASE("isobar experiment sensitivity writes its report, from the simulator a
   CHECK(html.find("Setra 278") != std::string::npos);
 
   const std::string errors = read_text_file(path("simulated") + "/errors.csv");
-  // A header, then two experiments of 5 and 10 steps, two sensors, raw and filtered, two runs.
+  // A header; then 5 and 10 steps of two experiments, for two sensors, raw and filtered, in two runs.
   CHECK(std::count(errors.begin(), errors.end(), '\n') == 1 + (5 + 10) * 2 * 2 * 2);
 
   RigRequest request;
@@ -129,7 +129,7 @@ TEST_CASE("isobar experiment sensitivity writes its report, from the simulator a
   std::filesystem::create_directories(path("rig"));
   write_text_file(path("rig") + "/barometer.csv", csv(rig.dps310.moved));
   write_text_file(path("rig") + "/base_barometer.csv", csv(rig.dps310.standing));
-  // The steps are found, and the number of them that is asked for must be there.
+  // Steps are found without --segments; with --steps their number must match.
   CHECK(sensitivity({"--recording", path("rig"), "--step", "0.13", "--out", path("found")}) == 0);
   CHECK(read_text_file(path("found") + "/report.html").find("Five steps of 13 cm") != std::string::npos);
   CHECK(sensitivity({"--recording", path("rig") + "/barometer.csv", "--base",
@@ -137,7 +137,7 @@ TEST_CASE("isobar experiment sensitivity writes its report, from the simulator a
                      "MEMS", "--out", path("named")}) == 0);
   CHECK(sensitivity({"--recording", path("rig"), "--step", "0.13", "--steps", "30", "--out", path("no")}) ==
         65);
-  // The levels are named: with heights, and with words.
+  // Levels named in segments.csv, with heights and with words as labels.
   const auto segments = [&](bool heights) {
     std::string text = "t_start_ns,t_end_ns,label\n";
     for (std::size_t i = 0; i <= rig.moves_ns.size(); ++i) {
@@ -154,7 +154,7 @@ TEST_CASE("isobar experiment sensitivity writes its report, from the simulator a
     CHECK(sensitivity({"--recording", path("rig"), "--step", "0.13", "--out", path("levels")}) == 0);
   }
 
-  // Levels at another time than the samples.
+  // Levels outside the time of the samples.
   write_text_file(path("late.csv"),
                   "t_start_ns,t_end_ns,label\n1800000000000000000,1800000001000000000,0\n"
                   "1800000002000000000,1800000003000000000,0.13\n");
@@ -164,7 +164,7 @@ TEST_CASE("isobar experiment sensitivity writes its report, from the simulator a
   CHECK(sensitivity({"--recording", path("rig") + "/barometer.csv", "--step", "0.13"}) == 64);
   CHECK(sensitivity({"--recording", path("none"), "--step", "0.13"}) == 65);
   CHECK(sensitivity({"--step", "-1"}) == 64);
-  // Steps of 3 mm are nothing that can be found.
+  // Steps of 3 mm cannot be found.
   std::filesystem::remove(path("rig") + "/segments.csv");
   CHECK(sensitivity({"--recording", path("rig"), "--step", "0.003", "--out", path("no")}) == 65);
 }

@@ -16,7 +16,7 @@ using namespace isobar::report;
 using isobar::summarize;
 using isobar::test::is_well_formed;
 
-TEST_CASE("numbers have a dot, no negative zero, and a dash where there is none") {
+TEST_CASE("numbers have a decimal dot, no negative zero, and a dash for NaN") {
   CHECK(fixed(3.14159, 2) == "3.14");
   CHECK(fixed(-0.001, 2) == "0.00");
   CHECK(fixed(NAN, 2) == "\u2013");
@@ -25,12 +25,12 @@ TEST_CASE("numbers have a dot, no negative zero, and a dash where there is none"
   CHECK(fixed_signed(-0.001, 2) == "0.00");
 }
 
-TEST_CASE("text cannot leave its tag") {
+TEST_CASE("escaped text cannot break out of its tag") {
   CHECK(escaped("<a href=\"x\">'&") == "&lt;a href=&quot;x&quot;&gt;&#39;&amp;");
   CHECK(escaped(std::string("a\x01\x1b") + "b") == "ab");
 }
 
-TEST_CASE("ticks are round, inside of the range, and as many as fit") {
+TEST_CASE("ticks are round numbers inside the range, as many as fit") {
   for (const Range range : {Range{0.0, 1.0}, Range{-3.7, 12.2}, Range{0.001, 0.0042}, Range{1e6, 1.0003e6}}) {
     const Scale scale = Scale::linear(range, 0.0, 900.0, 90.0);
     REQUIRE(scale.ticks().size() >= 4);
@@ -47,7 +47,7 @@ TEST_CASE("ticks are round, inside of the range, and as many as fit") {
   CHECK(Scale::linear({-5.0, 0.0}, 0, 900, 200).ticks()[0].label == "\u22124");
 }
 
-TEST_CASE("a scale maps its range onto its pixels, evenly or by ratio") {
+TEST_CASE("a scale maps its range onto its pixels, linearly or logarithmically") {
   const Scale linear = Scale::linear({10.0, 20.0}, 400.0, 100.0, 90.0);
   CHECK(linear(10.0) == doctest::Approx(400.0));
   CHECK(linear(15.0) == doctest::Approx(250.0));
@@ -57,7 +57,7 @@ TEST_CASE("a scale maps its range onto its pixels, evenly or by ratio") {
   CHECK(logarithmic.ticks().size() == 7);  // 0.1 0.2 0.5 1 2 5 10
 }
 
-TEST_CASE("thinning keeps the lowest and the highest of every pixel column, and the ends") {
+TEST_CASE("thinning keeps the ends, and the lowest and highest point of every pixel column") {
   std::vector<Point> points;
   for (int i = 0; i < 100'000; ++i)
     points.push_back({i * 0.005, 100.0 * std::sin(i * 0.7) + (i == 54'321 ? 500.0 : 0.0)});
@@ -75,7 +75,7 @@ TEST_CASE("thinning keeps the lowest and the highest of every pixel column, and 
 }
 
 TEST_CASE(
-    "simplifying leaves a corner and takes out what lies on a line, never further off than the tolerance") {
+    "simplifying keeps corners, and removes only points within the tolerance of the remaining line") {
   std::vector<Point> corner;
   for (int i = 0; i <= 100; ++i) corner.push_back({0.1 * i, 0.0});
   for (int i = 1; i <= 100; ++i) corner.push_back({10.0, 0.1 * i});
@@ -91,12 +91,12 @@ TEST_CASE(
     const Point& a = kept[after - 1];
     const Point& b = kept[after];
     const double y = a.y + (b.y - a.y) * (p.x - a.x) / (b.x - a.x);
-    CHECK(std::abs(p.y - y) <
-          0.2 * 2.0);  // slopes up to 1.6: the vertical distance is less than twice the true one
+    // With slopes up to 1.6, the vertical distance is less than twice the perpendicular one.
+    CHECK(std::abs(p.y - y) < 0.2 * 2.0);
   }
 }
 
-TEST_CASE("charts stay well-formed whatever the numbers are") {
+TEST_CASE("charts stay well-formed with any values") {
   const double inf = std::numeric_limits<double>::infinity();
   const std::vector<std::vector<double>> awkward{{},
                                                  {NAN, NAN},
@@ -119,7 +119,7 @@ TEST_CASE("charts stay well-formed whatever the numbers are") {
   }
 }
 
-TEST_CASE("the box plot turns logarithmic only when the methods lie far apart") {
+TEST_CASE("the box plot is logarithmic only when the values span a wide range") {
   const auto has_tick = [](const std::vector<double>& a, const std::vector<double>& b,
                            const std::string& label) {
     const BoxPlot plot{"x", "%", 2, {{"a", "#000", summarize(a)}, {"b", "#000", summarize(b)}}};
@@ -137,7 +137,7 @@ TEST_CASE("a chart with logarithmic axes spaces decades evenly") {
   chart.series.push_back({"1/x", {}, {0.1, 1.0, 10.0, 100.0}, {10.0, 1.0, 0.1, 0.01}});
   const std::string svg = draw(chart).svg("a power law");
   CHECK(is_well_formed(svg));
-  // A power law is a straight line: nothing is left of it but its ends.
+  // A power law is a straight line here: only its ends remain.
   const std::size_t points = svg.find("points=\"");
   REQUIRE(points != std::string::npos);
   const std::string line = svg.substr(points + 8, svg.find('"', points + 8) - points - 8);

@@ -46,7 +46,7 @@ std::vector<Chunk> chunks_of(const std::string& png) {
 
 }  // namespace
 
-TEST_CASE("an image's pixels, colours and opacities come back from its PNG") {
+TEST_CASE("pixels, colours and opacities of an image are encoded in its PNG") {
   IndexedImage image{5, 3, {}, {{1, 2, 3, 0}, {250, 128, 7, 255}, {9, 9, 9, 77}}};
   for (std::uint8_t i = 0; i < 15; ++i) image.pixels.push_back(i % 3);
   const std::vector<Chunk> chunks = chunks_of(encode_png(image));
@@ -70,7 +70,7 @@ TEST_CASE("an image's pixels, colours and opacities come back from its PNG") {
   }
 }
 
-TEST_CASE("base64 as in RFC 4648, section 10") {
+TEST_CASE("base64 gives the test vectors of RFC 4648, section 10") {
   CHECK(base64("").empty());
   CHECK(base64("f") == "Zg==");
   CHECK(base64("fo") == "Zm8=");
@@ -79,7 +79,7 @@ TEST_CASE("base64 as in RFC 4648, section 10") {
   CHECK(base64("\xff\xfe\xfd") == "//79");
 }
 
-TEST_CASE("a map's point darkens its own pixel, more points more, and points outside or not finite none") {
+TEST_CASE("a map point darkens its pixel, more points darken it more; points outside or not finite are ignored") {
   const Range u{0.0, 10.0};
   const Range v{-2.0, 2.0};
   std::vector<MapPoint> points{{0.5F, 1.5F}};
@@ -93,7 +93,7 @@ TEST_CASE("a map's point darkens its own pixel, more points more, and points out
   CHECK(image.pixels[0] > 0);                 // top left: v points up
   CHECK(image.pixels[39] > image.pixels[0]);  // bottom right
   CHECK(image.pixels[39] < image.palette.size());
-  CHECK(image.palette[0][3] == 0);  // nothing there: see through
+  CHECK(image.palette[0][3] == 0);  // an empty pixel is transparent
 }
 
 }  // namespace isobar::test::test_png

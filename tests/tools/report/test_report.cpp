@@ -27,7 +27,7 @@ bool contains(const std::string& text, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("the report is one well-formed file that loads nothing, with every section") {
+TEST_CASE("the report is one well-formed file with every section that loads nothing") {
   const TemporaryFolder folder;
   const ReportInput input{"Title <&>", "What \"it\" is", "isobar evaluate a b", two_methods(folder.path())};
   const std::string html = render_report(input);
@@ -49,7 +49,7 @@ TEST_CASE("the report is one well-formed file that loads nothing, with every sec
 }
 
 TEST_CASE(
-    "bare trajectories without segments, status and map make a report too, which says what is missing") {
+    "trajectories without segments, status and map give a report that names what is missing") {
   const TemporaryFolder folder;
   const fs::path reference = folder.path() / "r.tum";
   files::write_text_file(reference, tum_text(isobar::test::straight(30.0, 0.1)));
@@ -72,7 +72,7 @@ TEST_CASE(
   CHECK(is_well_formed(body));
 }
 
-TEST_CASE("a reference at rest in one place makes no division by its distance") {
+TEST_CASE("a reference at rest gives no figure that divides by distance") {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "r.tum";
   files::write_text_file(file, "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n");
