@@ -137,7 +137,7 @@ void print_noise(const Study& study, double cm_per_pa) {
     std::printf(
         "The Allan deviation has less white noise than the second differences: the air moves, or "
         "neighbouring\n"
-        "samples are correlated. The Allan deviation is an upper bound of the sensor's white noise.\n\n");
+        "samples are correlated. The sensor's own white noise is at most the smaller value.\n\n");
   }
 }
 

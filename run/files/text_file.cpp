@@ -32,7 +32,8 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t max_by
   for (;;) {
     const std::size_t got = std::fread(block.data(), 1, block.size(), handle.get());
     text.append(block, 0, got);
-    if (text.size() > max_bytes) throw DataError(file.string() + ": is larger than " + std::to_string(max_bytes) + " bytes");
+    if (text.size() > max_bytes)
+      throw DataError(file.string() + ": is larger than " + std::to_string(max_bytes) + " bytes");
     if (got < block.size()) break;
   }
   if (std::ferror(handle.get()) != 0)

@@ -87,7 +87,8 @@ bool any_contains(const std::vector<std::string>& lines, const std::string& word
 
 }  // namespace
 
-TEST_CASE("isobar calibrate finds the clock shift, fits the sensor, and writes a file that the daemon loads") {
+TEST_CASE(
+    "isobar calibrate finds the clock shift, fits the sensor, and writes a file that the daemon loads") {
   const TemporaryFolder folder;
   Rig{}.write(folder.path());
   const auto path = [&](const char* name) { return (folder.path() / name).string(); };
@@ -202,7 +203,8 @@ TEST_CASE("paired logs have a clock each; two columns of one file share a clock"
 }
 
 TEST_CASE(
-    "real sensors: the shift of two hours is found, and A_simple leaves at most 60 % of the residual of an offset") {
+    "real sensors: the shift of two hours is found, and A_simple leaves at most 60 % of the residual of an "
+    "offset") {
   for (const char* sensor : {"1_BME280", "2_BME280", "1_BME680", "2_BME680"}) {
     const CalibrationLogs logs = real_logs(sensor);
     if (logs.sensor.files.empty()) {

@@ -98,8 +98,7 @@ TEST_CASE("repeated and bad rows of a pressure log are left out and counted") {
   CHECK(log.samples[0].temperature_c == 21.5);
 }
 
-TEST_CASE(
-    "a unit that contradicts the column's name is refused; a unit found from the values is reported") {
+TEST_CASE("a unit that contradicts the column's name is refused; a unit found from the values is reported") {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "log.csv";
   write_text_file(file, still_log(0.01));

@@ -74,7 +74,8 @@ std::string csv(const std::vector<PressureSample>& samples) {
 
 }  // namespace
 
-TEST_CASE("ten steps of 3 cm: errors of a DPS310 pair and of a ceramic pair are within the experiment's limits") {
+TEST_CASE(
+    "ten steps of 3 cm: errors of a DPS310 pair and of a ceramic pair are within the experiment's limits") {
   // Limits: median 0.6 and sd 0.6 cm, ceramic 1.5 cm; with all air and sensor errors, rigs 1 m apart.
   const ErrorFigures mems = typical(&RigRun::dps310, 1.0);
   MESSAGE("DPS310: median ", 100.0 * mems.median_m, " cm, sd ", 100.0 * mems.sd_m, " cm");
@@ -85,8 +86,7 @@ TEST_CASE("ten steps of 3 cm: errors of a DPS310 pair and of a ceramic pair are 
   CHECK(ceramic.median_m < 0.015);
 }
 
-TEST_CASE(
-    "the simulated rig has its specified noise, and turbulence that grows with the distance") {
+TEST_CASE("the simulated rig has its specified noise, and turbulence that grows with the distance") {
   RigRequest request;
   request.dwell_s = 60.0;
   CHECK(study(request, &RigRun::dps310).sigma_pa == doctest::Approx(0.35).epsilon(0.04).scale(0.0));

@@ -74,8 +74,7 @@ TEST_CASE("thinning keeps the ends, and the lowest and highest point of every pi
   CHECK(thinned({}).empty());
 }
 
-TEST_CASE(
-    "simplifying keeps corners, and removes only points within the tolerance of the remaining line") {
+TEST_CASE("simplifying keeps corners, and removes only points within the tolerance of the remaining line") {
   std::vector<Point> corner;
   for (int i = 0; i <= 100; ++i) corner.push_back({0.1 * i, 0.0});
   for (int i = 1; i <= 100; ++i) corner.push_back({10.0, 0.1 * i});

@@ -22,8 +22,7 @@ int exit_code(std::vector<std::string> words) {
 
 }  // namespace
 
-TEST_CASE(
-    "isobar evaluate writes report, picture and figures, and each mistake has its exit code") {
+TEST_CASE("isobar evaluate writes report, picture and figures, and each mistake has its exit code") {
   const TemporaryFolder folder;
   const auto path = [&](const char* name) { return (folder.path() / name).string(); };
   std::string walk;

@@ -79,7 +79,8 @@ TEST_CASE("base64 gives the test vectors of RFC 4648, section 10") {
   CHECK(base64("\xff\xfe\xfd") == "//79");
 }
 
-TEST_CASE("a map point darkens its pixel, more points darken it more; points outside or not finite are ignored") {
+TEST_CASE(
+    "a map point darkens its pixel, more points darken it more; points outside or not finite are ignored") {
   const Range u{0.0, 10.0};
   const Range v{-2.0, 2.0};
   std::vector<MapPoint> points{{0.5F, 1.5F}};

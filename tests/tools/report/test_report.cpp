@@ -48,8 +48,7 @@ TEST_CASE("the report is one well-formed file with every section that loads noth
   CHECK(is_well_formed(render_overview_svg(input)));
 }
 
-TEST_CASE(
-    "trajectories without segments, status and map give a report that names what is missing") {
+TEST_CASE("trajectories without segments, status and map give a report that names what is missing") {
   const TemporaryFolder folder;
   const fs::path reference = folder.path() / "r.tum";
   files::write_text_file(reference, tum_text(isobar::test::straight(30.0, 0.1)));
