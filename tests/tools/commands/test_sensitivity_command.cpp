@@ -72,6 +72,19 @@ std::string csv(const std::vector<PressureSample>& samples) {
   return text;
 }
 
+/// Writes the logs of a simulated rig with five steps of 13 cm into a folder.
+RigRun write_rig(const std::string& folder) {
+  RigRequest request;
+  request.step_m = 0.13;
+  request.steps = 5;
+  request.dwell_s = 12.0;
+  const RigRun rig = simulation::simulate_rig(request);
+  std::filesystem::create_directories(folder);
+  write_text_file(folder + "/barometer.csv", csv(rig.dps310.moved));
+  write_text_file(folder + "/base_barometer.csv", csv(rig.dps310.standing));
+  return rig;
+}
+
 }  // namespace
 
 TEST_CASE(
@@ -121,14 +134,7 @@ TEST_CASE("isobar experiment sensitivity writes its report from simulated and fr
   // A header; then 5 and 10 steps of two experiments, for two sensors, raw and filtered, in two runs.
   CHECK(std::count(errors.begin(), errors.end(), '\n') == 1 + (5 + 10) * 2 * 2 * 2);
 
-  RigRequest request;
-  request.step_m = 0.13;
-  request.steps = 5;
-  request.dwell_s = 12.0;
-  const RigRun rig = simulation::simulate_rig(request);
-  std::filesystem::create_directories(path("rig"));
-  write_text_file(path("rig") + "/barometer.csv", csv(rig.dps310.moved));
-  write_text_file(path("rig") + "/base_barometer.csv", csv(rig.dps310.standing));
+  write_rig(path("rig"));
   // Steps are found without --segments; with --steps their number must match.
   CHECK(sensitivity({"--recording", path("rig"), "--step", "0.13", "--out", path("found")}) == 0);
   CHECK(read_text_file(path("found") + "/report.html").find("Five steps of 13 cm") != std::string::npos);
@@ -137,6 +143,12 @@ TEST_CASE("isobar experiment sensitivity writes its report from simulated and fr
                      "MEMS", "--out", path("named")}) == 0);
   CHECK(sensitivity({"--recording", path("rig"), "--step", "0.13", "--steps", "30", "--out", path("no")}) ==
         65);
+}
+
+TEST_CASE("the levels of a recorded rig can be named, with heights and with words") {
+  const TemporaryFolder folder;
+  const auto path = [&](const char* name) { return (folder.path() / name).string(); };
+  const RigRun rig = write_rig(path("rig"));
   // Levels named in segments.csv, with heights and with words as labels.
   const auto segments = [&](bool heights) {
     std::string text = "t_start_ns,t_end_ns,label\n";
@@ -153,7 +165,12 @@ TEST_CASE("isobar experiment sensitivity writes its report from simulated and fr
     write_text_file(path("rig") + "/segments.csv", segments(heights));
     CHECK(sensitivity({"--recording", path("rig"), "--step", "0.13", "--out", path("levels")}) == 0);
   }
+}
 
+TEST_CASE("each mistake of isobar experiment sensitivity has its exit code") {
+  const TemporaryFolder folder;
+  const auto path = [&](const char* name) { return (folder.path() / name).string(); };
+  write_rig(path("rig"));
   // Levels outside the time of the samples.
   write_text_file(path("late.csv"),
                   "t_start_ns,t_end_ns,label\n1800000000000000000,1800000001000000000,0\n"
@@ -165,7 +182,6 @@ TEST_CASE("isobar experiment sensitivity writes its report from simulated and fr
   CHECK(sensitivity({"--recording", path("none"), "--step", "0.13"}) == 65);
   CHECK(sensitivity({"--step", "-1"}) == 64);
   // Steps of 3 mm cannot be found.
-  std::filesystem::remove(path("rig") + "/segments.csv");
   CHECK(sensitivity({"--recording", path("rig"), "--step", "0.003", "--out", path("no")}) == 65);
 }
 
