@@ -8,9 +8,9 @@
 
 namespace isobar {
 
-/// Thread for the barometer attached to this machine that the configuration names; null when its samples
-/// arrive as datagrams. Does not access the hardware: a missing device is reported and retried once the
-/// thread runs.
+/// Thread for the barometer attached to this machine that the configuration
+/// names; null when its samples arrive as datagrams. Does not access the
+/// hardware: a missing device is reported and retried once the thread runs.
 /// @throws ConfigError for a source without a driver
 /// @throws ServiceError when the kernel refuses a timer
 [[nodiscard]] std::unique_ptr<BarometerThread> make_barometer_thread(const BarometerSettings& settings,

@@ -33,9 +33,9 @@ class Graph {
   virtual void fill_health(std::int64_t now_ns, ipc::HealthReport& report) = 0;
 };
 
-/// Runs the graph until a stop signal: start, supervise (health report, watchdog, level changes to the log),
-/// stop. Real-time settings that the system refuses go to the health report; a robot drives without them,
-/// less evenly.
+/// Runs the graph until a stop signal: start, supervise (health report, watchdog,
+/// level changes to the log), stop. Real-time settings that the system refuses go to
+/// the health report; a robot drives without them, less evenly.
 /// @throws ServiceError when the files of the run cannot be written
 void run(Graph& graph, Service& service, const RealtimeSettings& realtime);
 

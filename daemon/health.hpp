@@ -26,8 +26,8 @@ struct StatusSnapshot {
   MapStatus map;
 };
 
-/// Adds the status of the threads to a health report. Rates and growth are relative to the last call. One
-/// thread.
+/// Adds the status of the threads to a health report. Rates and
+/// growth are relative to the last call. One thread.
 class HealthMonitor {
  public:
   explicit HealthMonitor(const Config& config) : config_(config) {}

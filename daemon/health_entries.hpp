@@ -26,8 +26,8 @@ inline constexpr std::int64_t kSensorSilenceNs = 1'000'000'000;
 void add_count(ipc::HealthReport& report, const char* name, std::uint64_t now, std::uint64_t before,
                const char* sentence);
 
-/// Entry of the punctuality of a stage; none before its first output. A warning in intervals with a missed
-/// deadline.
+/// Entry of the punctuality of a stage; none before its first
+/// output. A warning in intervals with a missed deadline.
 /// @param what plural of the stage's output, "scans"
 void add_deadline(ipc::HealthReport& report, const char* name, const DeadlineStatus& now,
                   const DeadlineStatus& before, const char* what);

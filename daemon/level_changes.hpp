@@ -13,8 +13,7 @@ namespace isobar {
 class LevelChanges {
  public:
   /// @return the log line, "imu: ok: 200.0 per second", when the level of this entry has changed. A new entry
-  /// counts as
-  ///         changed, except that a counter (a '/' in its name) that starts at kOk is not logged.
+  ///        counts as changed, except that a counter (a '/' in its name) that starts at kOk is not logged.
   std::optional<std::string> note(const std::string& name, ipc::HealthLevel level,
                                   const std::string& message) {
     constexpr const char* kWords[] = {"ok", "warning", "error",

@@ -29,8 +29,8 @@ void MapThread::loop() noexcept {
   log_tile_losses();
 }
 
-// Freshness wins: only the newest waiting scan enters the map, because the registration needs the map around
-// it now.
+// Freshness wins: only the newest waiting scan enters the map,
+// because the registration needs the map around it now.
 void MapThread::drain() noexcept {
   auto newest = scans_.take();
   while (auto newer = scans_.take()) {

@@ -26,9 +26,8 @@ struct MapStatus {
 /// viewers. Not real-time: it allocates, and it alone frees old snapshots.
 class MapThread {
  public:
-  /// @param store keeps the tiles that leave the local map; used by this thread only, while it runs. Null:
-  /// they are
-  ///        discarded.
+  /// @param store keeps the tiles that leave the local map; used by this
+  ///        thread only, while it runs. Null: they are discarded.
   MapThread(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, double cloud_interval_s,
             FileTileStore* store, ThreadSettings settings);
 

@@ -7,8 +7,8 @@
 
 namespace isobar {
 
-/// Writes every pose to the run folder. Not real-time. A full disk ends the writing; poses are still
-/// published.
+/// Writes every pose to the run folder. Not real-time. A full
+/// disk ends the writing; poses are still published.
 class OutputThread {
  public:
   OutputThread(files::RunOutput& output, ThreadSettings settings);

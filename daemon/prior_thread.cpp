@@ -9,9 +9,9 @@
 namespace isobar {
 namespace {
 
-/// Polling interval without an IMU. Only IMU samples wake this thread, since only they produce priors; the
-/// slow sensors are polled, so that their queues (256 samples) do not overflow and the health report sees
-/// them.
+/// Polling interval without an IMU. Only IMU samples wake this thread, since
+/// only they produce priors; the slow sensors are polled, so that their queues
+/// (256 samples) do not overflow and the health report sees them.
 constexpr std::chrono::milliseconds kPollWithoutImu(100);
 
 }  // namespace

@@ -14,8 +14,8 @@ template <class Take, class Report>
 void receive_until_stopped(UdpReceiver& receiver, Heartbeat& heartbeat, const Take& take,
                            const Report& report) noexcept {
   constexpr int kReportEveryMs = 200;
-  // Pause of 10 ms: a socket that fails at once, repeatedly, must not keep a core from threads of lower
-  // priority.
+  // Pause of 10 ms: a socket that fails at once, repeatedly,
+  // must not keep a core from threads of lower priority.
   constexpr timespec kPauseAfterError{0, 10'000'000};
   ReceivedDatagram datagram;
   for (;;) {

@@ -25,9 +25,9 @@ void RegistrationThread::loop() noexcept {
       waiter_, worker_.heartbeat(), [this] { drain(); }, [this] { return timeout(); });
 }
 
-// Only scans wake this thread: to wake for hundreds of priors a second would cost half as much as the
-// registration. Priors are polled: every 50 ms to bridge a silent lidar, every millisecond while a scan waits
-// for them.
+// Only scans wake this thread: to wake for hundreds of priors a second would
+// cost half as much as the registration. Priors are polled: every 50 ms to
+// bridge a silent lidar, every millisecond while a scan waits for them.
 std::chrono::nanoseconds RegistrationThread::timeout() const noexcept {
   constexpr std::chrono::milliseconds kPollWithoutScan(50);
   constexpr std::chrono::milliseconds kPollWithScan(1);

@@ -34,9 +34,9 @@ struct RegistrationStatus {
   std::uint64_t page_faults = 0;  ///< of this thread, after warm-up
 };
 
-/// Runs the RegistrationStage on scans and priors from shared memory; publishes poses and registered scans.
-/// Every scan gets a pose at its end: from the registration, or from the prior where a newer scan superseded
-/// it.
+/// Runs the RegistrationStage on scans and priors from shared memory; publishes
+/// poses and registered scans. Every scan gets a pose at its end: from the
+/// registration, or from the prior where a newer scan superseded it.
 class RegistrationThread final : private EstimateSink {
  public:
   RegistrationThread(const StageSettings& stages, SnapshotExchange<MapSnapshot>& snapshots,

@@ -11,8 +11,8 @@
 namespace isobar {
 namespace {
 
-/// Store of the tiles that leave memory: the configured map folder, else the run folder's; null without
-/// either.
+/// Store of the tiles that leave memory: the configured map
+/// folder, else the run folder's; null without either.
 std::unique_ptr<FileTileStore> map_store(const Config& config) {
   std::filesystem::path directory = config.map_files.directory;
   if (directory.empty() && !config.output.directory.empty()) {

@@ -78,8 +78,8 @@ class ScanQueue {
 
   [[nodiscard]] bool empty() const noexcept { return count_ == 0; }
 
-  /// Scans dropped or lost since forget_dropped(), in order of time, all older than the scan that take()
-  /// returned last.
+  /// Scans dropped or lost since forget_dropped(), in order of
+  /// time, all older than the scan that take() returned last.
   [[nodiscard]] std::span<const DroppedScan> dropped() const noexcept {
     return {listed_.data(), listed_count_};
   }

@@ -12,8 +12,8 @@ namespace isobar {
 /// Signals and status of a service. Main thread only. Without a service manager the notifications do nothing.
 class Service {
  public:
-  /// Blocks SIGTERM and SIGINT in this thread and in all threads started later: construct it before the first
-  /// thread.
+  /// Blocks SIGTERM and SIGINT in this thread and in all threads
+  /// started later: construct it before the first thread.
   /// @throws ServiceError when the kernel refuses a signal descriptor
   Service();
   ~Service();
@@ -27,9 +27,8 @@ class Service {
   /// Default period of the supervise loop.
   static constexpr std::chrono::milliseconds kTick{100};
   /// The supervise loop: calls `tick` once a period until a stop signal arrives, then reports STOPPING.
-  /// @param tick returns true when it has just checked its threads and all are alive: this feeds the
-  /// watchdog. False
-  ///        in ticks without a check, or while a thread hangs.
+  /// @param tick returns true when it has just checked its threads and all are alive: this
+  ///        feeds the watchdog. False in ticks without a check, or while a thread hangs.
   void supervise(const std::function<bool()>& tick, std::chrono::milliseconds period = kTick);
 
   /// READY=1, with the line that `systemctl status` shows. Empty: no line.

@@ -5,9 +5,9 @@
 
 namespace isobar {
 
-/// Decides when a pose comes from the prior because the lidar is silent: first after 250 ms, which is 2.5
-/// revolutions at 10 Hz, so that no ordinary scan is overtaken; then every 100 ms, at the rate of scans. Also
-/// keeps poses in order.
+/// Decides when a pose comes from the prior because the lidar is silent: first after
+/// 250 ms, which is 2.5 revolutions at 10 Hz, so that no ordinary scan is overtaken;
+/// then every 100 ms, at the rate of scans. Also keeps poses in order.
 class SilenceBridge {
  public:
   static constexpr std::int64_t kSilenceNs = 250'000'000;

@@ -25,9 +25,9 @@ struct StationStatus {
   PressureSample newest;        ///< as published
 };
 
-/// Calibrates a base station's samples, adds their measured noise and publishes them for isobar-dds to send
-/// to the robots. A sample that carries its own variance keeps it; the others get the estimate once it is
-/// accurate enough.
+/// Calibrates a base station's samples, adds their measured noise and publishes
+/// them for isobar-dds to send to the robots. A sample that carries its own
+/// variance keeps it; the others get the estimate once it is accurate enough.
 class StationThread {
  public:
   StationThread(const AltimeterConfig& config, const CompensationConfig& compensation,

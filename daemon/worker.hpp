@@ -29,10 +29,9 @@ class Heartbeat {
 /// the class is a noexcept loop and the loop's state. Owner's thread only, except heartbeat() and wake().
 class Worker {
  public:
-  /// @param source what the loop sleeps on. `source.stop()` ends the current and all later waits.
-  /// `source.wake()`, where
-  ///        it exists, ends one wait; a source without it must time out several times a second by itself.
-  ///        Outlives this.
+  /// @param source what the loop sleeps on. `source.stop()` ends the current and all
+  ///        later waits. `source.wake()`, where it exists, ends one wait; a source
+  ///        without it must time out several times a second by itself. Outlives this.
   /// @param loop must not throw; beats in every round; returns once the source is stopped
   template <class WaitSource>
   Worker(ThreadSettings settings, WaitSource& source, std::function<void()> loop)

@@ -11,8 +11,8 @@
 
 namespace isobar {
 
-/// Whether a hung thread ends the program: the watchdog of the service manager is fed only while all watched
-/// threads beat.
+/// Whether a hung thread ends the program: the watchdog of the
+/// service manager is fed only while all watched threads beat.
 enum class Watch : std::uint8_t { kYes, kNo };
 
 /// Workers in start order, consumers first. Does not own them: declare the group after them. Main thread.
@@ -33,8 +33,8 @@ class WorkerGroup {
   /// @return one sentence for each refusal by the system
   [[nodiscard]] std::vector<std::string> refused_settings() const;
 
-  /// Consumers first: nothing is produced without a consumer. @throws std::system_error when a thread is
-  /// refused
+  /// Consumers first: nothing is produced without a consumer.
+  /// @throws std::system_error when a thread is refused
   void start();
   /// Producers first: everything under way still reaches its consumer. Joins.
   void stop() noexcept;

@@ -40,7 +40,7 @@ enum class BaseVerdict : std::uint8_t {
   kUnconfirmed,  ///< a new sender in place of one that has gone, seen too briefly to be believed
 };
 
-/// What a stream says of itself: plain values, for a Mailbox.
+/// What a stream says of itself: plain values, for a SeqLock.
 struct BaseStationStatus {
   std::array<std::uint64_t, 7> samples{};  ///< by BaseVerdict
   std::uint64_t outages = 0;               ///< silences that ended
