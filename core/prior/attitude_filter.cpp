@@ -15,7 +15,7 @@ constexpr int kAngle = 0;
 constexpr int kYaw = 2;
 constexpr int kVelocity = 3;
 constexpr int kGyroBias = 6;
-constexpr int kAccelBias = 9;
+constexpr int kAccelBiasRow = 9;
 
 constexpr double kWheelGate = 5.0;
 constexpr double kAttitudeGate = 5.0;
@@ -42,7 +42,7 @@ void AttitudeFilter::start(const Eigen::Vector3d& mean_force_m_s2, double yaw_ra
   P_.diagonal().segment<3>(kVelocity).setConstant(1.0);
   if (!biases_started_) {
     P_.diagonal().segment<3>(kGyroBias).setConstant(squared(config_.gyro_bias_sigma_rad_s));
-    P_.diagonal().segment<3>(kAccelBias).setConstant(squared(config_.accel_bias_sigma_m_s2));
+    P_.diagonal().segment<3>(kAccelBiasRow).setConstant(squared(config_.accel_bias_sigma_m_s2));
     biases_started_ = true;
   }
   gated_s_ = 0.0;
@@ -55,7 +55,7 @@ void AttitudeFilter::propagate_covariance(const Eigen::Vector3d& force_world, do
   Covariance F = Covariance::Identity();
   F.block<3, 3>(kAngle, kGyroBias) = -dt_s * R;
   F.block<3, 3>(kVelocity, kAngle) = -dt_s * skew(force_world);
-  F.block<3, 3>(kVelocity, kAccelBias) = -dt_s * R;
+  F.block<3, 3>(kVelocity, kAccelBiasRow) = -dt_s * R;
   const Covariance FP = F * P_;
   P_.noalias() = FP * F.transpose();
 }
@@ -77,7 +77,7 @@ void AttitudeFilter::predict(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vec
   P_.diagonal().segment<3>(kAngle).array() += gyro_density * dt_s;
   P_.diagonal().segment<3>(kVelocity).array() += accel_density * dt_s;
   P_.diagonal().segment<3>(kGyroBias).array() += squared(config_.gyro_bias_walk_rad_s_sqrt_s) * dt_s;
-  P_.diagonal().segment<3>(kAccelBias).array() += squared(config_.accel_bias_walk_m_s2_sqrt_s) * dt_s;
+  P_.diagonal().segment<3>(kAccelBiasRow).array() += squared(config_.accel_bias_walk_m_s2_sqrt_s) * dt_s;
   turn_world_with_heading();
   rate_noise_variance_ = gyro_density / 0.1;  // of the mean over one scan
 }
@@ -182,7 +182,7 @@ void AttitudeFilter::apply(const Eigen::Matrix<double, kStates, 1>& error) {
   q_world_base_ = (rotation_of(error.segment<3>(kAngle)) * q_world_base_).normalized();
   velocity_ += error.segment<3>(kVelocity);
   gyro_bias_ += error.segment<3>(kGyroBias);
-  accel_bias_ += error.segment<3>(kAccelBias);
+  accel_bias_ += error.segment<3>(kAccelBiasRow);
 }
 
 }  // namespace isobar

@@ -48,7 +48,7 @@ class FuzzedBus final : public RegisterBus {
  private:
   [[nodiscard]] std::uint8_t sound(std::uint8_t address) const {
     if (address >= kCoefficients && address < kCoefficients + kCoefficientBytes) {
-      return dps310::kKnownBytes[address - kCoefficients];
+      return kKnownBytes[address - kCoefficients];
     }
     if (address == kProductId) return kDps310Id;
     if (address == kMeasurementConfig) return 0xF0 | (written_[address] & kModeBackground);
