@@ -4,7 +4,7 @@
 
 # Percentage of ninja edges that are done, from a build log written with NINJA_STATUS='[%f/%t] '.
 percent_of_build() {
-  tail -n 1 "$1" 2>/dev/null | sed -n 's|^\[\([0-9]*\)/\([0-9]*\)\].*|\1 \2|p' | awk '{ print int(100 * $1 / $2) }'
+  grep -o '^\[[0-9]*/[0-9]*\]' "$1" | tail -n 1 | tr -d '[]' | awk -F/ '{ print int(100 * $1 / $2) }'
 }
 
 # follow_progress LABEL PERCENT_FUNCTION LOG COMMAND…: runs COMMAND with its output in LOG; prints LABEL and the
