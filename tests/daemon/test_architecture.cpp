@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rules of the house that no compiler checks: which folder may include which.
+// The rules of the house that a compiler does not check: which folder may include which, which files may name a library,
+// and how long a file may be.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,119 +17,159 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Include {
-  std::string file;
-  std::string what;
+using Names = std::set<std::string>;
+
+struct Source {
+  std::string path;  ///< below the source folder, "core/map/grid.hpp"
+  std::vector<std::string> lines;
+  std::vector<std::string> own_includes;      ///< "core/map/grid.hpp"
+  std::vector<std::string> foreign_includes;  ///< "Eigen/Core"
 };
 
-std::vector<Include> includes_below(const std::string& folder) {
-  std::vector<Include> includes;
+Source read_source(const fs::path& file) {
+  Source source{fs::relative(file, ISOBAR_SOURCE_DIR).string(), {}, {}, {}};
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) {
+    source.lines.push_back(line);
+    if (!line.starts_with("#include")) continue;
+    const auto begin = line.find_first_of("<\"");
+    const auto end = line.find_first_of(">\"", begin + 1);
+    auto& includes = line[begin] == '<' ? source.foreign_includes : source.own_includes;
+    includes.push_back(line.substr(begin + 1, end - begin - 1));
+  }
+  return source;
+}
+
+std::vector<Source> sources_below(const std::string& folder) {
+  std::vector<Source> sources;
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(ISOBAR_SOURCE_DIR) / folder)) {
     const std::string extension = entry.path().extension();
-    if (extension != ".hpp" && extension != ".cpp") continue;
-    std::ifstream file(entry.path());
-    for (std::string line; std::getline(file, line);) {
-      if (line.rfind("#include", 0) != 0) continue;
-      const auto begin = line.find_first_of("<\"");
-      const auto end = line.find_first_of(">\"", begin + 1);
-      includes.push_back({entry.path().string(), line.substr(begin + 1, end - begin - 1)});
-    }
+    if (extension == ".hpp" || extension == ".cpp") sources.push_back(read_source(entry.path()));
   }
-  return includes;
+  REQUIRE_MESSAGE(!sources.empty(), folder << " holds no source file");
+  return sources;
 }
 
-bool starts_with_any(const std::string& text, const std::vector<std::string>& prefixes) {
-  for (const std::string& prefix : prefixes) {
-    if (text.rfind(prefix, 0) == 0) return true;
-  }
-  return false;
+/// The part of a path before its first (depth 1) or second (depth 2) slash.
+std::string folder_of(const std::string& path, int depth = 1) {
+  std::size_t end = path.find('/');
+  if (depth == 2 && end != std::string::npos) end = path.find('/', end + 1);
+  return path.substr(0, end);
 }
 
-/// Headers of the system or of libraries that a folder must not name.
-void check_none(const std::string& folder, const std::vector<std::string>& forbidden) {
-  const auto includes = includes_below(folder);
-  REQUIRE(includes.size() > 5);
-  for (const Include& include : includes) {
-    CHECK_MESSAGE(!starts_with_any(include.what, forbidden), include.file << " includes " << include.what);
-  }
+bool starts_with_any(const std::string& text, const Names& prefixes) {
+  return std::any_of(prefixes.begin(), prefixes.end(), [&](const auto& p) { return text.starts_with(p); });
 }
 
-/// Of the folders of this repository `folder` names only itself and these.
-void check_only(const std::string& folder, std::vector<std::string> allowed) {
-  const std::vector<std::string> folders = {"core/",       "drivers/", "run/",   "ipc/",  "config/",
-                                            "simulation/", "daemon/",  "tools/", "tests/"};
-  allowed.push_back(folder + "/");
-  const auto includes = includes_below(folder);
-  REQUIRE(includes.size() > 5);
-  for (const Include& include : includes) {
-    const bool is_ours = starts_with_any(include.what, folders);
-    CHECK_MESSAGE((!is_ours || starts_with_any(include.what, allowed)),
-                  include.file << " includes " << include.what);
-  }
-}
+/// Top-level folders and the ones that each may include besides itself. An arrow only points down this list.
+const std::map<std::string, Names> kMayInclude{
+    {"core", {}},
+    {"drivers", {"core"}},
+    {"run", {"core"}},
+    {"simulation", {"core", "drivers", "run"}},
+    {"ipc", {"core", "drivers"}},
+    {"config", {"core", "drivers", "ipc"}},
+    {"daemon", {"core", "drivers", "run", "ipc", "config"}},
+    {"tools", {"core", "drivers", "run", "simulation", "ipc", "config", "daemon"}},
+};
 
-bool is_below(const Include& include, const std::string& part) {
-  return include.file.find(part) != std::string::npos;
-}
+/// The same inside core. Headers of core itself (samples, estimates, errors …) are free to all.
+const std::map<std::string, Names> kMayIncludeInCore{
+    {"core/statistics", {}},
+    {"core/time", {}},
+    {"core/altitude", {}},
+    {"core/calibration", {"core/altitude", "core/statistics"}},
+    {"core/map", {}},
+    {"core/prior", {"core/altitude"}},
+    {"core/registration", {"core/map", "core/prior"}},
+};
+
+/// Libraries and the places that may name them. A library that is not listed is free.
+const std::map<std::string, Names> kNamedOnlyBy{
+    {"spdlog/", {"daemon/"}},
+    {"iceoryx", {"ipc/shared_memory.cpp"}},
+    {"dds/", {"ipc/dds/"}},
+    {"CLI/", {"daemon/", "tools/"}},
+    {"nanoflann", {"core/map/"}},
+    {"pcap", {"run/recording/"}},
+    {"toml++", {"config/", "run/", "tools/cmake/"}},
+    {"systemd/", {"daemon/"}},
+};
+
+/// Standard headers that only code with threads, I/O or a clock needs: none of them in core.
+const Names kNotInCore{"thread",   "mutex",  "shared_mutex", "condition_variable", "future", "iostream",
+                       "fstream",  "cstdio", "chrono",       "filesystem",         "ctime",  "unistd.h",
+                       "syslog.h", "sys/",   "stop_token",   "semaphore"};
 
 }  // namespace
 
-TEST_CASE(
-    "dependencies point one way: core, then drivers, ipc and run, then config, then daemon, then tools") {
-  check_only("core", {});
-  check_only("drivers", {"core/"});
-  check_only("ipc", {"core/", "drivers/"});
-  check_only("run", {"core/", "drivers/"});
-  check_only("config", {"core/", "drivers/", "ipc/", "run/"});
-  check_only("daemon", {"core/", "drivers/", "ipc/", "run/", "config/"});
-}
-
-TEST_CASE("only tools and tests name the simulator, which knows neither the service nor its configuration") {
-  check_only("simulation", {"core/", "drivers/", "run/"});
-  check_only("tools", {"core/", "drivers/", "ipc/", "run/", "config/", "daemon/", "simulation/"});
-}
-
-TEST_CASE("the estimator does not include what only the tools calibrate and fit with") {
-  for (const Include& include : includes_below("core")) {
-    if (is_below(include, "/core/calibration/")) continue;
-    CHECK_MESSAGE(!starts_with_any(include.what, {"core/calibration/"}),
-                  include.file << " includes " << include.what);
-  }
-}
-
-TEST_CASE("core has no threads, no I/O, no logging and no clock") {
-  check_none("core",
-             {"thread", "mutex", "condition_variable", "future", "iostream", "fstream", "cstdio", "chrono",
-              "filesystem", "unistd.h", "sys/", "spdlog", "iceoryx", "dds/", "toml++", "CLI/"});
-}
-
-TEST_CASE("only daemon and tools log or parse a command line") {
-  for (const char* folder : {"drivers", "ipc", "run", "config", "simulation"}) {
-    CAPTURE(folder);
-    check_none(folder, {"spdlog/spdlog", "spdlog/sinks", "CLI/"});
-  }
-}
-
-TEST_CASE("isobard includes no DDS; ipc/dds and the bridge do, and config knows the settings only") {
-  for (const char* folder : {"core", "drivers", "run", "config", "simulation"}) {
-    CAPTURE(folder);
-    check_none(folder, {"dds/", "ipc/dds/"});
-  }
-  for (const char* folder : {"daemon", "ipc"}) {
-    for (const Include& include : includes_below(folder)) {
-      if (is_below(include, "/daemon/bridge/") || is_below(include, "/ipc/dds/")) continue;
-      CHECK_MESSAGE(!starts_with_any(include.what, {"dds/", "ipc/dds/"}),
-                    include.file << " includes " << include.what);
+TEST_CASE("an include points from a folder to itself or to a folder below it") {
+  for (const auto& [folder, below] : kMayInclude) {
+    for (const Source& source : sources_below(folder)) {
+      for (const std::string& include : source.own_includes) {
+        const std::string target = folder_of(include);
+        CHECK_MESSAGE((target == folder || below.contains(target)), source.path << " includes " << include);
+      }
     }
   }
 }
 
-TEST_CASE("one file includes iceoryx") {
-  for (const char* folder : {"core", "drivers", "ipc", "run", "config", "simulation", "daemon", "tools"}) {
-    for (const Include& include : includes_below(folder)) {
-      if (is_below(include, "/ipc/shared_memory.cpp")) continue;
-      CHECK_MESSAGE(!starts_with_any(include.what, {"iceoryx"}),
-                    include.file << " includes " << include.what);
+TEST_CASE("inside core the estimator includes no fits and studies, and no stage a later one") {
+  for (const auto& [folder, below] : kMayIncludeInCore) {
+    for (const Source& source : sources_below(folder)) {
+      for (const std::string& include : source.own_includes) {
+        const std::string target = folder_of(include, 2);
+        const bool is_common = fs::path(target).has_extension();
+        CHECK_MESSAGE((is_common || target == folder || below.contains(target)),
+                      source.path << " includes " << include);
+      }
+    }
+  }
+}
+
+TEST_CASE("core has no threads, no I/O, no logging and no clock, and of libraries only Eigen and nanoflann") {
+  for (const Source& source : sources_below("core")) {
+    for (const std::string& include : source.foreign_includes) {
+      CHECK_MESSAGE(!starts_with_any(include, kNotInCore), source.path << " includes " << include);
+      const bool is_standard = include.find_first_of("/.") == std::string::npos || include == "emmintrin.h" ||
+                               include == "immintrin.h" || include == "smmintrin.h";
+      CHECK_MESSAGE((is_standard || include.starts_with("Eigen/") || include == "nanoflann.hpp"),
+                    source.path << " includes " << include);
+    }
+  }
+}
+
+TEST_CASE("a library is named by few places") {
+  for (const auto& [folder, below] : kMayInclude) {
+    for (const Source& source : sources_below(folder)) {
+      for (const std::string& include : source.foreign_includes) {
+        for (const auto& [library, places] : kNamedOnlyBy) {
+          if (!include.starts_with(library)) continue;
+          CHECK_MESSAGE(starts_with_any(source.path, places), source.path << " includes " << include);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("the estimator does not name DDS: a fault in its parser cannot stop isobard") {
+  for (const Source& source : sources_below("daemon")) {
+    if (source.path.starts_with("daemon/bridge/")) continue;
+    for (const std::string& include : source.own_includes) {
+      CHECK_MESSAGE(!include.starts_with("ipc/dds/"), source.path << " includes " << include);
+      CHECK_MESSAGE(!include.starts_with("daemon/bridge/"), source.path << " includes " << include);
+    }
+  }
+}
+
+TEST_CASE("a file has one idea: 300 lines at most, and its licence in the first") {
+  constexpr std::size_t kMostLines = 300;
+  for (const auto& [folder, below] : kMayInclude) {
+    for (const Source& source : sources_below(folder)) {
+      CHECK_MESSAGE(source.lines.size() <= kMostLines,
+                    source.path << " has " << source.lines.size() << " lines");
+      REQUIRE_MESSAGE(!source.lines.empty(), source.path << " is empty");
+      CHECK_MESSAGE(source.lines.front() == "// SPDX-License-Identifier: BSD-3-Clause", source.path);
     }
   }
 }
