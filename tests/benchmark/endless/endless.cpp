@@ -160,7 +160,7 @@ void print(const std::vector<Part>& parts) {
 int run(const Options& options) {
   Config config = options.config.empty() ? Config{} : isobar::load_config(options.config);
   if (!options.method.empty()) {
-    const std::optional<isobar::Method> method = isobar::tools::method_of(options.method);
+    const std::optional<isobar::Method> method = isobar::kMethodNames.value(options.method);
     if (!method) throw isobar::UsageError("--method: none of " + isobar::tools::method_names());
     config.method = *method;
   }
