@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a large map on the disk costs: to write it tile by tile, to open it, to take tiles from it.
-// Usage: bench_tile_store FOLDER [GB] [TILE_KB]; the folder gets a map of that size (default 1 GB of tiles of
-// 45 kB on average, which is more than ten million points at 45 bytes) and loses it again.
+// Cost of a large map on disk: writing it tile by tile, opening it, reading tiles.
+// Usage: bench_tile_store FOLDER [GB] [TILE_KB]; a map of that size is written to the folder (default 1 GB,
+// tiles of 45 kB on average, more than ten million points at 45 bytes) and removed again.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -26,7 +26,7 @@ double ms_since(Clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-/// Times of one kind of call.
+/// Durations of one kind of call.
 struct Times {
   std::vector<double> ms;
   void print(const char* what) {
@@ -39,7 +39,7 @@ struct Times {
   }
 };
 
-/// Gives the pages of the map's files back, so that the next opening reads from the disk.
+/// Drops the pages of the map's files from the page cache: the next opening reads from the disk.
 void drop_cache(const std::filesystem::path& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const FileDescriptor file(::open(entry.path().c_str(), O_RDONLY | O_CLOEXEC));
@@ -60,7 +60,7 @@ void run(const std::filesystem::path& folder, double gigabytes, double tile_kb) 
   TileStoreLimits limits;
   limits.max_bytes = static_cast<std::uint64_t>(gigabytes * 2e9);
   std::mt19937 random(1);
-  // As many bytes as a tile needs, a fifth to nine fifths of the mean.
+  // Sizes of tiles: one fifth to nine fifths of the mean.
   std::vector<std::byte> bytes(static_cast<std::size_t>(tile_kb * 1.8e3));
   for (std::byte& byte : bytes) byte = static_cast<std::byte>(random());
   const auto some = [&] {
@@ -81,7 +81,7 @@ void run(const std::filesystem::path& folder, double gigabytes, double tile_kb) 
       if (n < count / 10) first_tenth.ms.push_back(ms);
       if (n >= count - count / 10) last_tenth.ms.push_back(ms);
     }
-    // The robot goes to and fro at the end: versions, and emptying of files.
+    // The robot moves back and forth at the end: new versions of tiles, compaction of files.
     for (int n = 0; n < count / 2; ++n) {
       const auto begin = Clock::now();
       if (!store->put(key_of(count - 1 - n % (count / 10)), some())) {
