@@ -10,6 +10,7 @@
 #include "core/estimates.hpp"
 #include "core/geometry.hpp"
 #include "core/map/map_config.hpp"
+#include "core/name_table.hpp"
 #include "core/prior/prior_config.hpp"
 #include "core/registration/registration_config.hpp"
 #include "drivers/dps310/settings.hpp"
@@ -23,6 +24,11 @@ enum class Role : std::uint8_t {
   kRobot,        ///< estimates its pose
   kBaseStation,  ///< stands still, reads a barometer and publishes its pressure
 };
+
+inline constexpr NameTable<Role, 2> kRoleNames{{{
+    {Role::kRobot, "robot"},
+    {Role::kBaseStation, "base-station"},
+}}};
 
 /// [lidar]
 struct LidarSettings {

@@ -4,19 +4,6 @@
 #include "core/names.hpp"
 
 namespace isobar {
-namespace {
-
-/// Names of the enumerators from the first to `last`.
-template <typename Enum>
-std::vector<std::string> names_up_to(Enum last, std::string_view (*name_of)(Enum)) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(last); ++i) {
-    names.emplace_back(name_of(static_cast<Enum>(i)));
-  }
-  return names;
-}
-
-}  // namespace
 
 std::string Setting::section() const {
   const auto dot = key.rfind('.');
@@ -29,32 +16,27 @@ std::string Setting::name() const {
 }
 
 const std::vector<std::string>& role_choices() {
-  static const std::vector<std::string> names{"robot", "base-station"};
+  static const std::vector<std::string> names = kRoleNames.names();
   return names;
 }
 
 const std::vector<std::string>& method_choices() {
-  static const std::vector<std::string> names = names_up_to(Method::kOdometry, method_name);
+  static const std::vector<std::string> names = kMethodNames.names();
   return names;
 }
 
 const std::vector<std::string>& air_temperature_choices() {
-  static const std::vector<std::string> names{"auto", "fixed"};
+  static const std::vector<std::string> names = kAirTemperatureModeNames.names();
   return names;
 }
 
 const std::vector<std::string>& compensation_choices() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> list;
-    list.reserve(kCompensationModels.size());
-    for (const CompensationModel model : kCompensationModels) list.emplace_back(model_name(model));
-    return list;
-  }();
+  static const std::vector<std::string> names = kCompensationModelNames.names();
   return names;
 }
 
 const std::vector<std::string>& matcher_choices() {
-  static const std::vector<std::string> names{"plane-hash", "nearest"};
+  static const std::vector<std::string> names = kMatcherNames.names();
   return names;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/names.hpp"
+#include "core/stamp.hpp"
 #include "daemon/base_station_health.hpp"
 #include "daemon/health_entries.hpp"
 #include "daemon/health_entry.hpp"
@@ -27,23 +28,14 @@ std::string input_of(const Config& config, datagram::Kind kind) {
   return "UDP port " + std::to_string(config.input.port) + (by_dds ? " or over DDS" : "");
 }
 
-const char* sentence_of(BarometerFault fault) {
-  switch (fault) {
-    case BarometerFault::kOk:
-      return "ok";
-    case BarometerFault::kOff:
-      return "off: silent";
-    case BarometerFault::kStuck:
-      return "stuck: its value does not change by a single bit";
-    case BarometerFault::kSpiking:
-      return "spiking: single values jump repeatedly";
-    case BarometerFault::kDrifting:
-      return "drifting: faster than weather, and not with the height";
-    case BarometerFault::kWrong:
-      return "wrong: impossible values, or a jump that neither motion nor weather explains";
-  }
-  return "unknown";
-}
+constexpr NameTable<BarometerFault, 6> kBarometerFaultTexts{{{
+    {BarometerFault::kOk, "ok"},
+    {BarometerFault::kOff, "off: silent"},
+    {BarometerFault::kStuck, "stuck: its value does not change by a single bit"},
+    {BarometerFault::kSpiking, "spiking: single values jump repeatedly"},
+    {BarometerFault::kDrifting, "drifting: faster than weather, and not with the height"},
+    {BarometerFault::kWrong, "wrong: impossible values, or a jump that neither motion nor weather explains"},
+}}};
 
 }  // namespace
 
@@ -61,7 +53,7 @@ void HealthMonitor::fill_deadlines(const StatusSnapshot& now, HealthReport& repo
 }
 
 void HealthMonitor::fill(const StatusSnapshot& now, HealthReport& report) {
-  const double elapsed_s = last_.now_ns == 0 ? 1.0 : static_cast<double>(now.now_ns - last_.now_ns) * 1e-9;
+  const double elapsed_s = last_.now_ns == 0 ? 1.0 : seconds_between(last_.now_ns, now.now_ns);
   fill_lidar(now, elapsed_s, report);
   fill_samples(now, elapsed_s, report);
   fill_faults(now, report);
@@ -137,7 +129,7 @@ void HealthMonitor::fill_faults(const StatusSnapshot& now, HealthReport& report)
   const auto add = [&report](const char* name, BarometerFault fault) {
     // Silence is already an error of the stream.
     const bool well = fault == BarometerFault::kOk || fault == BarometerFault::kOff;
-    add_entry(report, name, well ? HealthLevel::kOk : HealthLevel::kWarning, sentence_of(fault),
+    add_entry(report, name, well ? HealthLevel::kOk : HealthLevel::kWarning, kBarometerFaultTexts.name(fault),
               static_cast<double>(fault));
   };
   if (now.prior.counters.pressure_accepted > 0) add("barometer/fault", health.robot);
@@ -166,7 +158,7 @@ void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& repor
             prior.attitude_valid ? "gravity found" : "waiting for gravity from the IMU", 0.0);
   const bool height_good = prior.height_source == HeightSource::kDifferential;
   add_entry(report, "height", height_good ? HealthLevel::kOk : HealthLevel::kWarning,
-            fmt::format("source: {}, sd {:.3f} m", height_source_name(prior.height_source),
+            fmt::format("source: {}, sd {:.3f} m", kHeightSourceNames.name(prior.height_source),
                         std::sqrt(prior.height_variance_m2)),
             prior.height_m);
 
@@ -176,8 +168,8 @@ void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& repor
                             : good                  ? HealthLevel::kOk
                                                     : HealthLevel::kWarning;
   add_entry(report, "registration", level,
-            fmt::format("mode: {}, method: {}, overlap {:.2f}{}", mode_name(registration.mode),
-                        method_name(registration.effective_method), registration.overlap,
+            fmt::format("mode: {}, method: {}, overlap {:.2f}{}", kPoseModeNames.name(registration.mode),
+                        kMethodNames.name(registration.effective_method), registration.overlap,
                         registration.degenerate ? ", degenerate" : ""),
             registration.overlap);
   add_entry(report, "registration/ms", HealthLevel::kOk, "CPU time of the last scan",

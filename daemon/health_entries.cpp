@@ -3,6 +3,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "core/stamp.hpp"
 #include "daemon/health_entry.hpp"
 
 namespace isobar {
@@ -47,7 +48,7 @@ void add_stream(HealthReport& report, const std::string& name, std::int64_t last
   if (last_ns == 0) {
     add_entry(report, name, HealthLevel::kStale, "nothing received yet on " + where, 0.0);
   } else if (now_ns - last_ns > silence_ns) {
-    const double silent_s = static_cast<double>(now_ns - last_ns) * 1e-9;
+    const double silent_s = seconds_between(last_ns, now_ns);
     add_entry(report, name, HealthLevel::kError, fmt::format("silent for {:.0f} s on {}", silent_s, where),
               0.0);
   } else {

@@ -7,6 +7,7 @@
 
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
+#include "core/stamp.hpp"
 #include "daemon/counts.hpp"
 #include "daemon/lock_step.hpp"
 #include "daemon/stage_settings.hpp"
@@ -138,7 +139,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   summary.registered = output.registered();
   summary.from_prior = output.from_prior();
   summary.map_points = output.map_points();
-  summary.recorded_s = last_ns > first_ns ? static_cast<double>(last_ns - first_ns) * 1e-9 : 0.0;
+  summary.recorded_s = last_ns > first_ns ? seconds_between(first_ns, last_ns) : 0.0;
   summary.counts = collect_counts(reader, pipeline);
   run_counts::append(summary.counts, map_counts);
   if (sink.without_height() > 0 && reader.manifest().barometer) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/stamp.hpp"
 #include "daemon/health_entries.hpp"
 #include "daemon/health_entry.hpp"
 
@@ -17,7 +18,7 @@ void add_barometer(const StationSnapshot& now, const StationSnapshot& before, co
                    ipc::HealthReport& report) {
   const StationStatus& station = now.station;
   const auto stuck_ns = static_cast<std::int64_t>(config.prior.altimeter.stuck_timeout_s * 1e9);
-  const double elapsed_s = before.now_ns == 0 ? 1.0 : static_cast<double>(now.now_ns - before.now_ns) * 1e-9;
+  const double elapsed_s = before.now_ns == 0 ? 1.0 : seconds_between(before.now_ns, now.now_ns);
   const double rate_hz = per_second(station.samples, before.station.samples, elapsed_s);
   const std::int64_t unchanged_ns = station.cadence.last_ns() - station.changed_ns;
   if (now.barometer.present) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,13 +40,13 @@ struct CalibrateOptions {
 /// @throws UsageError when there is no such model
 CompensationModel chosen_model(const CalibrateOptions& options, const Calibration& calibration) {
   if (options.model.empty()) return calibration.models[calibration.recommended].model;
-  for (const ModelResult& result : calibration.models) {
-    if (options.model != model_name(result.model)) continue;
-    if (!result.left_out.empty()) throw DataError(options.model + " cannot be fitted: " + result.left_out);
-    return result.model;
+  const std::optional<CompensationModel> model = kCompensationModelNames.value(options.model);
+  if (!model) {
+    throw UsageError("--model: \"" + options.model + "\" is none of " + kCompensationModelNames.joined());
   }
-  throw UsageError("--model: \"" + options.model +
-                   "\" is none of none, offset, A_p, A_simple, A_ind, A_m, A_full");
+  const std::string& left_out = calibration.model(*model).left_out;
+  if (!left_out.empty()) throw DataError(options.model + " cannot be fitted: " + left_out);
+  return *model;
 }
 
 /// A log at a single temperature cannot show its effect: the user must accept that with --pressure-only.

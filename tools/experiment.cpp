@@ -46,7 +46,7 @@ std::vector<Method> chosen_methods(const ExperimentOptions& options) {
   if (options.methods.empty()) return {kAllMethods.begin(), kAllMethods.end()};
   std::vector<Method> methods;
   for (const std::string& name : options.methods) {
-    const auto method = method_of(name);
+    const auto method = kMethodNames.value(name);
     if (!method) throw UsageError("--methods: \"" + name + "\" is none of " + method_names());
     methods.push_back(*method);
   }
@@ -89,7 +89,7 @@ class SharedProgress {
 
 void replay_one(const ExperimentOptions& options, const std::filesystem::path& recording,
                 const Config& config, const std::function<void(double)>& report_progress) {
-  const std::string name(method_name(config.method));
+  const std::string name(kMethodNames.name(config.method));
   const ReplaySummary summary = replay(recording, config, options.out / name, report_progress);
   std::printf("%-14s %6.1f s of recording in %5.1f s\n", name.c_str(), summary.recorded_s, summary.wall_s);
 }
@@ -136,7 +136,7 @@ void evaluate_all(const ExperimentOptions& options, const std::filesystem::path&
                   const std::vector<Method>& methods, const std::string& command) {
   std::vector<evaluation::EstimateSource> sources;
   for (const Method method : methods) {
-    const std::string name(method_name(method));
+    const std::string name(kMethodNames.name(method));
     sources.push_back({name, options.out / name});
   }
   report::ReportInput input;

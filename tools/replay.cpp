@@ -55,7 +55,7 @@ void print_summary(const ReplaySummary& summary, const std::filesystem::path& ou
 void run_replay(const ReplayOptions& options) {
   Config config = options.config.empty() ? Config{} : load_config(options.config);
   if (!options.method.empty()) {
-    const auto method = method_of(options.method);
+    const auto method = kMethodNames.value(options.method);
     if (!method) throw UsageError("--method: \"" + options.method + "\" is none of " + method_names());
     config.method = *method;
   }

@@ -9,9 +9,10 @@
 namespace isobar {
 namespace {
 
+// Accepted readings; anything outside is a fault of the thermometer.
 constexpr double kLowestPlausibleC = -60.0;
 constexpr double kHighestPlausibleC = 100.0;
-// A thermometer silent for longer no longer says what the air is like now.
+// A thermometer silent for longer is ignored: its last reading may be from another place.
 constexpr double kForgetSensorS = 60.0;
 
 }  // namespace
@@ -27,7 +28,7 @@ void AirTemperatureTracker::smooth(Thermometer& thermometer, std::int64_t stamp_
     return;
   }
   if (dt_s <= 0.0) return;
-  // Plain mean at first, exponential once the smoothing time has passed: the first samples count most.
+  // Running mean until the smoothing time has passed, exponential afterwards: no start-up transient.
   thermometer.weight_s = std::min(thermometer.weight_s + dt_s, config_.smoothing_time_s);
   const double gain = std::min(1.0, dt_s / (thermometer.weight_s + dt_s));
   thermometer.smooth_c += gain * (temperature_c - thermometer.smooth_c);
@@ -37,7 +38,7 @@ void AirTemperatureTracker::smooth(Thermometer& thermometer, std::int64_t stamp_
 void AirTemperatureTracker::follow(double lowest_c, double dt_s) {
   const double time_s = lowest_c < estimate_c_ ? config_.fall_time_s : config_.rise_time_s;
   estimate_c_ += (lowest_c - estimate_c_) * -std::expm1(-dt_s / time_s);
-  // The clamp moves with the same unhurried time constant as a fall.
+  // Lower bound, approached with the time constant of a fall so that the height does not jump.
   const double least_c = lowest_c - config_.max_self_heating_k;
   if (estimate_c_ < least_c)
     estimate_c_ += (least_c - estimate_c_) * -std::expm1(-dt_s / config_.fall_time_s);
@@ -69,7 +70,7 @@ void AirTemperatureTracker::add(std::size_t sensor, std::int64_t stamp_ns, doubl
   const double dt_s = seconds_between(stamp_ns_, stamp_ns);
   stamp_ns_ = stamp_ns;
   if (since_start_s < config_.smoothing_time_s) {
-    // The height is still zero: take the mean of the first seconds, of whichever sensor is colder, at once.
+    // The height is still zero, so a step does no harm: adopt the coldest mean of the first seconds.
     estimate_c_ = lowest_c;
     return;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Temperature of the air between base station and robot, from thermometers that read too warm.
+// Estimate of the air temperature between base station and robot from self-heated thermometers.
 #pragma once
 
 #include <array>
@@ -10,35 +10,34 @@
 
 namespace isobar {
 
-/// A barometer's thermometer sits on a warm board: it reads the air plus a self-heating that starts at zero
-/// when it is powered, grows over minutes to some kelvins, and is never negative. So of everything the
-/// sensors say
-///   - the lowest of them is the closest,
-///   - what they said first is closer than what they say later (a sensor powered just now has not warmed up),
-///   - a fall is real (colder air, or a colder place), a rise mostly is not.
-/// The estimate starts at the lowest first reading, follows the lowest sensor down within a minute and up
-/// within an hour, and never stays more than the largest believable self-heating below the coldest sensor;
-/// what even the coldest is expected to warm itself by is taken off at the end. It is slow and continuous, so
-/// that the heights computed with it do not jump. Humidity (up to +1.3 K of virtual temperature at 20 degC
-/// and 50 %) is left out: it has the opposite sign of the self-heating that remains in sensors that were
-/// already warm.
+/// Asymmetric low-pass of the coldest thermometer. A barometer's thermometer sits on a warm board: it reads
+/// the air plus a self-heating that is zero at power-up, grows over minutes to some kelvins and is never
+/// negative. Therefore
+///   - the coldest sensor is the closest to the air,
+///   - first readings are closer than later ones (a sensor just powered is still cool),
+///   - a fall is real (colder air, or a colder place), a rise is mostly self-heating.
+/// The estimate starts at the coldest first reading, follows the coldest sensor down within a minute and up
+/// within an hour, and never stays further below it than AirTemperatureConfig::max_self_heating_k. The
+/// expected self-heating of the coldest sensor is subtracted at the end. The estimate is slow and continuous,
+/// so heights computed with it do not jump. Humidity (up to +1.3 K of virtual temperature at 20 degC and 50
+/// %) is neglected: its sign is opposite to the self-heating left in sensors that were already warm.
 class AirTemperatureTracker {
  public:
-  static constexpr std::size_t kSensors = 3;  ///< robot's, two base stations'
+  static constexpr std::size_t kSensors = 3;  ///< 0: robot; 1, 2: base stations
 
   explicit AirTemperatureTracker(const AirTemperatureConfig& config);
 
-  /// Takes a reading of one sensor. Readings that are not finite, outside -60 … 100 degC or back in time
-  /// do nothing.
+  /// Takes a reading of one sensor. Ignored: a reading that is not finite, outside -60 … 100 degC, or not
+  /// newer than the one before.
   void add(std::size_t sensor, std::int64_t stamp_ns, double temperature_c);
 
-  /// The clock jumped: the next readings follow at once. The estimate stays.
+  /// After a clock jump: accept the next readings whatever their stamps. Keeps the estimate.
   void restart_clock() {
     thermometers_ = {};
     time_known_ = false;
   }
 
-  /// Estimate [degC]; the configured value until a thermometer has spoken.
+  /// Estimate [degC]; the configured value until the first reading.
   [[nodiscard]] double temperature_c() const {
     return started_ ? estimate_c_ - config_.expected_self_heating_k : config_.fixed_c;
   }
@@ -47,7 +46,7 @@ class AirTemperatureTracker {
   struct Thermometer {
     std::int64_t stamp_ns = 0;
     double smooth_c = 0.0;
-    double weight_s = 0.0;  // time averaged so far, up to the smoothing time
+    double weight_s = 0.0;  // averaging time so far, up to the smoothing time
     bool started = false;
   };
 

@@ -4,40 +4,42 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/squared.hpp"
 #include "core/stamp.hpp"
 
 namespace isobar {
 namespace {
 
-// So many of its own intervals a sensor may be silent, or unchanged.
+// Tolerated silence, and time without a change of the value, in the sensor's own sample intervals.
 constexpr double kSilentIntervals = 3.0;
 constexpr double kUnchangedIntervals = 6.0;
-// Slower sensors than this are lost between two samples.
-constexpr double kSlowestS = 10.0;
-constexpr double kIntervalShare = 0.1;
-// Only refused values for this long: not a spike but a fault [s].
+// Longest interval that is learnt: a slower sensor counts as lost between two samples.
+constexpr double kLongestIntervalS = 10.0;
+// Gain of the interval's exponential mean: a memory of ten samples.
+constexpr double kIntervalGain = 0.1;
+// Nothing but refused values for this long is a fault, not a spike.
 constexpr double kRefusedS = 0.5;
-// Three spikes within ten seconds are a habit.
+// The spike score counts spikes with exponential forgetting; three spikes within ten seconds exceed the
+// limit.
 constexpr double kSpikeMemoryS = 10.0;
-constexpr double kSpikeHabit = 2.0;
+constexpr double kSpikeScoreLimit = 2.0;
 
 void learn(double& interval_s, double measured_s) {
-  measured_s = std::min(measured_s, kSlowestS);
+  measured_s = std::min(measured_s, kLongestIntervalS);
   if (interval_s <= 0.0) {
     interval_s = measured_s;
     return;
   }
-  // A pause is no new rate, but a sensor that has become slower is followed.
-  interval_s += kIntervalShare * (std::min(measured_s, 2.0 * interval_s) - interval_s);
+  // Doubling at most: one pause hardly changes the mean, a slower rate is still learnt.
+  interval_s += kIntervalGain * (std::min(measured_s, 2.0 * interval_s) - interval_s);
 }
 
 }  // namespace
 
-double noise_variance_pa2(const PressureSample& sample, const NoiseEstimator& seen,
+double noise_variance_pa2(const PressureSample& sample, const NoiseEstimator& estimated,
                           const AltimeterConfig& config) {
-  if (!(sample.variance_pa2 > 0.0)) return seen.variance();
-  return std::clamp(sample.variance_pa2, config.noise_floor_pa * config.noise_floor_pa,
-                    config.noise_ceiling_pa * config.noise_ceiling_pa);
+  if (!(sample.variance_pa2 > 0.0)) return estimated.variance();
+  return std::clamp(sample.variance_pa2, squared(config.noise_floor_pa), squared(config.noise_ceiling_pa));
 }
 
 void BarometerMonitor::learn_interval(std::int64_t now_ns) {
@@ -79,7 +81,7 @@ BarometerFault BarometerMonitor::fault(std::int64_t now_ns) const {
   if (gate_.started() && seconds_between(gate_.fresh_stamp_ns(), gate_.alive_stamp_ns()) > stuck_after_s())
     return BarometerFault::kStuck;
   const double since_s = std::max(0.0, seconds_between(spike_ns_, now_ns));
-  if (spike_score_ * std::exp(-since_s / kSpikeMemoryS) > kSpikeHabit) return BarometerFault::kSpiking;
+  if (spike_score_ * std::exp(-since_s / kSpikeMemoryS) > kSpikeScoreLimit) return BarometerFault::kSpiking;
   return BarometerFault::kOk;
 }
 

@@ -4,25 +4,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/squared.hpp"
 #include "core/stamp.hpp"
 
 namespace isobar {
 namespace {
 
-// Another station takes over when the reference has been unusable for this long: longer than a gust.
+// Outage of the reference before the standby takes over: longer than a gust.
 constexpr double kTakeOverS = 1.5;
-// Memory of the standby's offset, and how long it must have been learnt before a difference means anything
-// [s]. The warm-up of a station, 0.6 Pa within minutes, is learnt along.
+// Time constant of the standby's learnt offset: a station's warm-up, 0.6 Pa within minutes, is tracked.
 constexpr double kOffsetMemoryS = 300.0;
+// Learning time before a difference of the stations counts: the offset is still settling.
 constexpr double kOffsetLearntS = 20.0;
-// Low-pass of the difference of two stations: turbulence of 0.2 Pa over seconds goes down to 0.1 Pa.
-constexpr double kPartedSmoothingS = 3.0;
-// Stations that part by more than this are wrong [Pa]: more than ten sigmas of that, and 13 cm.
-constexpr double kPartedPa = 1.5;
-// From this share of it on the offset is no longer learnt: a drift must not be learnt away.
+// Low-pass of the stations' difference: reduces turbulence of 0.2 Pa over seconds to 0.1 Pa.
+constexpr double kDivergenceSmoothingS = 3.0;
+// Divergence at which one station is wrong: more than ten sigmas of the smoothed turbulence, 13 cm.
+constexpr double kDivergedPa = 1.5;
+// Share of kDivergedPa above which the offset is frozen: a drift must not be absorbed into the offset.
 constexpr double kFrozenShare = 0.4;
-// A condemned station that has stood still for this long is good again, with a new offset.
+// Time without drift after which a condemned station is trusted again, with a new offset.
 constexpr double kStoppedS = 120.0;
+// Longest step of the offset filter: a pause must not count as observed time.
 constexpr double kLongestStepS = 1.0;
 
 }  // namespace
@@ -49,17 +51,17 @@ std::size_t BaseReference::usable_count(std::int64_t now_ns) const {
 }
 
 BarometerFault BaseReference::fault(std::size_t station, std::int64_t now_ns) const {
-  const BarometerFault seen = stations_[station].fault(now_ns);
-  if (seen == BarometerFault::kOk && condemned_[station]) return BarometerFault::kDrifting;
-  return seen;
+  const BarometerFault own = stations_[station].fault(now_ns);
+  if (own == BarometerFault::kOk && condemned_[station]) return BarometerFault::kDrifting;
+  return own;
 }
 
 double BaseReference::variance(std::int64_t now_ns) const {
-  const double doubt = undecided_ ? parted_log_ : 0.0;
-  return stations_[active_].variance(now_ns) + doubt * doubt;
+  const double doubt_log = undecided_ ? divergence_log_ : 0.0;
+  return stations_[active_].variance(now_ns) + squared(doubt_log);
 }
 
-// The station to measure against, -1 to hold.
+// Index of the station to use as the reference; -1: none, hold the last pressure.
 int BaseReference::choose(std::int64_t now_ns) const {
   const std::size_t other = 1 - active_;
   if (usable(active_, now_ns)) return static_cast<int>(active_);
@@ -73,7 +75,7 @@ void BaseReference::adopt(std::size_t station) {
   active_ = station;
   if (!offset_known_[station]) offset_log_[station] = log_pa_ - stations_[station].value();
   offset_known_[station] = true;
-  parted_log_ = 0.0;
+  divergence_log_ = 0.0;
   shift_log_ = stations_[station].value() + offset_log_[station] - log_pa_;
 }
 
@@ -117,10 +119,10 @@ void BaseReference::compare(std::int64_t now_ns, double dt_s, double witness_log
     return;
   }
   learn_standby(difference_log, dt_s);
-  const bool agree = std::abs(parted_log_) < kFrozenShare * kPartedPa / config_.max_pressure_pa;
+  const bool agree = std::abs(divergence_log_) < kFrozenShare * kDivergedPa / config_.max_pressure_pa;
   vote_.add(now_ns, {stations_[0].value(), stations_[1].value(), witness_log}, agree);
-  const double limit_log = kPartedPa / std::exp(stations_[active_].value());
-  if (learnt_s_ < kOffsetLearntS || std::abs(parted_log_) < limit_log) {
+  const double limit_log = kDivergedPa / std::exp(stations_[active_].value());
+  if (learnt_s_ < kOffsetLearntS || std::abs(divergence_log_) < limit_log) {
     undecided_ = false;
     return;
   }
@@ -137,21 +139,21 @@ void BaseReference::learn_standby(double difference_log, double dt_s) {
   if (!offset_known_[standby]) {
     offset_log_[standby] -= difference_log;
     offset_known_[standby] = true;
-    learnt_s_ = parted_log_ = 0.0;
+    learnt_s_ = divergence_log_ = 0.0;
     vote_.restart();
     return;
   }
-  parted_log_ += (difference_log - parted_log_) * -std::expm1(-dt_s / kPartedSmoothingS);
-  const double frozen_log = kFrozenShare * kPartedPa / std::exp(stations_[active_].value());
-  if (learnt_s_ >= kOffsetLearntS && std::abs(parted_log_) > frozen_log) return;
+  divergence_log_ += (difference_log - divergence_log_) * -std::expm1(-dt_s / kDivergenceSmoothingS);
+  const double frozen_log = kFrozenShare * kDivergedPa / std::exp(stations_[active_].value());
+  if (learnt_s_ >= kOffsetLearntS && std::abs(divergence_log_) > frozen_log) return;
   const double memory_s = std::min(learnt_s_, kOffsetMemoryS);
-  offset_log_[standby] -= difference_log * dt_s / (memory_s + kPartedSmoothingS);
+  offset_log_[standby] -= difference_log * dt_s / (memory_s + kDivergenceSmoothingS);
   learnt_s_ += dt_s;
 }
 
-// A station that has drifted and then stands still again for long is as good as a new one.
+// Rehabilitates a condemned station whose difference has been constant for kStoppedS.
 void BaseReference::watch_condemned(double difference_log) {
-  const double limit_log = 0.5 * kPartedPa / config_.max_pressure_pa;
+  const double limit_log = 0.5 * kDivergedPa / config_.max_pressure_pa;
   if (std::abs(difference_log - stopped_log_) > limit_log) {
     stopped_log_ = difference_log;
     stopped_s_ = 0.0;
@@ -159,7 +161,7 @@ void BaseReference::watch_condemned(double difference_log) {
   if (stopped_s_ < kStoppedS) return;
   const std::size_t back = condemned_[0] ? 0 : 1;
   condemned_[back] = false;
-  // Of the two, the one that was kept is the reference still.
+  // The active station keeps its offset; only a standby learns a new one.
   if (back != active_) offset_known_[back] = false;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pressure that heights are measured against, from up to two base stations.
+// Reference pressure of the height, from up to two base stations.
 #pragma once
 
 #include <array>
@@ -12,53 +12,53 @@
 
 namespace isobar {
 
-/// What changed in the reference; whoever filters the heights must know.
+/// Changes of the reference that a filter of the height must handle.
 enum class ReferenceEvent : std::uint8_t {
   kNone,
-  kBaseJoined,  ///< a base station is there for the first time: weather no longer moves the height from here
-                ///< on
-  kBaseLost,    ///< the last pressure is held from here on: weather moves the height
-  kBaseReturned,  ///< the weather since it was lost is now known, see weather_shift_m, and is in height_m
-                  ///< already
-  kBaseSwitched,  ///< another station is the reference; what the old one was wrong by is weather_shift_m
+  kBaseJoined,    ///< first base station: weather no longer moves the height
+  kBaseLost,      ///< the last pressure is held: weather moves the height
+  kBaseReturned,  ///< height_m now includes the weather during the outage, see weather_shift_m
+  kBaseSwitched,  ///< the other station took over; weather_shift_m is the error of the old one
 };
 
-/// One station is the reference, the other stands by: its offset is learnt while both agree, so that it can
-/// take over without a step. Where they part by more than air and noise explain, StationVote tells which of
-/// them is wrong. A station that is wrong or silent is left; the one that took over stays.
+/// One active and one standby station. The standby's offset is learnt while both agree, so that it can take
+/// over without a step. If they diverge by more than air and noise explain, StationVote finds the wrong one.
+/// A wrong or silent station is replaced; the one that took over stays the reference (no switching back).
 class BaseReference {
  public:
   static constexpr std::size_t kStations = 2;
 
   explicit BaseReference(const AltimeterConfig& config);
 
-  /// Reference before any base station: ln of the robot's own first pressure.
+  /// Reference until the first base station: `log_pa` is ln of the robot's first pressure [Pa].
   void start(double log_pa) { log_pa_ = log_pa; }
 
   PressureStatus add(const PressureSample& sample, std::int64_t now_ns);
 
-  /// To be called with every robot sample. `witness_log`: ln of the robot's pressure brought to one height by
-  /// dead reckoning; NaN where there is none.
+  /// Call with every robot sample. `witness_log`: ln of the robot's pressure reduced to a common height by
+  /// dead reckoning; NaN without dead reckoning.
   ReferenceEvent update(std::int64_t now_ns, double witness_log);
 
-  /// The clock jumped: samples follow at once, whatever their stamps.
+  /// After a clock jump: accept the next samples whatever their stamps.
   void restart_clock();
 
+  /// ln of the reference pressure [Pa].
   [[nodiscard]] double log_pa() const { return log_pa_; }
-  /// Relative variance of the reference as long as it is present.
+  /// Relative variance of the reference (of log_pa()) while a station is present.
   [[nodiscard]] double variance(std::int64_t now_ns) const;
   [[nodiscard]] bool present() const { return state_ == State::kPresent; }
+  /// Whether there was a base station at any time.
   [[nodiscard]] bool ever() const { return state_ != State::kNever; }
   [[nodiscard]] double age_s(std::int64_t now_ns) const { return stations_[active_].age_s(now_ns); }
-  /// With kBaseReturned and kBaseSwitched: by how much log_pa() moved with the event.
+  /// Step of log_pa() at kBaseReturned and kBaseSwitched.
   [[nodiscard]] double shift_log() const { return shift_log_; }
 
   [[nodiscard]] BarometerFault fault(std::size_t station, std::int64_t now_ns) const;
-  /// The station that is the reference, or was last.
+  /// Index of the current or last reference station.
   [[nodiscard]] std::size_t active() const { return active_; }
-  /// Stations that could be the reference now.
+  /// Number of stations that could be the reference now.
   [[nodiscard]] std::size_t usable_count(std::int64_t now_ns) const;
-  /// Both stations are there, disagree, and nobody can tell which is wrong.
+  /// Both stations are present and disagree, and the wrong one cannot be identified.
   [[nodiscard]] bool undecided() const { return undecided_; }
 
  private:
@@ -81,11 +81,11 @@ class BaseReference {
   std::size_t active_ = 0;
   double log_pa_ = 0.0;
   double shift_log_ = 0.0;
-  double learnt_s_ = 0.0;     // how long the standby's offset has been learnt
-  double parted_log_ = 0.0;   // smoothed difference of the stations
-  double stopped_log_ = 0.0;  // a condemned station's difference …
-  double stopped_s_ = 0.0;    // … has been this for so long
-  std::int64_t good_ns_ = 0;  // the last time that a station was usable
+  double learnt_s_ = 0.0;        // learning time of the standby's offset
+  double divergence_log_ = 0.0;  // smoothed difference of the stations
+  double stopped_log_ = 0.0;     // difference of a condemned station since it last moved
+  double stopped_s_ = 0.0;       // time since it last moved
+  std::int64_t good_ns_ = 0;     // last time with a usable station
   std::int64_t updated_ns_ = 0;
   bool undecided_ = false;
 };

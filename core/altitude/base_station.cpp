@@ -11,21 +11,19 @@
 namespace isobar {
 namespace {
 
-// A station is smoothed this long before it becomes the reference: one noisy sample would shift all heights.
+// Smoothing time before a station becomes the reference: one noisy sample would shift all heights.
 constexpr double kSettlingS = 1.0;
-// Weather without a base station, see weather_sigma_pa.
+// Model of the weather, see weather_sigma_pa().
 constexpr double kWeatherRatePaS = 0.025;
 constexpr double kWeatherWalkPaSqrtS = 0.2;
-// Nearer than this to the smoothed pressure is no jump: turbulence [Pa]. And so many sigmas of noise.
+// Jump: deviation from the smoothed pressure above both turbulence and this many sigmas of noise.
 constexpr double kStillPa = 4.0;
 constexpr double kNoiseSigmas = 6.0;
-// What the weather may do at most, in sigmas of weather_sigma_pa.
-constexpr double kWeatherSigmas = 4.0;
-// A new level is followed when it has been steady for this long; doors and gusts are over by then.
+// A new level is accepted once steady for this long: doors and gusts are over by then.
 constexpr double kNewLevelS = 5.0;
-// A level is the mean of so many samples.
+// Averaging length of a new level, in samples: a second or two at usual rates.
 constexpr double kLevelSamples = 30.0;
-// Left out for longer: a fault rather than a gust.
+// A jump that lasts longer is a fault, not a gust.
 constexpr double kJumpFaultS = 1.0;
 
 }  // namespace
@@ -44,9 +42,9 @@ BaseStation::BaseStation(const AltimeterConfig& config)
 double BaseStation::value() const { return std::log(filter_.pressure_pa()) - jump_log_; }
 
 double BaseStation::variance(std::int64_t now_ns) const {
-  // Up to the time-out the filter's own walk would do, but a station that is silent may be so for good.
-  const double age = std::max(0.0, seconds_between(used_ns_, now_ns));
-  return (filter_.variance_pa2() + squared(weather_sigma_pa(age))) / squared(filter_.pressure_pa());
+  // Weather model instead of the filter's walk: valid beyond the time-out, too.
+  const double age_s = std::max(0.0, seconds_between(used_ns_, now_ns));
+  return (filter_.variance_pa2() + squared(weather_sigma_pa(age_s))) / squared(filter_.pressure_pa());
 }
 
 double BaseStation::age_s(std::int64_t now_ns) const {
@@ -64,16 +62,16 @@ bool BaseStation::ready(std::int64_t now_ns) const {
 }
 
 BarometerFault BaseStation::fault(std::int64_t now_ns) const {
-  const BarometerFault seen = monitor_.fault(now_ns);
-  if (seen != BarometerFault::kOk && seen != BarometerFault::kSpiking) return seen;
+  const BarometerFault own = monitor_.fault(now_ns);
+  if (own != BarometerFault::kOk && own != BarometerFault::kSpiking) return own;
   if (jumping_ && seconds_between(jumping_ns_, now_ns) > kJumpFaultS) return BarometerFault::kWrong;
-  return seen;
+  return own;
 }
 
 void BaseStation::restart_clock() {
   monitor_.restart_clock();
   jumping_ = false;
-  // The weather in between is not known, nor how long it was.
+  // Unknown elapsed time, so unknown weather: the filter starts again.
   filter_.restart();
 }
 
@@ -97,10 +95,11 @@ PressureStatus BaseStation::add(const PressureSample& sample, std::int64_t now_n
   return status;
 }
 
-// Back after a silence: what the weather can have done is believed, what it cannot is a new level.
+// Return after a silence: a change within the weather model is weather, a larger one is a new level.
 void BaseStation::rejoin(const PressureSample& sample, double gap_s) {
   const double moved_pa = sample.pressure_pa - filter_.pressure_pa();
-  if (std::abs(moved_pa) > kStillPa + kWeatherSigmas * weather_sigma_pa(gap_s)) settle(sample.pressure_pa);
+  if (std::abs(moved_pa) > kStillPa + kLargestWeatherSigmas * weather_sigma_pa(gap_s))
+    settle(sample.pressure_pa);
   filter_.restart();
   noise_.restart();
   since_ns_ = sample.stamp_ns;
@@ -108,7 +107,8 @@ void BaseStation::rejoin(const PressureSample& sample, double gap_s) {
 
 bool BaseStation::jumps(const PressureSample& sample, double gap_s, double noise_variance_pa2) {
   const double still_pa = std::max(kStillPa, kNoiseSigmas * std::sqrt(noise_variance_pa2));
-  const double allowed_pa = still_pa + (gap_s > kSettlingS ? kWeatherSigmas * weather_sigma_pa(gap_s) : 0.0);
+  const double allowed_pa =
+      still_pa + (gap_s > kSettlingS ? kLargestWeatherSigmas * weather_sigma_pa(gap_s) : 0.0);
   if (std::abs(sample.pressure_pa - filter_.pressure_pa()) <= allowed_pa) {
     jumping_ = false;
     return false;
@@ -144,8 +144,8 @@ void BaseStation::settle(double pressure_pa) {
     level_ns_ = used_ns_;
   }
   const double away_s = std::max(0.0, seconds_between(level_ns_, monitor_.gate().alive_stamp_ns()));
-  const bool back = jump_log_ != 0.0 &&
-                    std::abs(pressure_pa - level_pa_) < kStillPa + kWeatherSigmas * weather_sigma_pa(away_s);
+  const bool back = jump_log_ != 0.0 && std::abs(pressure_pa - level_pa_) <
+                                            kStillPa + kLargestWeatherSigmas * weather_sigma_pa(away_s);
   jump_log_ = back ? 0.0 : jump_log_ + std::log(pressure_pa / filter_.pressure_pa());
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pressure compensation by a polynomial in raw pressure and temperature, eq. (1) of the paper.
+// Pressure compensation: bicubic polynomial in raw pressure and temperature, eq. (1) of the paper.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,7 +7,7 @@
 
 namespace isobar {
 
-/// Which coefficients c_ij (i: power of pressure, j: power of temperature) take part. Bit 4 i + j.
+/// Set of coefficients c_ij (i: power of pressure, j: power of temperature); c_ij is bit 4 i + j.
 using CompensationMask = std::uint16_t;
 
 constexpr CompensationMask coefficient(int i, int j) {
@@ -23,35 +23,28 @@ inline constexpr CompensationMask kMaskInd =
 inline constexpr CompensationMask kMaskM = kMaskP | coefficient(0, 1) | coefficient(1, 1) | coefficient(2, 1);
 inline constexpr CompensationMask kMaskFull = 0xFFFF;
 
-/// p_cal = p A t with p = [1 p_raw p_raw^2 p_raw^3], t = [1 t t^2 t^3]^T, t in degrees Celsius, kept and
-/// evaluated in centred and scaled variables u = (p_raw - p_centre)/p_scale, v = (t - t_centre)/t_scale. In
-/// plain powers of 100 kPa the columns span 15 decades: a fit loses all its digits, and an evaluation cancels
-/// terms a thousand times its result.
+/// p_cal = p A t with p = [1 p_raw p_raw^2 p_raw^3], t = [1 t t^2 t^3]^T, t in degrees Celsius. Stored and
+/// evaluated in the centred, scaled variables u = (p_raw - p_centre) / p_scale, v = (t - t_centre) / t_scale:
+/// in plain powers of 100 kPa the columns span 15 decades, so a fit loses all its digits and an evaluation
+/// cancels terms a thousand times its result.
 class Compensation {
  public:
-  /// Centre and scale of the variables; scales must not be zero.
+  /// Centre and scale of u and v; scales must not be zero.
   struct Variables {
-    double pressure_centre = 0.0;
-    double pressure_scale = 1.0;
+    double pressure_centre_pa = 0.0;
+    double pressure_scale_pa = 1.0;
     double temperature_centre_c = 0.0;
     double temperature_scale_c = 1.0;
   };
 
-  /// Passes the raw pressure through.
+  /// Identity: the compensated pressure is the raw pressure.
   Compensation();
 
-  /// Coefficients of the powers of u and v. Those outside `mask` are taken as zero.
-  Compensation(const Eigen::Matrix4d& centred, const Variables& variables, CompensationMask mask = kMaskFull);
+  /// `centred`: 4x4, element (i, j) is the coefficient of u^i v^j [Pa].
+  Compensation(const Eigen::Matrix4d& centred, const Variables& variables);
 
-  /// Coefficients of the plain powers, as data sheets and the paper give them; centred on `variables`.
-  static Compensation from_raw_powers(const Eigen::Matrix4d& coefficients, const Variables& variables,
-                                      CompensationMask mask = kMaskFull);
-
-  /// Coefficients of the plain powers.
-  [[nodiscard]] Eigen::Matrix4d raw_powers() const;
-
-  /// Compensated pressure [Pa]. `pressure_raw` in the unit of the fit (counts, Pa).
-  [[nodiscard]] double operator()(double pressure_raw, double temperature_c) const;
+  /// Compensated pressure [Pa] of a raw pressure [Pa] and temperature [degC].
+  [[nodiscard]] double operator()(double pressure_pa, double temperature_c) const;
 
   [[nodiscard]] const Eigen::Matrix4d& centred() const { return centred_; }
   [[nodiscard]] const Variables& variables() const { return variables_; }

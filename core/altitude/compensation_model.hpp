@@ -1,34 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The models of pressure compensation by name, in the order of how much they ask of the data.
+// Models of pressure compensation, ordered by how much data a fit needs.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "core/altitude/compensation.hpp"
+#include "core/name_table.hpp"
 
 namespace isobar {
 
-enum class CompensationModel : std::uint8_t { kNone, kOffset, kP, kSimple, kInd, kM, kFull };
+/// Simplest first. The paper's models, preceded by two simpler ones.
+enum class CompensationModel : std::uint8_t {
+  kNone,    ///< identity (the paper's A'_m: the sensor has applied its factory coefficients)
+  kOffset,  ///< constant offset: the least that two sensors side by side need
+  kP,       ///< cubic in pressure
+  kSimple,  ///< kP, linear in temperature
+  kInd,     ///< kP, cubic in temperature, no cross terms
+  kM,       ///< kP, linear in temperature with cross terms up to u^2 v
+  kFull,    ///< all sixteen coefficients
+};
 
-/// All models, simplest first. kNone is the sensor as it is (the paper's A'_m, where the sensor has computed
-/// its pressure from the factory's coefficients); kOffset is what any sensor needs that stands beside
-/// another; the rest are the paper's.
-inline constexpr std::array<CompensationModel, 7> kCompensationModels = {
-    CompensationModel::kNone, CompensationModel::kOffset, CompensationModel::kP,   CompensationModel::kSimple,
-    CompensationModel::kInd,  CompensationModel::kM,      CompensationModel::kFull};
+/// Names in configuration, on the command line and in reports.
+inline constexpr NameTable<CompensationModel, 7> kCompensationModelNames{{{
+    {CompensationModel::kNone, "none"},
+    {CompensationModel::kOffset, "offset"},
+    {CompensationModel::kP, "A_p"},
+    {CompensationModel::kSimple, "A_simple"},
+    {CompensationModel::kInd, "A_ind"},
+    {CompensationModel::kM, "A_m"},
+    {CompensationModel::kFull, "A_full"},
+}}};
 
-/// As configuration and command line spell it: "none", "offset", "A_p", "A_simple", "A_ind", "A_m", "A_full".
-const char* model_name(CompensationModel model);
-
-/// Which coefficients of the correction p_cal - p_raw a fit may choose. With the paper's models that is the
-/// same as choosing those of p_cal; kOffset leaves the slope at one, kNone everything.
+/// Free coefficients of the correction p_cal - p_raw. For the paper's models these are also the free
+/// coefficients of p_cal; kOffset fixes the slope at 1, kNone fixes everything.
 CompensationMask free_coefficients(CompensationModel model);
 
-/// How many those are.
-int free_coefficient_count(CompensationModel model);
-
-/// Whether the temperature takes part.
+/// Whether any free coefficient multiplies the temperature.
 bool uses_temperature(CompensationModel model);
 
 }  // namespace isobar

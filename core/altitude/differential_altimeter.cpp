@@ -11,7 +11,7 @@
 namespace isobar {
 namespace {
 
-// Differences across a longer gap mean nothing.
+// Longest gap between samples whose difference still shows noise.
 constexpr double kNoiseGapS = 1.0;
 
 }  // namespace
@@ -46,7 +46,7 @@ PressureStatus DifferentialAltimeter::add_base(const PressureSample& sample) {
 }
 
 void DifferentialAltimeter::learn_noise(const PressureSample& sample, double gap_s) {
-  // A jump is no noise either.
+  // Neither a gap nor a jump is noise.
   if (gap_s > kNoiseGapS || std::abs(sample.pressure_pa - last_pa_) > config_.spike_pa)
     robot_noise_.restart();
   robot_noise_.add(sample.pressure_pa);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Height of the robot's pressure port from its barometer and, where there is one, a static base station's.
+// Height of the robot's pressure port from its barometer against a static base station's.
 #pragma once
 
 #include <cstdint>
@@ -15,43 +15,43 @@
 
 namespace isobar {
 
-/// One height.
+/// One height, with what a filter needs to use it.
 struct AltimeterReading {
   std::int64_t stamp_ns = 0;
-  double height_m = 0.0;           ///< port above its place at the first reading
+  double height_m = 0.0;           ///< of the port above its height at the first reading
   double noise_variance_m2 = 0.0;  ///< white noise of this reading
-  double scale_m = 1.0;            ///< metres a unit of ln p: height_m is this times ln(reference / pressure)
-  /// Everything: noise of this and of the first reading, base station's age, air temperature. Not warm-up,
-  /// which shows nowhere.
+  double scale_m = 1.0;            ///< scale height: height_m = scale_m ln(reference / pressure)
+  /// Total: noise of this and of the first reading, age of the base station's pressure, air temperature.
+  /// Sensor warm-up is not observable and not included.
   double variance_m2 = 0.0;
   HeightSource source = HeightSource::kNone;  ///< kDifferential or kSingleBarometer
-  double base_age_s = 0.0;  ///< how old the base station's pressure is; infinite if there never was one
+  double base_age_s = 0.0;  ///< age of the base station's pressure; infinite if there never was one
   ReferenceEvent event = ReferenceEvent::kNone;
-  /// With kBaseReturned and kBaseSwitched: by how much height_m moved with the event.
+  /// Step of height_m at kBaseReturned and kBaseSwitched.
   double weather_shift_m = 0.0;
 };
 
-/// Robot against base station; against its own start while there is no base station, which the source says.
-/// Heights are continuous when a base joins, jumps, or another one takes over.
+/// Hypsometric height of the robot's barometer against the base station's, or, without a base station,
+/// against the robot's own first pressure (see `source`). Continuous when a base joins, jumps or takes over.
 class DifferentialAltimeter {
  public:
   explicit DifferentialAltimeter(const AltimeterConfig& config);
 
-  /// The robot's time, from whatever sensor tells it: tells silence and staleness where no pressure comes.
+  /// Robot clock, from the newest sample of any sensor: detects silent and stale barometers.
   void set_time(std::int64_t now_ns) { now_ns_ = now_ns; }
-  /// Height of the port by dead reckoning [m], NaN where that means nothing (no wheels, an elevator): the
-  /// robot's barometer as a witness of two base stations.
+  /// Height of the port by dead reckoning [m]; NaN where it is invalid (no wheels, an elevator). Lets the
+  /// robot's barometer decide between two base stations.
   void set_witness(double height_m) { witness_m_ = height_m; }
 
-  /// `sample.stamp_ns` on the robot's clock.
+  /// `sample.stamp_ns`: robot clock.
   PressureStatus add_base(const PressureSample& sample);
-  /// With kAccepted, and only then, `out` is filled.
+  /// Fills `out` if and only if it returns kAccepted.
   PressureStatus add_robot(const PressureSample& sample, AltimeterReading& out);
 
-  /// The robot's clock jumped: samples follow at once, whatever their stamps. Heights go on as they are.
+  /// After a jump of the robot's clock: accept the next samples whatever their stamps. Heights continue.
   void restart_clock();
 
-  /// No usable robot sample for `timeout_s`, or a stuck value, at `now_ns`.
+  /// True if at `now_ns` there was no usable robot sample for `timeout_s`, or its value is stuck.
   [[nodiscard]] bool robot_lost(std::int64_t now_ns, double timeout_s) const {
     return robot_.lost(now_ns, timeout_s);
   }
@@ -62,7 +62,7 @@ class DifferentialAltimeter {
   [[nodiscard]] bool base_undecided() const { return base_.undecided(); }
 
   [[nodiscard]] double air_temperature_c() const { return air_.temperature_c(); }
-  /// Metres a unit of ln p at the present air temperature.
+  /// Scale height R_dry T_v / g at the present air temperature [m].
   [[nodiscard]] double scale_m() const;
   /// Relative 1-sigma uncertainty of scale_m().
   [[nodiscard]] double scale_uncertainty() const;
@@ -80,7 +80,7 @@ class DifferentialAltimeter {
   double last_pa_ = 0.0;
   double first_noise_variance_m2_ = 0.0;
   std::int64_t now_ns_ = 0;
-  std::int64_t first_stamp_ns_ = 0;  // first sample of the robot
+  std::int64_t first_stamp_ns_ = 0;  // of the robot
   bool started_ = false;
 };
 

@@ -4,18 +4,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/squared.hpp"
+
 namespace isobar {
 namespace {
 
-// The initial value counts as much as this many samples.
-constexpr double kInitialWeight = 10.0;
+// Weight of the initial value, in samples.
+constexpr double kInitialSamples = 10.0;
 
 }  // namespace
 
 NoiseEstimator::NoiseEstimator(const Options& options)
     : options_(options),
-      variance_(options.initial_sigma * options.initial_sigma),
-      weight_(std::min(kInitialWeight, options.memory_samples)) {}
+      variance_(squared(options.initial_sigma)),
+      weight_(std::min(kInitialSamples, options.memory_samples)) {}
 
 void NoiseEstimator::set_lag(std::size_t lag) {
   lag = std::clamp<std::size_t>(lag, 1, kMaxLag);
@@ -33,9 +35,9 @@ void NoiseEstimator::add(double value) {
   filled_ = std::min(filled_ + 1, size);
   if (filled_ <= 2 * lag_) return;
   const double difference = value - 2.0 * middle + oldest;
-  const double floor_variance = options_.floor_sigma * options_.floor_sigma;
+  const double floor_variance = squared(options_.floor_sigma);
   const double sample =
-      std::min(difference * difference / 6.0, options_.clip * std::max(variance_, floor_variance));
+      std::min(squared(difference) / 6.0, options_.clip * std::max(variance_, floor_variance));
   weight_ = std::min(weight_ + 1.0, options_.memory_samples);
   variance_ += (sample - variance_) / weight_;
 }

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scalar Kalman filter of a pressure that stays as it is but for a random walk: the paper's low-pass.
+// Scalar Kalman filter of a random-walk pressure: the paper's low-pass.
 #pragma once
+
+#include "core/squared.hpp"
 
 namespace isobar {
 
-/// Constant model. In steady state a first-order low-pass of time constant sqrt(R dt / q): it averages as
-/// much as the walk allows, at any sample rate. filter_design.hpp finds the walk for a wanted lag.
+/// Random-walk model. In steady state a first-order low-pass with time constant sqrt(R dt / q): as much
+/// averaging as the walk allows, at any sample rate. core/calibration/filter_design.hpp gives the walk for a
+/// wanted lag.
 class PressureFilter {
  public:
   /// `walk_pa_sqrt_s`: random walk of the true pressure [Pa/sqrt(s)], > 0.
-  explicit PressureFilter(double walk_pa_sqrt_s) : walk_variance_pa2_s_(walk_pa_sqrt_s * walk_pa_sqrt_s) {}
+  explicit PressureFilter(double walk_pa_sqrt_s) : walk_variance_pa2_s_(squared(walk_pa_sqrt_s)) {}
 
-  /// Takes a sample `dt_s` (>= 0) after the one before, with white noise of `noise_variance_pa2` (> 0).
+  /// Updates with a sample `dt_s` (>= 0) after the previous one, of white noise `noise_variance_pa2` (> 0).
   void add(double pressure_pa, double dt_s, double noise_variance_pa2) {
     if (!started_) {
       pressure_pa_ = pressure_pa;
@@ -30,13 +33,11 @@ class PressureFilter {
   void restart() { started_ = false; }
   [[nodiscard]] bool started() const { return started_; }
   [[nodiscard]] double pressure_pa() const { return pressure_pa_; }
-  /// Variance of pressure_pa() at the last sample; `age_s` later it is larger by the walk.
-  [[nodiscard]] double variance_pa2(double age_s = 0.0) const {
-    return variance_pa2_ + walk_variance_pa2_s_ * age_s;
-  }
-  /// How long before the last sample pressure_pa() was true, if the pressure changes at a constant rate: the
-  /// output is a weighted mean of the samples, and this is the mean of their ages, with the same weights [s].
-  /// Exact from the first sample on and at any spacing; in steady state dt (1 - K) / K.
+  /// Variance of pressure_pa() at the last sample.
+  [[nodiscard]] double variance_pa2() const { return variance_pa2_; }
+  /// Group delay at 0 Hz [s]: lag of pressure_pa() behind a pressure that changes at a constant rate. The
+  /// output is a weighted mean of the samples; the delay is the mean of their ages with the same weights.
+  /// Exact from the first sample on, at any spacing; in steady state dt (1 - K) / K.
   [[nodiscard]] double delay_s() const { return delay_s_; }
 
  private:

@@ -9,8 +9,9 @@
 namespace isobar {
 namespace {
 
-// A fast lift in a high building: 10 m/s are 120 Pa/s. What a sensor may move while nobody looked.
+// Largest rate of change by motion, allowed across a gap: a fast lift in a high building, 10 m/s.
 constexpr double kFastestChangePaS = 120.0;
+
 }  // namespace
 
 bool PressureGate::is_spike(const PressureSample& sample) {
@@ -29,7 +30,7 @@ bool PressureGate::is_spike(const PressureSample& sample) {
 }
 
 PressureStatus PressureGate::check(const PressureSample& sample) {
-  // Written so that NaN fails.
+  // Comparisons in this direction also reject NaN.
   const bool plausible =
       sample.pressure_pa >= config_.min_pressure_pa && sample.pressure_pa <= config_.max_pressure_pa;
   if (!plausible) return PressureStatus::kBadValue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which pressure samples are fit to be used: range, time, spikes, repeats.
+// Plausibility checks of pressure samples: range, time, spikes, repeats.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,13 @@
 
 namespace isobar {
 
+/// Verdict on one sample.
 enum class PressureStatus : std::uint8_t {
   kAccepted,
   kBadValue,  ///< not finite, outside the plausible range, or a spike
-  kBadTime,   ///< not newer than the one before
-  kStale,     ///< of a base station, and too old for the robot's clock
-  kRepeated,  ///< bit for bit the value before: polled faster than converted, or stuck
+  kBadTime,   ///< not newer than the previous sample
+  kStale,     ///< base stations only: too old by the robot's clock
+  kRepeated,  ///< bit-identical to the previous value: polled faster than converted, or stuck
 };
 
 /// Checks one sensor's samples.
@@ -24,11 +25,11 @@ class PressureGate {
 
   PressureStatus check(const PressureSample& sample);
 
-  /// Time of the last sample whose value was new and usable; meaningless before the first.
+  /// Stamp of the last accepted sample; undefined before the first.
   [[nodiscard]] std::int64_t fresh_stamp_ns() const { return fresh_stamp_ns_; }
-  /// Time of the last sample that was at least plausible, repeats included.
+  /// Stamp of the last plausible sample, repeats included.
   [[nodiscard]] std::int64_t alive_stamp_ns() const { return alive_stamp_ns_; }
-  /// The clock jumped: the next sample follows at once, whatever its stamp.
+  /// After a clock jump: accept the next sample whatever its stamp.
   void restart_clock() { time_known_ = false; }
   [[nodiscard]] bool started() const { return started_; }
 
@@ -36,9 +37,9 @@ class PressureGate {
   [[nodiscard]] bool is_spike(const PressureSample& sample);
 
   AltimeterConfig config_;
-  double pressure_pa_ = 0.0;   // last one accepted
-  double candidate_pa_ = 0.0;  // last refused one
-  std::uint32_t agreeing_ = 0;
+  double pressure_pa_ = 0.0;    // last accepted
+  double candidate_pa_ = 0.0;   // last refused as a spike
+  std::uint32_t agreeing_ = 0;  // successive refused samples at one level
   std::int64_t fresh_stamp_ns_ = 0;
   std::int64_t alive_stamp_ns_ = 0;
   bool started_ = false;

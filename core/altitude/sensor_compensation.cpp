@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/squared.hpp"
+
 namespace isobar {
 namespace {
 
-// No barometer is that wrong: ten times the absolute accuracy of the poorest chips. A larger correction comes
-// from a file of another sensor or from a wrong unit.
+// Largest plausible correction: ten times the absolute accuracy of the poorest chips. A larger one comes from
+// another sensor's file or a wrong unit.
 constexpr double kLargestCorrectionPa = 5'000.0;
 constexpr std::size_t kCoefficients = 16;
 
@@ -27,7 +29,7 @@ Compensation compensation_of(const CompensationConfig& config) {
 }
 
 bool has_foreign_coefficient(const CompensationConfig& config) {
-  // p_cal has its slope always, whether a fit chose it or not.
+  // Offset and slope of p_cal are set in every model, even if the fit did not choose them.
   const CompensationMask mask = free_coefficients(config.model) | coefficient(0, 0) | coefficient(1, 0);
   for (std::size_t k = 0; k < kCoefficients; ++k) {
     if (((mask >> k) & 1U) == 0 && config.coefficients[k] != 0.0) return true;
@@ -85,11 +87,11 @@ SensorCompensation::SensorCompensation(const CompensationConfig& config)
       uses_temperature_(uses_temperature(config.model)),
       compensation_(compensation_of(config)),
       range_(config.range),
-      variance_pa2_(config.sigma_pa > 0.0 ? config.sigma_pa * config.sigma_pa
+      variance_pa2_(config.sigma_pa > 0.0 ? squared(config.sigma_pa)
                                           : std::numeric_limits<double>::quiet_NaN()),
       temperature_c_(0.5 * (config.range.lowest_c + config.range.highest_c)) {
   if (uses_temperature_) return;
-  range_.lowest_c = -std::numeric_limits<double>::infinity();  // whatever it is, it changes nothing
+  range_.lowest_c = -std::numeric_limits<double>::infinity();  // the temperature has no effect
   range_.highest_c = std::numeric_limits<double>::infinity();
 }
 

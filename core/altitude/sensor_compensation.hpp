@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A calibrated sensor: what `isobar calibrate` found, applied to its samples.
+// Compensation of a sensor's samples with the result of `isobar calibrate`.
 #pragma once
 
 #include <limits>
@@ -11,7 +11,7 @@
 
 namespace isobar {
 
-/// Where a calibration has seen the sensor.
+/// Pressures and temperatures that the calibration data cover.
 struct CalibratedRange {
   double lowest_pa = 0.0;
   double highest_pa = 0.0;
@@ -24,16 +24,15 @@ struct CalibratedRange {
   }
 };
 
-/// The correction p_cal - p_raw of the nearest place of the calibrated range, added to the raw pressure.
-/// Inside of it that is eq. (1); outside a polynomial of third order soon errs by more than the sensor ever
-/// did, while the held correction leaves differences of pressure, and so of height, as the sensor measured
-/// them.
+/// Raw pressure plus the correction p_cal - p_raw at the nearest point of the calibrated range [Pa]. Inside
+/// the range that is eq. (1). Outside, a cubic polynomial soon errs by more than the raw sensor; a constant
+/// correction keeps differences of pressure, and so of height, as measured.
 double compensated_pa(const Compensation& compensation, const CalibratedRange& range, double pressure_pa,
                       double temperature_c);
 
 /// Result of a calibration. [barometer.compensation] has the same keys.
 struct CompensationConfig {
-  CompensationModel model = CompensationModel::kNone;  ///< kNone: the samples stay as they are
+  CompensationModel model = CompensationModel::kNone;  ///< kNone: samples unchanged
 
   /// Centre and scale of u = (p - centre) / scale and v = (t - centre) / scale; Pa and degC.
   double pressure_centre_pa = 100'000.0;
@@ -41,33 +40,34 @@ struct CompensationConfig {
   double temperature_centre_c = 20.0;
   double temperature_scale_c = 10.0;
 
-  /// c_ij [Pa] of p_cal = sum of c_ij u^i v^j: c_00 c_01 c_02 c_03 c_10 …, sixteen numbers. Empty with kNone.
+  /// c_ij [Pa] of p_cal = sum of c_ij u^i v^j, row by row: c_00 c_01 c_02 c_03 c_10 …, sixteen numbers. Empty
+  /// with kNone.
   std::vector<double> coefficients;
 
   CalibratedRange range;
 
-  /// White noise of one compensated sample, 1 sigma [Pa]; 0: not known.
+  /// White noise of one compensated sample, 1 sigma [Pa]; 0: unknown.
   double sigma_pa = 0.0;
 };
 
-/// Which rule a calibration breaks, as a text that never dies; nullptr when it can be used. `key`, if given,
-/// then is the name of the field as the configuration spells it.
+/// Text of the rule that a calibration breaks (static storage); nullptr if it is valid. `key`, if given, is
+/// set to the field's name in the configuration when a rule is broken.
 const char* broken_compensation_rule(const CompensationConfig& config, const char** key = nullptr);
 
-/// Applies a calibration to one sensor's samples, in their order. No allocation after construction.
+/// Applies a calibration to one sensor's samples, in order of time. No allocation after construction.
 class SensorCompensation {
  public:
   explicit SensorCompensation(const CompensationConfig& config = {});
 
   enum class Result {
-    kInside,         ///< compensated within the calibrated range, or there is no calibration
-    kOutside,        ///< compensated with the correction of the range's nearest place
-    kNoTemperature,  ///< compensated with the last temperature that was known, else the range's middle
+    kInside,         ///< compensated within the calibrated range, or no calibration
+    kOutside,        ///< compensated with the correction at the nearest point of the range
+    kNoTemperature,  ///< compensated with the last known temperature, initially the middle of the range
   };
 
-  /// Replaces the pressure by the compensated one, and a variance that the sender does not know by the
-  /// calibration's. A pressure that has not changed by one bit gives the result before, whatever the
-  /// temperature did: a stuck sensor must still be seen as stuck.
+  /// Replaces the pressure by the compensated one, and an unknown variance (NaN) by the calibration's. A
+  /// bit-identical raw pressure gives the previous result whatever the temperature: a stuck sensor must stay
+  /// detectable as stuck.
   Result apply(PressureSample& sample);
 
  private:

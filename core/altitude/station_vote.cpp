@@ -11,15 +11,15 @@
 namespace isobar {
 namespace {
 
-// Means over this long: turbulence and noise go down, a drift is still young.
+// Averaging time: reduces turbulence and noise, short against a drift.
 constexpr double kMeanS = 2.0;
-// The robot must be this much nearer to one station than to the other, and their distance at least this [Pa].
-// It is more than turbulence at the robot (0.2 Pa) and what slipping wheels make of a climb within the time.
-constexpr double kNearer = 2.0;
-constexpr double kLeastPa = 0.5;
-// The weather at most, in sigmas.
-constexpr double kWeatherSigmas = 4.0;
-constexpr double kPa = 1e5;  // ln to pascals, nearly enough
+// Ratio of the robot's distances to the two stations at which it decides for the nearer one.
+constexpr double kNearerRatio = 2.0;
+// Smallest divergence for a decision: more than turbulence at the robot (0.2 Pa) and the error of slipping
+// wheels on a climb within the averaging time.
+constexpr double kLeastDivergencePa = 0.5;
+// Pressure per unit of ln p: sea-level pressure, accurate enough for the limits above.
+constexpr double kPaPerLog = 1e5;
 
 }  // namespace
 
@@ -52,7 +52,7 @@ void StationVote::close(std::int64_t stamp_ns, bool agree) {
   const auto known = [](const Sample& sample) { return std::isfinite(sample.robot_log); };
   broken_ = broken_ || !known(newest_);
   if (!agree) return;
-  // The smoothed difference lags: what counts as agreed begins some seconds before they parted.
+  // Keep several means: the smoothed difference lags, so the newest "agreeing" mean may include the drift.
   if (agreed_count_ == kKept) {
     std::move(agreed_.begin() + 1, agreed_.end(), agreed_.begin());
     --agreed_count_;
@@ -66,18 +66,18 @@ void StationVote::close(std::int64_t stamp_ns, bool agree) {
 int StationVote::wrong() const {
   if (agreed_count_ == 0 || !has_newest_) return -1;
   const Sample& before = agreed_.front();
-  const double first_pa = kPa * (newest_.first_log - before.first_log);
-  const double second_pa = kPa * (newest_.second_log - before.second_log);
-  if (std::abs(first_pa - second_pa) < kLeastPa) return -1;
+  const double first_pa = kPaPerLog * (newest_.first_log - before.first_log);
+  const double second_pa = kPaPerLog * (newest_.second_log - before.second_log);
+  if (std::abs(first_pa - second_pa) < kLeastDivergencePa) return -1;
   if (!broken_) {
-    const double robot_pa = kPa * (newest_.robot_log - before.robot_log);
+    const double robot_pa = kPaPerLog * (newest_.robot_log - before.robot_log);
     const double to_first_pa = std::abs(first_pa - robot_pa);
     const double to_second_pa = std::abs(second_pa - robot_pa);
-    if (to_first_pa > kNearer * to_second_pa) return 0;
-    if (to_second_pa > kNearer * to_first_pa) return 1;
+    if (to_first_pa > kNearerRatio * to_second_pa) return 0;
+    if (to_second_pa > kNearerRatio * to_first_pa) return 1;
   }
-  const double seconds = seconds_between(agreed_ns_, newest_ns_) + static_cast<double>(kKept) * kMeanS;
-  const double weather_pa = kWeatherSigmas * weather_sigma_pa(seconds);
+  const double elapsed_s = seconds_between(agreed_ns_, newest_ns_) + static_cast<double>(kKept) * kMeanS;
+  const double weather_pa = kLargestWeatherSigmas * weather_sigma_pa(elapsed_s);
   const bool first_too_fast = std::abs(first_pa) > weather_pa;
   const bool second_too_fast = std::abs(second_pa) > weather_pa;
   if (first_too_fast == second_too_fast) return -1;

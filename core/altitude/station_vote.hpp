@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two base stations have parted: which of them is wrong?
+// Vote on the wrong one of two diverging base stations.
 #pragma once
 
 #include <array>
@@ -8,27 +8,27 @@
 
 namespace isobar {
 
-/// Three barometers, of which at most one is wrong: two base stations and the robot's own, brought to one
-/// height by wheels and attitude. What two of them agree on has happened. Where the robot cannot say (no
-/// wheels, an elevator), a station is wrong that has moved faster than any weather.
+/// Majority vote of three barometers, of which at most one is wrong: two base stations and the robot's own,
+/// reduced to a common height by wheels and attitude. Without the robot's vote (no wheels, an elevator), a
+/// station that changes faster than any weather is wrong.
 class StationVote {
  public:
-  /// ln of the three pressures; the robot's is NaN where its height is not known.
+  /// ln of the three pressures [Pa]; the robot's is NaN where its height is unknown.
   struct Sample {
     double first_log = 0.0;
     double second_log = 0.0;
     double robot_log = 0.0;
   };
 
-  /// `agree`: the stations agree now; only what has happened since they last did counts.
+  /// `agree`: the stations agree at present; changes are counted from the last agreement on.
   void add(std::int64_t stamp_ns, const Sample& sample, bool agree);
   void restart();
 
-  /// 0 or 1; -1 where nobody can tell.
+  /// Index of the wrong station, 0 or 1; -1: undecided.
   [[nodiscard]] int wrong() const;
 
  private:
-  /// Means over a second or two.
+  /// Mean of the samples within the averaging time.
   struct Mean {
     double first_log = 0.0;
     double second_log = 0.0;
@@ -43,14 +43,14 @@ class StationVote {
   void close(std::int64_t stamp_ns, bool agree);
 
   Mean open_;
-  std::array<Sample, kKept> agreed_{};  // the last means while the stations agreed, oldest first
+  std::array<Sample, kKept> agreed_{};  // last means in agreement, oldest first
   std::size_t agreed_count_ = 0;
   Sample newest_;
   std::int64_t opened_ns_ = 0;
   std::int64_t agreed_ns_ = 0;
   std::int64_t newest_ns_ = 0;
   bool has_newest_ = false;
-  bool broken_ = false;  // the robot's height was not known all the time from agreed_ to newest_
+  bool broken_ = false;  // the robot's height was unknown at some time from agreed_ to newest_
 };
 
 }  // namespace isobar

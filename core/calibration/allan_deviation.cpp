@@ -11,19 +11,20 @@ namespace isobar {
 namespace {
 
 constexpr int kParts = 4;  // white, bias instability, walk, ramp
+// Points with a larger relative uncertainty are ignored: fewer than three independent clusters.
 constexpr double kUselessUncertainty = 0.5;
 
 using Parts = Eigen::Vector4d;  // squared coefficients
 
-/// What each squared coefficient adds to the squared deviation.
-Parts shares(const AllanPoint& point) {
+/// Regressors: contribution of each squared coefficient to the squared deviation.
+Parts regressors(const AllanPoint& point) {
   const auto m = static_cast<double>(point.samples);
   const double tau_s = point.tau_s;
   return {1.0 / tau_s, 2.0 * std::numbers::ln2 / std::numbers::pi,
           tau_s / m * (2.0 * m * m + 1.0) / (6.0 * m), 0.5 * tau_s * tau_s};
 }
 
-/// The best non-negative coefficients: with four of them every choice of which are zero can be tried.
+/// Non-negative least squares by exhaustive search over the 15 active sets.
 Parts fit_non_negative(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
   Parts best = Parts::Zero();
   double least = b.squaredNorm();
@@ -33,9 +34,9 @@ Parts fit_non_negative(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
       if ((mask & (1U << static_cast<unsigned>(part))) != 0) chosen.push_back(part);
     }
     if (static_cast<Eigen::Index>(chosen.size()) > A.rows()) continue;
-    const Eigen::MatrixXd some = A(Eigen::all, chosen);
-    const Eigen::VectorXd x = some.colPivHouseholderQr().solve(b);
-    const double rest = (some * x - b).squaredNorm();
+    const Eigen::MatrixXd active = A(Eigen::all, chosen);
+    const Eigen::VectorXd x = active.colPivHouseholderQr().solve(b);
+    const double rest = (active * x - b).squaredNorm();
     if (!x.allFinite() || x.minCoeff() < 0.0 || !(rest < least)) continue;
     least = rest;
     best.setZero();
@@ -50,7 +51,7 @@ std::vector<AllanPoint> overlapping_allan(std::span<const double> values, double
   const std::size_t count = values.size();
   std::vector<AllanPoint> points;
   if (count < 2) return points;
-  // Sums from the beginning, without the mean: hectopascals would cost the digits that matter.
+  // Cumulative sums of the deviations from the mean: sums of 1e5 Pa would lose the significant digits.
   std::vector<double> sums(count + 1, 0.0);
   double mean = 0.0;
   for (std::size_t i = 0; i < count; ++i) mean += (values[i] - mean) / static_cast<double>(i + 1);
@@ -83,12 +84,12 @@ AllanNoise identify_noise(std::span<const AllanPoint> points) {
   const auto rows = static_cast<Eigen::Index>(useful.size());
   Eigen::MatrixXd A(rows, kParts);
   Eigen::VectorXd b(rows);
-  // Residuals of the squared deviation as shares of itself: 2 u is the uncertainty of a square.
+  // Weighted by the relative uncertainty of the squared deviation, 2 u.
   for (Eigen::Index i = 0; i < rows; ++i) {
     const AllanPoint& point = useful[static_cast<std::size_t>(i)];
     const double variance = point.deviation * point.deviation;
     const double weight = 1.0 / (2.0 * point.uncertainty * variance);
-    A.row(i) = weight * shares(point).transpose();
+    A.row(i) = weight * regressors(point).transpose();
     b[i] = weight * variance;
   }
   const Parts squared = fit_non_negative(A, b);
@@ -98,7 +99,7 @@ AllanNoise identify_noise(std::span<const AllanPoint> points) {
 double modelled_deviation(const AllanNoise& noise, const AllanPoint& point) {
   const Parts squared(noise.white * noise.white, noise.bias_instability * noise.bias_instability,
                       noise.walk * noise.walk, noise.ramp * noise.ramp);
-  return std::sqrt(shares(point).dot(squared));
+  return std::sqrt(regressors(point).dot(squared));
 }
 
 }  // namespace isobar

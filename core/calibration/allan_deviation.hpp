@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What kinds of noise a still sensor has: overlapping Allan deviation and its decomposition.
+// Overlapping Allan deviation of a still sensor, and its decomposition into kinds of noise.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +8,12 @@
 
 namespace isobar {
 
-/// One averaging time.
+/// Allan deviation at one averaging time.
 struct AllanPoint {
-  std::size_t samples = 0;  ///< m, averaged together
+  std::size_t samples = 0;  ///< m, samples per mean
   double tau_s = 0.0;       ///< m times the sample interval
   double deviation = 0.0;   ///< in the signal's unit
-  /// 1 sigma of `deviation` as a share of it, 1 / sqrt(2 (N / m - 1)) (IEEE Std 952, annex C).
+  /// Relative standard deviation of `deviation`, 1 / sqrt(2 (N / m - 1)) (IEEE Std 952, annex C).
   double uncertainty = 0.0;
 };
 
@@ -23,7 +23,7 @@ struct AllanPoint {
 /// Empty for fewer than two samples.
 std::vector<AllanPoint> overlapping_allan(std::span<const double> values, double dt_s, int per_decade = 8);
 
-/// Coefficients of the parts that the deviation is made of; 0 where a part does not show.
+/// Coefficients of the kinds of noise; 0 where a kind is not detected.
 struct AllanNoise {
   double white = 0.0;             ///< N [unit sqrt(s)]: s = N / sqrt(tau), slope -1/2. Sigma of one sample is
                                   ///< N / sqrt(dt)
@@ -32,12 +32,12 @@ struct AllanNoise {
   double ramp = 0.0;              ///< R [unit / s]: s = R tau / sqrt(2), slope +1; weather's steady trend
 };
 
-/// Fits s^2 = sum of the four parts, none of them negative, by least squares weighted with each point's
-/// uncertainty. The walk is that of samples, not of a continuous signal: s^2 = K^2 dt (2 m^2 + 1) / (6 m).
-/// Points with an uncertainty above one half say nothing and are left out. Zero for no points.
+/// Fits s^2 = sum of the four kinds, none negative, by least squares weighted with each point's uncertainty.
+/// The random walk is discrete: s^2 = K^2 dt (2 m^2 + 1) / (6 m). Points with a relative uncertainty above
+/// one half are left out. All zero if there are no points.
 AllanNoise identify_noise(std::span<const AllanPoint> points);
 
-/// The deviation that `noise` makes at a point.
+/// Deviation of `noise` at the averaging time of a point.
 double modelled_deviation(const AllanNoise& noise, const AllanPoint& point);
 
 }  // namespace isobar

@@ -8,13 +8,14 @@
 #include <iterator>
 #include <numeric>
 
+#include "core/calibration/still_period.hpp"
 #include "core/errors.hpp"
 #include "core/statistics/distribution.hpp"
 
 namespace isobar {
 namespace {
 
-// Values nearer than this are the same number read twice, in whatever unit it was printed [Pa].
+// Largest difference of one value printed twice, in different units: rounding.
 constexpr double kSamePa = 1e-4;
 
 using Fold = std::span<const CalibrationPair>;
@@ -41,7 +42,7 @@ CalibratedRange range_of(std::span<const Fold> folds, std::size_t without = stat
   return range;
 }
 
-/// Middle and half of the range: u and v lie within -1 … 1, where powers are best told apart.
+/// Centre and half width of the range: u and v lie within -1 … 1, where powers are best conditioned.
 Compensation::Variables variables_for(const CalibratedRange& range) {
   const double half_pa = 0.5 * (range.highest_pa - range.lowest_pa);
   const double half_k = 0.5 * (range.highest_c - range.lowest_c);
@@ -49,7 +50,7 @@ Compensation::Variables variables_for(const CalibratedRange& range) {
           half_k > 0.0 ? half_k : 1.0};
 }
 
-/// Recordings, or stretches of the only one.
+/// Folds of the cross-validation: the recordings, or equal parts of a single one.
 std::vector<Fold> folds_of(std::span<const CalibrationRecording> recordings, const CalibrationLimits& limits,
                            std::string& sentence) {
   std::vector<Fold> folds;
@@ -58,7 +59,7 @@ std::vector<Fold> folds_of(std::span<const CalibrationRecording> recordings, con
   }
   if (folds.size() != 1) {
     sentence = "each of the " + std::to_string(folds.size()) +
-               " recordings is compensated by a fit to the others, and judged where those have been";
+               " recordings is compensated by a fit to the others, within the range that those cover";
     return folds;
   }
   const Fold all = folds.front();
@@ -69,8 +70,7 @@ std::vector<Fold> folds_of(std::span<const CalibrationRecording> recordings, con
     folds.push_back(all.subspan(begin, all.size() * (k + 1) / count - begin));
   }
   sentence = "there is one recording only: each of " + std::to_string(count) +
-             " stretches of time is compensated by a fit to the rest of it, which tells nothing about "
-             "another day";
+             " parts is compensated by a fit to the other parts; errors on another day may be larger";
   return folds;
 }
 
@@ -82,7 +82,7 @@ void require_a_reference(std::span<const Fold> folds, std::size_t least_pairs) {
   }
   if (differences.size() < std::max<std::size_t>(1, least_pairs)) {
     throw DataError("only " + std::to_string(differences.size()) +
-                    " samples of the sensor have a reference beside them, a calibration needs " +
+                    " samples of the sensor coincide with the reference, a calibration needs " +
                     std::to_string(least_pairs));
   }
   std::sort(differences.begin(), differences.end());
@@ -91,7 +91,7 @@ void require_a_reference(std::span<const Fold> folds, std::size_t least_pairs) {
   }
 }
 
-/// The samples of a fold within a range: what lies outside, no fit to the others could know.
+/// Samples of a fold within a range: outside, a fit to the other folds would extrapolate.
 std::vector<CalibrationPair> within(Fold fold, const CalibratedRange& range) {
   std::vector<CalibrationPair> inside;
   std::copy_if(fold.begin(), fold.end(), std::back_inserter(inside), [&range](const CalibrationPair& pair) {
@@ -113,11 +113,11 @@ std::string reason_to_leave_out(CompensationModel model, const CalibratedRange& 
                                 const DesignFactor::Solution& solution, const CalibrationLimits& limits) {
   const double span_k = range.highest_c - range.lowest_c;
   if (uses_temperature(model) && !(span_k >= limits.least_temperature_span_k)) {
-    return "temperature spans " + number(span_k, 1) + " K only, its terms need " +
+    return "the temperature spans only " + number(span_k, 1) + " K, temperature terms need " +
            number(limits.least_temperature_span_k, 0) + " K";
   }
   if (!(solution.condition_number <= limits.largest_condition_number)) {
-    return "its terms cannot be told apart in these data";
+    return "these data cannot separate its terms";
   }
   return {};
 }
@@ -132,7 +132,7 @@ std::vector<double> residuals_of(std::span<const Fold> folds, const Compensation
   return residuals;
 }
 
-/// Returns the weight of each fold: its share of the samples that could be judged.
+/// Fills the cross-validated figures of `models`; returns the weight of each fold, its share of the samples.
 std::vector<double> cross_validate(std::span<const Fold> folds, std::span<const DesignFactor> factors,
                                    const Compensation::Variables& variables,
                                    std::vector<ModelResult>& models) {
@@ -167,44 +167,45 @@ void warn_of_narrow_spans(Calibration& calibration, const CalibrationLimits& lim
   const double span_pa = range.highest_pa - range.lowest_pa;
   if (span_k == 0.0) {
     calibration.warnings.emplace_back(
-        "the sensor has no temperature, or only one: what another does is not known");
+        "the sensor has no temperature, or only one: the effect of another temperature is unknown");
   } else if (span_k < limits.narrow_temperature_span_k) {
-    calibration.warnings.push_back("the temperature spans " + number(span_k, 1) + " K only (" +
+    calibration.warnings.push_back("the temperature spans only " + number(span_k, 1) + " K (" +
                                    number(range.lowest_c, 1) + " … " + number(range.highest_c, 1) +
-                                   " degC): outside of it the correction of its end is used");
+                                   " degC): outside, the correction at the nearest end is used");
   }
   if (span_pa < limits.narrow_pressure_span_pa) {
-    calibration.warnings.push_back("the pressure spans " + number(0.01 * span_pa, 1) + " hPa only (" +
+    calibration.warnings.push_back("the pressure spans only " + number(0.01 * span_pa, 1) + " hPa (" +
                                    number(0.01 * range.lowest_pa, 1) + " … " +
                                    number(0.01 * range.highest_pa, 1) +
-                                   " hPa): outside of it the correction of its end is used");
+                                   " hPa): outside, the correction at the nearest end is used");
   }
 }
 
-std::string spoken_name(CompensationModel model) {
-  return model == CompensationModel::kNone ? "the sensor as it is" : model_name(model);
+std::string name_in_text(CompensationModel model) {
+  return model == CompensationModel::kNone ? "the uncompensated sensor"
+                                           : std::string(kCompensationModelNames.name(model));
 }
 
 std::string reason_for(const std::vector<ModelResult>& models, std::size_t chosen, double least_gain) {
   const auto better = [](const ModelResult& a, const ModelResult& b) {
-    // NaN, a model that was left out, is never better.
+    // NaN (a model that was left out) is never better.
     return a.cross_validated_rms_pa < b.cross_validated_rms_pa || std::isnan(b.cross_validated_rms_pa);
   };
   const ModelResult& pick = models[chosen];
   const ModelResult& best = *std::min_element(models.begin(), models.end(), better);
   const auto error = [](const ModelResult& model) { return number(model.cross_validated_rms_pa, 2) + " Pa"; };
-  std::string text = spoken_name(pick.model) + ": on data it was not fitted to it errs by " + error(pick);
+  std::string text = name_in_text(pick.model) + ": its cross-validated error is " + error(pick);
   if (&pick == &best) {
-    text += " rms, the least of all";
+    text += " rms, the smallest of all";
   } else {
-    text += " rms; the least is " + error(best) + " of " + spoken_name(best.model) +
-            ", which is within one standard error or " + number(100.0 * least_gain, 0) +
-            " % and has more coefficients";
+    text += " rms; the smallest is " + error(best) + " of " + name_in_text(best.model) +
+            ", better by less than one standard error or " + number(100.0 * least_gain, 0) +
+            " % and with more coefficients";
   }
   const auto simpler_end = models.begin() + static_cast<std::ptrdiff_t>(chosen);
   const auto simpler = std::min_element(models.begin(), simpler_end, better);
   if (simpler != simpler_end && simpler->left_out.empty()) {
-    text += "; of the simpler ones " + spoken_name(simpler->model) + " errs least, by " + error(*simpler);
+    text += "; the best simpler one is " + name_in_text(simpler->model) + " with " + error(*simpler);
   }
   return text;
 }
@@ -248,10 +249,10 @@ CompensationConfig Calibration::config(CompensationModel which) const {
   CompensationConfig config;
   config.model = which;
   config.range = range;
-  config.sigma_pa = white_noise_pa(result.residuals_pa);
+  config.sigma_pa = robust_sigma(result.residuals_pa);
   const Compensation::Variables& variables = result.compensation.variables();
-  config.pressure_centre_pa = variables.pressure_centre;
-  config.pressure_scale_pa = variables.pressure_scale;
+  config.pressure_centre_pa = variables.pressure_centre_pa;
+  config.pressure_scale_pa = variables.pressure_scale_pa;
   config.temperature_centre_c = variables.temperature_centre_c;
   config.temperature_scale_c = variables.temperature_scale_c;
   if (which == CompensationModel::kNone) return config;
@@ -274,7 +275,7 @@ Calibration calibrate(std::span<const CalibrationRecording> recordings, const Ca
     all.add(factors.back());
   }
   calibration.pair_count = all.count();
-  for (const CompensationModel model : kCompensationModels) {
+  for (const auto& [model, name] : kCompensationModelNames.entries) {
     const auto solution = all.solve(free_coefficients(model));
     ModelResult result;
     result.model = model;

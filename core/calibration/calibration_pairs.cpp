@@ -4,19 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/stamp.hpp"
 #include "core/statistics/distribution.hpp"
 
 namespace isobar {
 namespace {
 
+// Spike: deviation from the median above this many median absolute deviations, far beyond any noise.
 constexpr double kSpikeDeviations = 20.0;
-// Less than this no spike needs to be: temperature moves poor sensors as far.
+// Smallest deviation of a spike: temperature moves poor sensors as far.
 constexpr double kLeastSpikePa = 200.0;
 
 double median_interval_s(std::span<const PressureSample> samples) {
   std::vector<double> intervals_s;
   for (std::size_t k = 1; k < samples.size(); ++k) {
-    intervals_s.push_back(1e-9 * static_cast<double>(samples[k].stamp_ns - samples[k - 1].stamp_ns));
+    intervals_s.push_back(seconds_between(samples[k - 1].stamp_ns, samples[k].stamp_ns));
   }
   return intervals_s.empty() ? 0.0 : median(std::move(intervals_s));
 }

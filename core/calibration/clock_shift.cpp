@@ -8,23 +8,27 @@
 namespace isobar {
 namespace {
 
+// Number of compared changes: fewer give no significant correlation, more only cost time.
 constexpr std::size_t kLeastChanges = 40;
 constexpr double kMostChanges = 6'000.0;
-// A mean over one interval is the quieter the further its ends are from samples: the search would prefer
-// shifts of half an interval. Over four intervals the noise differs by 2 %.
+// Shortest averaging time, in sample intervals. The noise of a mean over one interval depends on where its
+// ends lie between samples, which would favour shifts of half an interval; over four intervals it varies by 2
+// %.
 constexpr double kLeastIntervals = 4.0;
-// In standard deviations of Fisher's z: a peak below the first is chance among thousands of shifts; peaks
-// nearer to each other than the second might be in the other order without the noise (each has one, the
-// difference 1.4).
+// Smallest score of a peak, in standard deviations of Fisher's z: below, it is chance among thousands of
+// shifts.
 constexpr double kLeastScore = 6.0;
+// Smallest lead over the next peak, in the same unit: the difference of two scores has a standard deviation
+// of 1.4.
 constexpr double kLeastLead = 4.0;
 
+/// Change of pressure over the time scale of a comparison.
 struct Change {
   double time_s = 0.0;
   double pressure_pa = 0.0;
 };
 
-/// Sums for the correlation of pairs.
+/// Pearson correlation of pairs, from running sums.
 class Correlation {
  public:
   void add(double x, double y) {
@@ -50,7 +54,7 @@ class Correlation {
   double sxy_ = 0.0;
 };
 
-/// Changes of both pressures over `scale_s`, and how alike they are at a shift.
+/// Changes of both pressures over `scale_s`, and their correlation at a shift.
 class Comparison {
  public:
   Comparison(std::span<const PressureSeries> sensor, const PressureSeries& reference, double scale_s)
@@ -68,16 +72,17 @@ class Comparison {
 
   [[nodiscard]] std::size_t size() const { return changes_.size(); }
   [[nodiscard]] double scale_s() const { return scale_s_; }
-  /// Half the scale: no peak is so narrow that it hides between two steps.
+  /// Step of the search: peaks are as wide as the scale, so half of it misses none.
   [[nodiscard]] double step_s() const { return 0.5 * scale_s_; }
 
-  /// 0 where fewer than half of the changes have a counterpart. `used` gets how many have.
+  /// Correlation at a shift; 0 if fewer than half of the changes have a counterpart. `used`: number that
+  /// have.
   double correlation(double shift_s, double& used) const {
     return correlation_of([&](const Change& change) { return reference_change_pa(change.time_s + shift_s); },
                           used);
   }
 
-  /// The same to within half a step of the shift, in a fraction of the time.
+  /// Faster approximation: the shift of each change is rounded to whole steps.
   double rough_correlation(double shift_s, double& used) const {
     const auto count = static_cast<double>(reference_changes_pa_.size());
     return correlation_of(
@@ -113,11 +118,12 @@ class Comparison {
   std::vector<double> reference_changes_pa_;
 };
 
-/// Fisher's transformation, in its standard deviations.
+/// Fisher's z of a correlation of `used` pairs, in its standard deviations.
 double score(double correlation, double used) {
   return std::atanh(std::clamp(correlation, -0.999999, 0.999999)) * std::sqrt(std::max(1.0, used - 3.0));
 }
 
+/// Correlation at all shifts of the search.
 struct ShiftScan {
   std::vector<double> shifts_s;
   std::vector<double> correlations;
@@ -140,7 +146,7 @@ ShiftScan scan_of(const Comparison& comparison, const ShiftSearch& search) {
   return scan;
 }
 
-/// Index of the best outside of the peak; scan.best if all belongs to the peak.
+/// Index of the best shift outside the peak (bounded by half its correlation); scan.best if there is none.
 std::size_t next_best(const ShiftScan& scan) {
   const double half = 0.5 * scan.correlations[scan.best];
   std::size_t left = scan.best;
@@ -155,12 +161,13 @@ std::size_t next_best(const ShiftScan& scan) {
   return found;
 }
 
+/// Lead in score of the peak over the next best shift.
 double lead(const ShiftScan& scan) {
   const std::size_t next = next_best(scan);
   return next == scan.best ? 0.0 : scan.scores[scan.best] - std::max(0.0, scan.scores[next]);
 }
 
-/// Golden-section search between the neighbours of the best; then the parabola there for the uncertainty.
+/// Golden-section search around the best shift; uncertainty from the curvature of the peak.
 void refine(const Comparison& comparison, const ShiftScan& scan, ClockShift& result) {
   constexpr double kGolden = 0.6180339887498949;
   const double step_s = comparison.step_s();
@@ -194,19 +201,19 @@ void refine(const Comparison& comparison, const ShiftScan& scan, ClockShift& res
   const double curvature = (2.0 * r - r_left - r_right) / (step_s * step_s);
   (void)comparison.correlation(result.shift_s, used);
   result.changes = static_cast<std::size_t>(used);
-  // The log-likelihood -n/2 ln(1 - r^2) falls by a half within one standard deviation.
+  // The log-likelihood -n/2 ln(1 - r^2) drops by 1/2 at one standard deviation.
   result.sigma_s = curvature > 0.0 ? std::sqrt((1.0 - r * r) / (used * r * curvature))
                                    : std::numeric_limits<double>::infinity();
 }
 
 std::string doubt_of(const ShiftScan& scan) {
-  if (!(scan.scores[scan.best] >= kLeastScore)) return "no shift makes the two logs alike";
+  if (!(scan.scores[scan.best] >= kLeastScore)) return "the two logs do not correlate at any shift";
   if (scan.best == 0 || scan.best + 1 == scan.shifts_s.size()) {
-    return "the likeness still grows where the search ends";
+    return "the correlation peaks at the end of the search window";
   }
   const std::size_t next = next_best(scan);
-  if (next == scan.best) return "the logs are alike at every shift";
-  if (lead(scan) < kLeastLead) return "two shifts make the logs alike";
+  if (next == scan.best) return "the logs correlate equally at every shift";
+  if (lead(scan) < kLeastLead) return "the logs correlate almost equally at two shifts";
   return {};
 }
 
@@ -252,7 +259,7 @@ ClockShift find_clock_shift(std::span<const PressureSeries> sensor, const Pressu
     if (comparison.size() < kLeastChanges) break;
     const ShiftScan scan = scan_of(comparison, search);
     const ClockShift candidate = shift_of(comparison, scan);
-    // The sharpest of those that can be believed; of those that cannot, the one that came nearest to it.
+    // The sharpest credible peak; if no peak is credible, the one with the largest lead.
     const bool is_better = candidate.doubt.empty()
                                ? !result.doubt.empty() || candidate.sigma_s < result.sigma_s
                                : !result.doubt.empty() && lead(scan) > largest_lead;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds how two loggers' clocks differ from the weather that both have measured.
+// Difference of two loggers' clocks from the weather that both measured.
 #pragma once
 
 #include <cstddef>
@@ -11,28 +11,30 @@
 
 namespace isobar {
 
+/// Range of the search: centre_s ± window_s.
 struct ShiftSearch {
-  double window_s = 6.0 * 3600.0;  ///< shifts up to this are tried, both ways; covers a wrong time zone
-  double centre_s = 0.0;           ///< about this shift
+  double window_s = 6.0 * 3600.0;  ///< 6 h cover most wrong time zones
+  double centre_s = 0.0;
 };
 
+/// Result of the search.
 struct ClockShift {
   double shift_s = 0.0;  ///< reference's time = sensor's time + shift
-  double sigma_s =
-      0.0;  ///< 1 sigma of it for white noise; slow errors of sensors make it two to three times that
+  /// Standard deviation of shift_s for white noise; slow sensor errors make it two to three times larger.
+  double sigma_s = 0.0;
   double correlation = 0.0;  ///< of the changes of pressure at that shift
-  /// The best shift that is no part of the same peak: apart from it by a place with half its correlation.
+  /// Best shift outside the peak, separated from it by a point with half its correlation.
   double next_best_shift_s = std::numeric_limits<double>::quiet_NaN();
   double next_best_correlation = 0.0;
-  double scale_s = 0.0;     ///< pressures were averaged over this time before their changes were compared
-  std::size_t changes = 0;  ///< how many were
-  std::string doubt;        ///< why the shift cannot be believed; empty: it can
+  double scale_s = 0.0;     ///< averaging time of the compared changes
+  std::size_t changes = 0;  ///< number of compared changes
+  std::string doubt;        ///< reason why the shift is not credible; empty: it is
 };
 
-/// The shift at which changes of the sensor's pressure are most like changes of the reference's. Changes,
-/// because a sensor's slow errors (temperature) must not count; over several lengths of time, because weather
-/// is slow where sensors are noisy: of those whose peak is clear, the one with the sharpest is taken. All
-/// sensor series belong to the same clock.
+/// Shift that maximises the correlation of the sensor's and the reference's changes of pressure. Changes
+/// instead of pressures remove a sensor's slow errors (temperature). Several time scales are tried, since
+/// weather is slow and sensors are noisy; of the scales with a credible peak the sharpest wins. All sensor
+/// series must share one clock.
 ClockShift find_clock_shift(std::span<const PressureSeries> sensor, const PressureSeries& reference,
                             const ShiftSearch& search = {});
 

@@ -10,8 +10,10 @@
 namespace isobar {
 namespace {
 
+// Rows factored at a time: bounds the memory.
 constexpr std::size_t kBlockRows = 1024;
-// Singular values below this share of the largest are rounding of a sum of squares over a million rows.
+// Smallest singular value relative to the largest: below it is rounding error accumulated over a million
+// rows.
 constexpr double kRankTolerance = 1e-10;
 
 }  // namespace
@@ -32,7 +34,7 @@ void DesignFactor::add(std::span<const CalibrationPair> pairs) {
     rows.resize(static_cast<Eigen::Index>(block.size()), kColumns);
     for (std::size_t k = 0; k < block.size(); ++k) {
       const auto row = static_cast<Eigen::Index>(k);
-      const double u = (block[k].pressure_pa - variables_.pressure_centre) / variables_.pressure_scale;
+      const double u = (block[k].pressure_pa - variables_.pressure_centre_pa) / variables_.pressure_scale_pa;
       const double v =
           (block[k].temperature_c - variables_.temperature_centre_c) / variables_.temperature_scale_c;
       double power_of_u = 1.0;
@@ -71,9 +73,9 @@ DesignFactor::Solution DesignFactor::solve(CompensationMask mask) const {
                                     ? svd.singularValues()(0) / svd.singularValues()(count - 1)
                                     : std::numeric_limits<double>::infinity();
   }
-  // From the correction to the pressure: p_raw = centre + scale u.
-  centred(0, 0) += variables_.pressure_centre;
-  centred(1, 0) += variables_.pressure_scale;
+  // p_cal = p_raw + correction, with p_raw = centre + scale u.
+  centred(0, 0) += variables_.pressure_centre_pa;
+  centred(1, 0) += variables_.pressure_scale_pa;
   solution.compensation = Compensation(centred, variables_);
   return solution;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Least squares for the coefficients of a compensation, over any number of samples in fixed memory.
+// Incremental least squares for the coefficients of a compensation, in fixed memory.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,40 +10,41 @@
 
 namespace isobar {
 
-/// A sensor beside a reference at one moment.
+/// Simultaneous values of a sensor and a reference.
 struct CalibrationPair {
   double reference_pa = 0.0;
   double pressure_pa = 0.0;  ///< of the sensor
   double temperature_c = 0.0;
 };
 
-/// The triangular factor of all samples' rows u^i v^j beside their corrections (reference - sensor).
-/// Householder QR of one block after the other gives the factor of the whole, without squaring the condition
-/// number as normal equations do; and the columns that a mask names in it are the factor of that model. So
-/// one pass over the data serves all models, and factors of recordings add up to that of any choice of them.
+/// Triangular QR factor R of the design matrix: a row u^i v^j per sample, augmented by its correction
+/// (reference
+/// - sensor). Updated block by block with Householder reflections, which do not square the condition number
+/// as normal equations do. The columns of R selected by a mask are the factor of that model, so one pass over
+/// the data serves all models; factors of several recordings combine to the factor of their union.
 class DesignFactor {
  public:
   explicit DesignFactor(const Compensation::Variables& variables);
 
   void add(std::span<const CalibrationPair> pairs);
-  /// `other` must have the same variables.
+  /// Adds the samples of `other`, which must have the same variables.
   void add(const DesignFactor& other);
 
   struct Solution {
     Compensation compensation;
-    int rank = 0;  ///< below the number of coefficients: the data cannot tell some of them apart
-    /// Largest over smallest singular value of the design matrix in u and v; infinite where rank is short.
+    int rank = 0;  ///< below the number of coefficients if the data cannot separate them
+    /// Condition number of the design matrix in u and v; infinite if rank-deficient.
     double condition_number = 1.0;
   };
 
-  /// The coefficients in `mask` that fit best (of least norm where there is a choice); all others zero. An
-  /// empty mask gives the sensor as it is.
+  /// Least-squares coefficients in `mask` (minimum norm if rank-deficient), all others zero. An empty mask
+  /// gives the identity.
   [[nodiscard]] Solution solve(CompensationMask mask) const;
 
   [[nodiscard]] std::size_t count() const { return count_; }
 
  private:
-  static constexpr int kColumns = 17;  // sixteen powers, and the correction
+  static constexpr int kColumns = 17;  // sixteen products of powers, and the correction
   void fold(const Eigen::MatrixXd& rows);
 
   Compensation::Variables variables_;

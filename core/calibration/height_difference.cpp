@@ -7,12 +7,13 @@
 #include "core/altitude/hypsometry.hpp"
 #include "core/altitude/pressure_filter.hpp"
 #include "core/calibration/still_period.hpp"
+#include "core/squared.hpp"
 #include "core/stamp.hpp"
 
 namespace isobar {
 namespace {
 
-/// Linear between the samples, held beyond them.
+/// Linear interpolation, constant beyond the ends.
 double interpolated(const FilteredPressure& series, std::int64_t stamp_ns) {
   const auto after = std::lower_bound(series.stamps_ns.begin(), series.stamps_ns.end(), stamp_ns);
   const auto i = static_cast<std::size_t>(after - series.stamps_ns.begin());
@@ -34,19 +35,19 @@ FilteredPressure filter_log(std::span<const PressureSample> log, double lag_s) {
   out.interval_s =
       seconds_between(log.front().stamp_ns, log.back().stamp_ns) / static_cast<double>(log.size() - 1);
   if (lag_s > 0.0 && out.sigma_pa > 0.0) out.design = design_for_lag(out.sigma_pa, out.interval_s, lag_s);
-  const bool as_it_is = out.design.gain >= 1.0;
+  const bool unfiltered = out.design.gain >= 1.0;
   PressureFilter filter(out.design.walk_pa_sqrt_s);
   std::int64_t before_ns = log.front().stamp_ns;
   for (const PressureSample& sample : log) {
     double pressure_pa = sample.pressure_pa;
     std::int64_t stamp_ns = sample.stamp_ns;
-    if (!as_it_is) {
-      filter.add(pressure_pa, seconds_between(before_ns, stamp_ns), out.sigma_pa * out.sigma_pa);
+    if (!unfiltered) {
+      filter.add(pressure_pa, seconds_between(before_ns, stamp_ns), squared(out.sigma_pa));
       before_ns = stamp_ns;
       pressure_pa = filter.pressure_pa();
       stamp_ns -= std::llround(1e9 * filter.delay_s());
     }
-    // While the filter fills its memory an output may be as old as the one before: the better one stays.
+    // While the filter fills its memory the delay grows, so stamps may repeat: keep the later output.
     if (!out.stamps_ns.empty() && stamp_ns <= out.stamps_ns.back()) {
       out.pressures_pa.back() = pressure_pa;
       continue;

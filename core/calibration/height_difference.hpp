@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Heights of one barometer above another from their logs, raw and through equal low-passes. For work after
-// the fact; the pipeline's stream is DifferentialAltimeter.
+// Height of one barometer above another from their logs, raw or low-passed. Offline counterpart of
+// DifferentialAltimeter.
 #pragma once
 
 #include <cstdint>
@@ -12,28 +12,28 @@
 
 namespace isobar {
 
+/// Heights over time.
 struct HeightSeries {
-  std::vector<std::int64_t> stamps_ns;  ///< when each height was, the filters' delay taken off
-  std::vector<double> heights_m;        ///< moved above standing; the sensors' offset is in it
+  std::vector<std::int64_t> stamps_ns;  ///< of each height, corrected for the filters' delay
+  std::vector<double> heights_m;        ///< moved above standing; includes the sensors' offset
 };
 
-/// One sensor's log through PressureFilter. Each output has the stamp of its own time: that of the sample
-/// less the filter's delay.
+/// One sensor's log after PressureFilter. Stamps are those of the samples minus the filter's delay.
 struct FilteredPressure {
   std::vector<std::int64_t> stamps_ns;
   std::vector<double> pressures_pa;
-  FilterDesign design;      ///< in steady state; a gain of 1 where nothing was to be filtered
-  double sigma_pa = 0.0;    ///< white noise of a sample, as it was measured in the log itself
+  FilterDesign design;      ///< steady state; a gain of 1 if unfiltered
+  double sigma_pa = 0.0;    ///< white noise of a sample, estimated from the log
   double interval_s = 0.0;  ///< mean time between samples
 };
 
-/// `lag_s` 0: the samples as they are. Stamps must ascend, at least two samples. For a base of one row a
-/// minute see weather_smoother.hpp.
+/// Filters a log with lag `lag_s` [s]; 0: unfiltered. At least two samples, stamps ascending. For a station
+/// with one row a minute see weather_smoother.hpp.
 FilteredPressure filter_log(std::span<const PressureSample> log, double lag_s);
 
-/// dz = (R T / g) ln(standing / moved) at every sample of `moved`; the standing pressure is interpolated
-/// between its neighbours and held before the first and after the last. With equal lags weather and drafts
-/// that reach both sensors cancel, whatever their speed.
+/// Hypsometric equation dz = (R T / g) ln(standing / moved) at every sample of `moved`; the standing pressure
+/// is interpolated linearly and held beyond its ends. With equal lags, weather and drafts common to both
+/// sensors cancel at any frequency.
 HeightSeries height_difference(const FilteredPressure& moved, const FilteredPressure& standing,
                                double air_temperature_k);
 

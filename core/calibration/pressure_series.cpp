@@ -10,7 +10,7 @@ namespace isobar {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-// A logger that loses a few samples has no gap that weather could hide in.
+// Shortest gap, in median intervals: a few lost samples hide no weather.
 constexpr double kGapIntervals = 5.0;
 
 }  // namespace
@@ -23,9 +23,7 @@ PressureSeries::PressureSeries(const std::vector<std::int64_t>& stamps_ns, std::
     times_s_.push_back(time_s(stamp_ns));
     if (times_s_.size() > 1) intervals.push_back(times_s_.back() - times_s_[times_s_.size() - 2]);
   }
-  std::vector<double> ascending = intervals;
-  std::sort(ascending.begin(), ascending.end());
-  if (!ascending.empty()) interval_s_ = quantile(ascending, 0.5);
+  if (!intervals.empty()) interval_s_ = median(intervals);
   const double longest_s = max_gap_s > 0.0 ? max_gap_s : kGapIntervals * interval_s_;
   integral_pa_s_.assign(times_s_.size(), 0.0);
   gaps_before_.assign(times_s_.size(), 0);

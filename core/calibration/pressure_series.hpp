@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Interpolated pressure log.
 #pragma once
 
 #include <cstddef>
@@ -7,20 +8,19 @@
 
 namespace isobar {
 
-/// A logged pressure as a function of time: linear between samples, none across gaps. For work after the
-/// fact.
+/// A logged pressure as a function of time: linear between samples, undefined across gaps. For offline use.
 class PressureSeries {
  public:
-  /// Stamps must ascend. Samples further apart than `max_gap_s`, or if that is 0 than five times the median
-  /// interval, have a gap between them.
+  /// Stamps must ascend. Samples further apart than `max_gap_s` have a gap between them; 0: five times the
+  /// median interval.
   PressureSeries(const std::vector<std::int64_t>& stamps_ns, std::vector<double> pressures_pa,
                  double max_gap_s = 0.0);
 
-  /// Mean over `width_s` about a moment, in a closed form; width 0 is the value there. NaN where the span
-  /// reaches beyond the samples or touches a gap.
+  /// Mean over `width_s` centred at `time_s`, in closed form; width 0: the value there. NaN if the window
+  /// reaches beyond the samples or into a gap.
   [[nodiscard]] double mean_pa(double time_s, double width_s) const;
 
-  /// Time of a stamp as mean_pa() counts it: since 1970, or whatever the stamps count from [s].
+  /// Time of a stamp for mean_pa() [s], from the same epoch as the stamps.
   [[nodiscard]] static double time_s(std::int64_t stamp_ns) { return 1e-9 * static_cast<double>(stamp_ns); }
 
   [[nodiscard]] std::size_t size() const { return times_s_.size(); }
@@ -30,16 +30,16 @@ class PressureSeries {
   [[nodiscard]] double interval_s() const { return interval_s_; }
 
  private:
-  /// Samples [index, index + 1] around a moment.
+  /// Index of the sample that begins the segment around a time.
   [[nodiscard]] std::size_t segment(double time_s) const;
   [[nodiscard]] double value_at(std::size_t segment, double time_s) const;
-  /// Integral of pressure less the first from the first sample to a moment in that segment.
+  /// Integral of (pressure - first pressure) from the first sample to a time within that segment.
   [[nodiscard]] double integral_to(std::size_t segment, double time_s) const;
 
   std::vector<double> times_s_;
   std::vector<double> pressures_pa_;
   std::vector<double> integral_pa_s_;
-  std::vector<std::size_t> gaps_before_;  // segments of [0, k) that are gaps
+  std::vector<std::size_t> gaps_before_;  // number of gaps among segments [0, k)
   double interval_s_ = 0.0;
 };
 

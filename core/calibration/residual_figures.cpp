@@ -30,15 +30,4 @@ ResidualFigures residual_figures(std::span<const double> residuals_pa) {
   return figures;
 }
 
-double white_noise_pa(std::span<const double> residuals_pa) {
-  constexpr double kMedianOfAbsNormal = 0.6744897501960817;
-  std::vector<double> differences;
-  for (std::size_t k = 2; k < residuals_pa.size(); ++k) {
-    differences.push_back(std::abs(residuals_pa[k] - 2.0 * residuals_pa[k - 1] + residuals_pa[k - 2]));
-  }
-  if (differences.empty()) return 0.0;
-  std::sort(differences.begin(), differences.end());
-  return quantile(differences, 0.5) / kMedianOfAbsNormal / std::sqrt(6.0);
-}
-
 }  // namespace isobar

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one pressure sensor is worth, from a series of its samples.
+// Noise of one pressure sensor, from a series of its samples.
 #pragma once
 
 #include <span>
@@ -10,26 +10,26 @@
 
 namespace isobar {
 
+/// Noise figures of a still sensor.
 struct SensorNoise {
-  /// Mean time between samples [s]: where a repeated value was left out here and there, averaging times are
-  /// right on average.
+  /// Mean time between samples [s]: correct on average where repeated values were removed.
   double interval_s = 0.0;
-  StillPeriod still;  ///< what the rest is from
-  /// White noise of one sample [Pa], from second differences: drift and motion do not count, noise that one
-  /// sample shares with the next does not either (a filter inside the chip makes this too small: compare
-  /// with `parts.white`).
+  StillPeriod still;  ///< samples that the figures are from
+  /// White noise of one sample [Pa], from second differences: excludes drift and motion, but also noise
+  /// correlated from sample to sample (a filter inside the chip makes it too small: compare with
+  /// parts.white).
   double sigma_pa = 0.0;
   std::vector<AllanPoint> allan;  ///< overlapping Allan deviation [Pa]
   AllanNoise parts;
-  /// Sigma of one sample that has the white part of the Allan deviation [Pa].
+  /// Standard deviation of one sample for the white part of the Allan deviation [Pa].
   [[nodiscard]] double allan_sigma_pa() const;
 };
 
-/// Studies the longest still period of a series without repeats, stamps ascending [s]. Samples count as
-/// equally spaced. `still.count()` is 0 where nothing was still for ten seconds, and the rest is empty.
+/// Noise in the longest still period of a series without repeats; times ascending [s], samples taken as
+/// equally spaced. Empty, with still.count() 0, if there is no still period of ten seconds.
 SensorNoise study_noise(std::span<const double> times_s, std::span<const double> pressures_pa);
 
-/// The same, of all of a series that is known to be still.
+/// Noise of a whole series that is known to be still.
 SensorNoise study_still_noise(std::span<const double> times_s, std::span<const double> pressures_pa);
 
 }  // namespace isobar

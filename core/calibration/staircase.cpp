@@ -11,7 +11,7 @@ namespace isobar {
 
 namespace {
 
-/// Samples of a track within a span of time.
+/// Index range [first, last) of the samples within [begin_s, end_s).
 std::pair<std::size_t, std::size_t> samples_within(const HeightTrack& track, double begin_s, double end_s) {
   const auto at = [&](double time_s) {
     return static_cast<std::size_t>(std::lower_bound(track.times_s.begin(), track.times_s.end(), time_s) -

@@ -12,14 +12,18 @@ namespace isobar {
 
 namespace {
 
+// Averaging time of a block, and the largest number of blocks: bounds the time of the search.
 constexpr double kBlockS = 0.25;
 constexpr double kMaxBlocks = 4000.0;
+// Time constant of the drift estimate: drift is slower than steps.
 constexpr double kDriftMemoryS = 60.0;
-constexpr double kFurthest = 2.0;  // steps off that still count: a door is no staircase
-constexpr int kMaxLevels = 60;     // above and below the first
-constexpr double kNever = std::numeric_limits<double>::infinity();
+// Deviation at which the cost saturates: a door must not look like a staircase.
+constexpr double kLargestDeviationSteps = 2.0;
+// Levels above and below the first: bounds the memory.
+constexpr int kMaxLevels = 60;
+constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 
-/// The track as short means, heights in steps.
+/// Track averaged over blocks, heights in steps.
 struct Blocks {
   std::vector<double> begins_s;
   std::vector<double> levels;
@@ -44,7 +48,7 @@ Blocks blocks_of(const HeightTrack& track, double step_m) {
   return blocks;
 }
 
-/// Density of the white noise, in squared steps times seconds.
+/// Density of the white noise [steps^2 s].
 double noise_density(const HeightTrack& track, double step_m) {
   const double sigma = robust_sigma(track.heights_m) / step_m;
   const double span_s = track.times_s.back() - track.times_s.front();
@@ -54,7 +58,7 @@ double noise_density(const HeightTrack& track, double step_m) {
 /// A sequence of levels.
 struct Sequence {
   std::vector<std::size_t> changes;  // blocks at which a new level begins
-  double misfit = 0.0;               // what it costs, steps not counted
+  double misfit = 0.0;               // cost without the penalties
 };
 
 enum class Direction : std::uint8_t { kUp, kDown, kEither };
@@ -82,7 +86,7 @@ class Viterbi {
       for (int level = 0; level < levels_; ++level) {
         for (int age = 0; age < ages_; ++age) {
           const State& state = now[index(level, age)];
-          if (state.cost == kNever) continue;
+          if (state.cost == kUnreachable) continue;
           offer(next, k, index(level, std::min(age + 1, ages_ - 1)), state, index(level, age), 0.0);
           if (age < ages_ - 1) continue;
           if (level > 0 && direction_ != Direction::kUp)
@@ -99,8 +103,8 @@ class Viterbi {
 
  private:
   struct State {
-    double cost = kNever;
-    double drift = 0.0;  // what the first level reads now, in steps
+    double cost = kUnreachable;
+    double drift = 0.0;  // present reading of the first level [steps]
   };
 
   [[nodiscard]] std::size_t states() const {
@@ -117,16 +121,16 @@ class Viterbi {
     came_from_[k * states() + to] = static_cast<std::int32_t>(from);
   }
 
-  /// Charges every state for how far block k is from it, and lets its drift follow.
+  /// Adds the deviation of block k to the cost of every state and updates its drift.
   void measure(std::vector<State>& next, std::size_t k) const {
     const double follow = std::max(1.0 / (static_cast<double>(k) + 1.0), blocks_.length_s / kDriftMemoryS);
     for (int level = 0; level < levels_; ++level) {
       for (int age = 0; age < ages_; ++age) {
         State& state = next[index(level, age)];
-        if (state.cost == kNever) continue;
+        if (state.cost == kUnreachable) continue;
         const double off = blocks_.levels[k] - (level - below_) - state.drift;
-        state.cost += blocks_.length_s * std::min(off * off, kFurthest * kFurthest);
-        state.drift += follow * std::clamp(off, -kFurthest, kFurthest);
+        state.cost += blocks_.length_s * std::min(off * off, kLargestDeviationSteps * kLargestDeviationSteps);
+        state.drift += follow * std::clamp(off, -kLargestDeviationSteps, kLargestDeviationSteps);
       }
     }
   }
@@ -154,10 +158,10 @@ class Viterbi {
   int ages_;
   int below_ = 0;
   int levels_ = 1;
-  std::vector<std::int32_t> came_from_;  // of each block and state, the state before
+  std::vector<std::int32_t> came_from_;  // predecessor of each block and state
 };
 
-/// Lets the penalty go up and down by factors until the number of steps comes out, or is as near as it comes.
+/// Bisection of the penalty (geometric) for a sequence with the wanted number of steps, or the nearest to it.
 Sequence sequence_of_number(Viterbi& viterbi, std::size_t number, double penalty) {
   Sequence best = viterbi.sequence(penalty);
   double low = penalty;
@@ -177,10 +181,10 @@ Sequence sequence_of_number(Viterbi& viterbi, std::size_t number, double penalty
   return best;
 }
 
-/// The best staircase that only rises or only sinks; one that turns round only where it leaves far less that
-/// white noise does not explain, because drafts of a step's height come and go.
+/// Best monotonic staircase (up or down). One that reverses is preferred only if its misfit beyond white
+/// noise is far smaller, because drafts as high as a step come and go.
 Sequence best_sequence(const Blocks& blocks, const StepSearch& search, double penalty, double noise_misfit) {
-  constexpr double kFarLess = 0.35;
+  constexpr double kFarSmallerShare = 0.35;
   const auto of = [&](Direction direction) {
     Viterbi viterbi(blocks, search.min_dwell_s, direction);
     return search.steps > 0 ? sequence_of_number(viterbi, search.steps, penalty) : viterbi.sequence(penalty);
@@ -195,7 +199,8 @@ Sequence best_sequence(const Blocks& blocks, const StepSearch& search, double pe
   Sequence down = of(Direction::kDown);
   if (full(down) < full(one_way)) one_way = std::move(down);
   Sequence either = of(Direction::kEither);
-  const bool turns = unexplained(either) < kFarLess * unexplained(one_way) && full(either) < full(one_way);
+  const bool turns =
+      unexplained(either) < kFarSmallerShare * unexplained(one_way) && full(either) < full(one_way);
   return turns ? either : one_way;
 }
 
@@ -204,18 +209,18 @@ std::size_t sample_at(const HeightTrack& track, double time_s) {
                                   track.times_s.begin());
 }
 
-/// The moment between two samples, up to kReachS from `change_s`, at which the levels on both sides fit best;
-/// they reach from begin_s to end_s.
+/// Time of a step between two samples, within kReachS of `change_s`, that fits the levels on both sides best;
+/// these reach from begin_s to end_s.
 double refined(const HeightTrack& track, double begin_s, double change_s, double end_s) {
   constexpr double kReachS = 2.0;
-  constexpr double kSideS = 10.0;  // further away it is drift that counts
+  constexpr double kSideS = 10.0;  // drift dominates further away
   const std::size_t begin = sample_at(track, std::max(begin_s, change_s - kSideS));
   const std::size_t end = sample_at(track, std::min(end_s, change_s + kSideS));
   if (end < begin + 2) return change_s;
   const double base_m = track.heights_m[begin];
   double total = 0.0;
   for (std::size_t i = begin; i < end; ++i) total += track.heights_m[i] - base_m;
-  // The spread about two means is least where sum_before^2 / n_before + sum_after^2 / n_after is largest.
+  // Least squares about two means maximises sum_before^2 / n_before + sum_after^2 / n_after.
   double before = 0.0;
   double best = -1.0;
   double best_s = change_s;
@@ -239,8 +244,8 @@ FoundSteps find_steps(const HeightTrack& track, const StepSearch& search) {
   const double density = noise_density(track, search.step_m);
   found.uncertainty_s = std::sqrt(26.0) * density;
   const Blocks blocks = blocks_of(track, search.step_m);
-  // A level that is left and returned to costs two penalties. Being a whole step off for min_dwell_s must
-  // cost more; and the best that white noise makes of T seconds, z sqrt(4 density T) - T, is z^2 density.
+  // A detour to another level costs two penalties: less than a deviation of one step for min_dwell_s, more
+  // than white noise can gain, which over T seconds is z sqrt(4 density T) - T, at most z^2 density.
   constexpr double kNoiseSigmas = 3.5;
   const double penalty = std::max(0.4 * search.min_dwell_s, 0.5 * kNoiseSigmas * kNoiseSigmas * density);
   const double span_s = track.times_s.back() - track.times_s.front();

@@ -5,11 +5,15 @@
 #include <cmath>
 #include <vector>
 
+#include "core/statistics/distribution.hpp"
+
 namespace isobar {
 namespace {
 
-constexpr double kMedianOfNormal = 0.6745;  // of |x|, in standard deviations
-constexpr double kSigmas = 4.0;             // one false alarm in 16 000 comparisons
+// Median of |x| of a normal variable, in standard deviations.
+constexpr double kMedianOfAbsNormal = 0.6744897501960817;
+// Threshold of motion in standard deviations: one false alarm in 16 000 comparisons.
+constexpr double kSigmas = 4.0;
 
 /// Mean over the samples of one window.
 struct Block {
@@ -45,9 +49,7 @@ double robust_sigma(std::span<const double> values) {
   for (std::size_t i = 2; i < values.size(); ++i) {
     differences.push_back(std::abs(values[i] - 2.0 * values[i - 1] + values[i - 2]));
   }
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return *middle / (kMedianOfNormal * std::sqrt(6.0));
+  return upper_median(differences) / (kMedianOfAbsNormal * std::sqrt(6.0));
 }
 
 StillPeriod longest_still_period(std::span<const double> times_s, std::span<const double> pressures_pa,

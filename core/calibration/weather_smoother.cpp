@@ -13,11 +13,14 @@
 namespace isobar {
 namespace {
 
+// Smallest number of rows from which the noise is estimated.
 constexpr std::size_t kRowsForNoise = 30;
-constexpr double kCarriedOnS = 300.0;
-constexpr double kLevelSigmaPa = 1e4;  // nothing is known of the level before the first row
+// Extrapolation beyond the first and the last row.
+constexpr double kExtrapolationS = 300.0;
+// Initial uncertainty of the level: uninformative.
+constexpr double kLevelSigmaPa = 1e4;
 
-/// Level [Pa, less the first row] and rate [Pa/s].
+/// Level above the first row [Pa] and rate [Pa/s].
 struct State {
   Eigen::Vector2d mean;
   Eigen::Matrix2d covariance;
@@ -29,13 +32,13 @@ struct Step {
   State filtered;
 };
 
-/// The rate decays like a Gauss-Markov process, the level is its integral and a random walk.
+/// Rate: first-order Gauss-Markov process. Level: integral of the rate plus a random walk.
 State predict(const State& state, double dt_s, const WeatherModel& model, Eigen::Matrix2d& F) {
   const double keep = std::exp(-dt_s / model.rate_time_s);
   F << 1.0, model.rate_time_s * (1.0 - keep), 0.0, keep;
   const double rate_variance = squared(model.rate_sigma_pa_s) * (1.0 - keep * keep);
   Eigen::Matrix2d Q;
-  // A rate that comes up evenly during the step has been there for half of it on average.
+  // First order: a change of rate during the step acts on the level for half of it on average.
   Q << squared(model.walk_pa_sqrt_s) * dt_s + rate_variance * dt_s * dt_s / 3.0, rate_variance * dt_s / 2.0,
       rate_variance * dt_s / 2.0, rate_variance;
   return {F * state.mean, F * state.covariance * F.transpose() + Q};
@@ -78,10 +81,10 @@ FilteredPressure smooth_weather(std::span<const PressureSample> rows, const Weat
     out.stamps_ns.push_back(stamp_ns);
     out.pressures_pa.push_back(pressures.front() + level_pa);
   };
-  const auto carried_ns = static_cast<std::int64_t>(1e9 * kCarriedOnS);
-  add(rows.front().stamp_ns - carried_ns, smoothed.front()[0] - smoothed.front()[1] * kCarriedOnS);
+  const auto extrapolation_ns = static_cast<std::int64_t>(1e9 * kExtrapolationS);
+  add(rows.front().stamp_ns - extrapolation_ns, smoothed.front()[0] - smoothed.front()[1] * kExtrapolationS);
   for (std::size_t i = 0; i < rows.size(); ++i) add(rows[i].stamp_ns, smoothed[i][0]);
-  add(rows.back().stamp_ns + carried_ns, smoothed.back()[0] + smoothed.back()[1] * kCarriedOnS);
+  add(rows.back().stamp_ns + extrapolation_ns, smoothed.back()[0] + smoothed.back()[1] * kExtrapolationS);
   if (rows.size() > 1) {
     out.interval_s =
         seconds_between(rows.front().stamp_ns, rows.back().stamp_ns) / static_cast<double>(rows.size() - 1);

@@ -10,6 +10,7 @@
 #include "core/geometry.hpp"
 #include "core/map/plane_hash.hpp"
 #include "core/map/scan_parts.hpp"
+#include "core/stamp.hpp"
 
 namespace isobar {
 
@@ -45,7 +46,7 @@ bool LocalMap::wants(const PoseEstimate& pose) const {
     return true;
   }
   const Eigen::Isometry3d step = last_pose_.T_map_base.inverse() * pose.T_map_base;
-  const double elapsed_s = static_cast<double>(pose.stamp_ns - last_pose_.stamp_ns) * 1e-9;
+  const double elapsed_s = seconds_between(last_pose_.stamp_ns, pose.stamp_ns);
   return step.translation().norm() >= config_.update_distance_m ||
          Eigen::AngleAxisd(step.linear()).angle() >= config_.update_angle_deg * kRadPerDeg ||
          elapsed_s >= config_.update_interval_s || elapsed_s < 0.0 || pose.overlap < config_.update_overlap;
@@ -61,8 +62,7 @@ bool LocalMap::update(const RegisteredScan& scan) {
   const Eigen::Vector3d p_map_base = scan.pose.T_map_base.translation();
   const bool new_tile = !started_ || LocalFrame(p_map_base, cell_m_).origin_cell !=
                                          LocalFrame(last_pose_.T_map_base.translation(), cell_m_).origin_cell;
-  const double elapsed_s =
-      started_ ? static_cast<double>(scan.pose.stamp_ns - last_pose_.stamp_ns) * 1e-9 : 0.0;
+  const double elapsed_s = started_ ? seconds_between(last_pose_.stamp_ns, scan.pose.stamp_ns) : 0.0;
   last_pose_ = scan.pose;
   started_ = true;
   if (new_tile) {

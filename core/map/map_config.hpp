@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "core/name_table.hpp"
+
 namespace isobar {
 
 /// How a point of the scan finds its plane of the map.
@@ -11,6 +13,11 @@ enum class Matcher : std::uint8_t {
   kPlaneHash,  ///< the plane of the cell that it is in; where there is none, the nearest one
   kNearest,    ///< the plane whose point is nearest (the paper's), by k-d trees
 };
+
+inline constexpr NameTable<Matcher, 2> kMatcherNames{{{
+    {Matcher::kPlaneHash, "plane-hash"},
+    {Matcher::kNearest, "nearest"},
+}}};
 
 /// Size and density of the local map, and when it changes.
 struct MapConfig {

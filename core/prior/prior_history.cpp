@@ -4,11 +4,11 @@
 #include <algorithm>
 
 #include "core/prior/rotation.hpp"
+#include "core/stamp.hpp"
 
 namespace isobar {
 namespace {
 
-constexpr double kSecondsPerNs = 1e-9;
 // Within this a constant twist tells well enough where the robot was.
 constexpr std::int64_t kLongestBlindNs = 500'000'000;
 
@@ -44,7 +44,7 @@ Prior interpolate(const Prior& before, const Prior& after, std::int64_t stamp_ns
 }
 
 Prior extrapolate(const Prior& from, std::int64_t stamp_ns, double height_rate_m_s) {
-  const double dt_s = static_cast<double>(stamp_ns - from.stamp_ns) * kSecondsPerNs;
+  const double dt_s = seconds_between(from.stamp_ns, stamp_ns);
   Prior out = from;
   out.stamp_ns = stamp_ns;
   // Constant twist, exact in rotation; translation with the orientation half-way (second order).
@@ -80,7 +80,7 @@ double PriorHistory::height_rate_m_s() const {
     const Prior& before = nth(count_ - back);
     const std::int64_t span_ns = newest().stamp_ns - before.stamp_ns;
     if (span_ns >= kSpanNs || back == count_) {
-      return (newest().height_m - before.height_m) / (static_cast<double>(span_ns) * kSecondsPerNs);
+      return (newest().height_m - before.height_m) / seconds_between(before.stamp_ns, newest().stamp_ns);
     }
   }
   return 0.0;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/stamp.hpp"
+
 namespace isobar {
 
 namespace {
@@ -31,7 +33,7 @@ Eigen::Isometry3d Deskewer::T_end_base(std::int64_t stamp_ns, const PriorHistory
   }
   Eigen::Isometry3d T = motion.end.T_odom_base.inverse() * prior.T_odom_base;
   if (!motion.from_wheels) {
-    T.translation() = motion.v_base_m_s * (static_cast<double>(stamp_ns - motion.end.stamp_ns) * 1e-9);
+    T.translation() = motion.v_base_m_s * seconds_between(motion.end.stamp_ns, stamp_ns);
   }
   return T;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/geometry.hpp"
+#include "core/stamp.hpp"
 
 namespace isobar {
 
@@ -20,8 +21,6 @@ constexpr double kLongestVelocityStepS = 0.5;
 constexpr double kFreeMotionFloorM = 0.02;
 // How fast a robot turns of which the IMU says nothing, 1 sigma [rad/s].
 constexpr double kUnseenRateRadS = 0.5;
-
-double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
 
@@ -50,7 +49,7 @@ void MotionModel::start_at(const Prior& prior, const Eigen::Isometry3d& T_map_ba
 }
 
 double MotionModel::travel_s(const Prior& now) const {
-  return std::max(0.0, seconds(now.stamp_ns - last_.stamp_ns));
+  return std::max(0.0, seconds_between(last_.stamp_ns, now.stamp_ns));
 }
 
 Eigen::Vector3d MotionModel::velocity_at(double since_s) const {
@@ -65,7 +64,7 @@ Eigen::Vector3d MotionModel::translation_step_map(const Prior& now) const {
   // The velocity dies away: its integral from the last confirmed scan on.
   const double dt = travel_s(now);
   const double tau = config_.velocity_memory_s;
-  const double since = std::max(0.0, seconds(last_.stamp_ns - confirmed_ns_));
+  const double since = std::max(0.0, seconds_between(confirmed_ns_, last_.stamp_ns));
   return velocity_at(since) * tau * (1.0 - std::exp(-dt / tau));
 }
 
@@ -86,7 +85,7 @@ Prediction MotionModel::predict(const Prior& now, const MethodTraits& method) co
   }
   prediction.T_map_odom = prediction.T_map_base * now.T_odom_base.inverse();
 
-  const double dt = std::max(travel_s(now), seconds(now.stamp_ns - confirmed_ns_));
+  const double dt = std::max(travel_s(now), seconds_between(confirmed_ns_, now.stamp_ns));
   double translation = config_.step_translation_floor_m;
   if (now.velocity_valid && last_.velocity_valid) {
     const double way = unconfirmed_m_ + step.norm();
@@ -133,7 +132,7 @@ ScanMotion MotionModel::scan_motion(const Prior& end, const Prediction& predicti
   ScanMotion motion;
   motion.end = end;
   motion.from_wheels = end.velocity_valid;
-  const double since = std::max(0.0, seconds(end.stamp_ns - confirmed_ns_));
+  const double since = std::max(0.0, seconds_between(confirmed_ns_, end.stamp_ns));
   motion.v_base_m_s = prediction.T_map_base.linear().transpose() * velocity_at(since);
   return motion;
 }

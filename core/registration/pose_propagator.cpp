@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/stamp.hpp"
+
 namespace isobar {
 namespace {
 
@@ -13,10 +15,6 @@ constexpr double kMaxSpeedMS = 15.0;
 constexpr double kMaxScanGapS = 0.5;
 /// A pose may be this much younger than the last prior that was seen and still take its height.
 constexpr double kMaxHeightAgeS = 0.1;
-
-double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
-  return static_cast<double>(to_ns - from_ns) * 1e-9;
-}
 
 bool is_finite(const Prior& prior) {
   return prior.T_odom_base.matrix().allFinite() && std::isfinite(prior.height_m) &&

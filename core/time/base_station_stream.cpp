@@ -7,9 +7,9 @@
 namespace isobar {
 namespace {
 
-/// Base stations may send every few seconds: only a longer pause is no cadence [ns].
+/// Largest sample interval: base stations may send every few seconds.
 constexpr std::int64_t kMaxCadenceNs = 10'000'000'000;
-/// Of several new senders the first is watched for its confirmation, unless it is silent for this long [ns].
+/// Silence after which another new sender may become the candidate: only one is confirmed at a time.
 constexpr std::int64_t kCandidateSilenceNs = 5'000'000'000;
 
 ClockAnchor new_anchor() {
@@ -55,7 +55,7 @@ BaseVerdict BaseStationStream::verdict_on(std::uint64_t sender, const PressureSa
     return BaseVerdict::kOtherSender;
   }
   if (remembers(print)) {
-    // Who replays one sample replays its neighbours.
+    // A sender that replays one sample may replay its neighbours: restart its confirmation.
     if (candidate_.sender == sender) candidate_.samples = 0;
     return BaseVerdict::kRepeated;
   }
@@ -120,7 +120,7 @@ bool BaseStationStream::confirms(std::uint64_t sender, std::int64_t stamp_ns,
 
 void BaseStationStream::accept(PressureSample& sample, std::uint64_t print,
                                std::int64_t receive_ns) noexcept {
-  // A confirmed clock has taken this sample already.
+  // The clock of a confirmed candidate already contains this sample.
   if (clock_.samples == 0 || clock_.newest_ns != sample.stamp_ns) clock_.add(sample.stamp_ns, receive_ns);
   candidate_.samples = 0;
   for (Rival& rival : rivals_) rival.is_beside = rival.known;
@@ -128,7 +128,7 @@ void BaseStationStream::accept(PressureSample& sample, std::uint64_t print,
   left_ = false;
   cadence_.add(receive_ns);
   remember(print);
-  // An estimate of the offset that becomes better may map a stamp before the last one.
+  // A lowered offset could map this stamp before the previous one: keep stamps ascending.
   newest_robot_ns_ =
       std::max(clock_.anchor.to_host_ns(clock_.anchor.device_unwrapped_ns()), newest_robot_ns_ + 1);
   sample.stamp_ns = newest_robot_ns_;
@@ -149,13 +149,13 @@ BaseStationStatus BaseStationStream::status() const noexcept {
 }
 
 std::uint64_t BaseStationStream::fingerprint(const PressureSample& sample) noexcept {
-  // Two rounds of a multiplicative hash: neighbouring stamps must not share their last bits.
+  // Two rounds of a multiplicative hash: spreads neighbouring stamps over the buckets.
   constexpr std::uint64_t kOdd = 0x9E37'79B9'7F4A'7C15ULL;
   std::uint64_t print = static_cast<std::uint64_t>(sample.stamp_ns) * kOdd;
   print ^= print >> 32U;
   print = (print ^ std::bit_cast<std::uint64_t>(sample.pressure_pa)) * kOdd;
   print ^= print >> 29U;
-  return print | std::uint64_t{1} << 63U;  // never 0, which marks an empty place
+  return print | std::uint64_t{1} << 63U;  // never 0: an empty place
 }
 
 bool BaseStationStream::remembers(std::uint64_t print) const noexcept {

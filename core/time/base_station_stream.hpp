@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What may be believed of a base station's messages, whichever way they come: over DDS or as datagrams.
+// Admission of a base station's samples, received over DDS or as datagrams.
 #pragma once
 
 #include <array>
@@ -11,47 +11,50 @@
 
 namespace isobar {
 
+/// Limits of the admission.
 struct BaseStationConfig {
-  /// A sample that took longer than this on its way is refused [ns]. Weather moves 0.15 Pa (1.3 cm) meanwhile
-  /// at the most, and the altimeter holds the base's pressure for longer than this anyway.
+  /// Largest transport delay of a sample [ns]. Weather moves at most 0.15 Pa (1.3 cm) meanwhile, and the
+  /// altimeter holds the base's pressure for longer anyway.
   std::int64_t max_age_ns = 5'000'000'000;
-  /// A sample cannot come before it was measured: earlier by more than this, the base's clock was set [ns].
+  /// Largest apparent negative delay [ns]: a sample cannot arrive before it was measured, so beyond this the
+  /// base's clock was set.
   std::int64_t max_early_ns = 50'000'000;
-  /// Samples off the known clock, or of a new sender, are believed once so many of them agree on one clock …
+  /// Confirmation of a new clock or a new sender: this many samples that agree on one clock, while no sample
+  /// of the known sender and clock arrives. One message can then not replace a base.
   std::uint32_t confirm_samples = 3;
-  /// … within this [ns] …
+  /// Largest disagreement of these samples [ns]: network jitter.
   std::int64_t agreement_ns = 250'000'000;
-  /// … for this long on both clocks [ns], and none of the known sender and clock has come meanwhile.
+  /// Shortest duration of these samples, on both clocks [ns].
   std::int64_t confirm_ns = 500'000'000;
-  /// Another base station that was heard beside the one in use takes its place after this silence [ns].
-  /// Longer than the altimeter's time-out as it is by default: it has then said that the base is lost, and
-  /// takes the other one as a return.
+  /// Silence after which another base station of the same name, heard beside the one in use, replaces it
+  /// [ns]. Longer than the altimeter's default time-out: the altimeter reports the loss before it sees the
+  /// other one.
   std::int64_t takeover_ns = 15'000'000'000;
 };
 
-/// What became of one sample.
+/// Verdict on one sample.
 enum class BaseVerdict : std::uint8_t {
   kAccepted,
-  kRepeated,     ///< this very sample came before: a copy, or a replay of what was sent earlier
-  kOutdated,     ///< measured before the newest one: overtaken on its way, or replayed
-  kTooOld,       ///< was on its way for more than max_age_ns
-  kAhead,        ///< from the future: the base's clock was set, or the stamp is absurd
+  kRepeated,     ///< accepted before: a copy or a replay
+  kOutdated,     ///< older than the newest: overtaken in transport, or replayed
+  kTooOld,       ///< transport delay above max_age_ns
+  kAhead,        ///< stamp in the future: the base's clock was set, or the stamp is absurd
   kOtherSender,  ///< another base station of the same name, while the first one is alive
-  kUnconfirmed,  ///< a new sender in place of one that has gone, seen too briefly to be believed
+  kUnconfirmed,  ///< of a new sender that is not yet confirmed, after the old one was lost
 };
 
-/// What a stream says of itself: plain values, for a SeqLock.
+/// Status of a stream: plain values, trivially copyable.
 struct BaseStationStatus {
   std::array<std::uint64_t, 7> samples{};  ///< by BaseVerdict
   std::uint64_t outages = 0;               ///< silences that ended
-  std::uint64_t restarts = 0;              ///< another sender took the place of one that had gone
-  std::uint64_t clock_steps = 0;           ///< the base's clock was set
-  std::int64_t last_ns = 0;                ///< robot clock, when the newest accepted one came; 0: none yet
-  std::int64_t interval_ns = 0;            ///< learnt; 0: not known yet
-  std::int64_t limit_ns = 0;               ///< a longer pause is a loss
-  std::int64_t clock_ahead_ns = 0;         ///< how far the base's clock is ahead of the robot's
-  std::int64_t rival_ns = 0;  ///< robot clock, when another base of the same name was heard last; 0: never
-  bool left = false;          ///< its sender has said goodbye
+  std::uint64_t restarts = 0;              ///< replacements of a lost sender
+  std::uint64_t clock_steps = 0;           ///< settings of the base's clock
+  std::int64_t last_ns = 0;         ///< arrival of the newest accepted sample, robot clock; 0: none yet
+  std::int64_t interval_ns = 0;     ///< learnt sample interval; 0: unknown
+  std::int64_t limit_ns = 0;        ///< longest pause that is not a loss
+  std::int64_t clock_ahead_ns = 0;  ///< base's clock minus robot's clock
+  std::int64_t rival_ns = 0;        ///< last sample of another base of the same name, robot clock; 0: never
+  bool left = false;                ///< its sender has ended
 
   [[nodiscard]] std::uint64_t count(BaseVerdict verdict) const noexcept {
     return samples[static_cast<std::size_t>(verdict)];
@@ -62,27 +65,28 @@ struct BaseStationStatus {
   }
 };
 
-/// One base station's samples: maps their stamps to the robot's clock and refuses what is not of now.
+/// Filter of one base station's samples: maps their stamps to the robot's clock and refuses delayed, repeated
+/// and replayed ones.
 ///
-/// Each sender has a clock of its own, tied by a ClockAnchor. Samples must go forward on that clock. Those
-/// that do not fit it are refused, until enough of them agree on another clock while none fits any more: then
-/// the base's clock was set. A replay cannot get in that way as long as the base is alive, nor with samples
-/// that this stream remembers (the last 4000 or more). What it cannot tell from a base with a wrong clock is
-/// a replay of samples that it never saw, while there is no base.
+/// Each sender has its own clock, tied to the robot's by a ClockAnchor; stamps must ascend on it. Samples
+/// that contradict it are refused until enough of them agree on another clock while none fits the known one:
+/// then the base's clock was set. A replay is therefore refused while the base is alive, and at any time if
+/// its samples are among the last 4000 or more, which are remembered. Not detectable: a replay of never
+/// received samples while there is no base, which looks like a base with a wrong clock.
 ///
-/// The sender that was heard first is used; a new one follows it when it has gone. One that was heard beside
-/// it is another base station at another place, and is not mixed with it. Allocates nothing; one thread.
+/// The first sender is used; a new one replaces it after it is lost. A sender heard beside it is another base
+/// station at another place and is never mixed with it. No allocation; single thread.
 class BaseStationStream {
  public:
   explicit BaseStationStream(const BaseStationConfig& config = {});
 
-  /// @param sender whatever tells senders apart: a DDS writer, an address
-  /// @param sample plausible, its stamp on the sender's clock; with kAccepted on the robot's, and newer than
-  ///        all before
-  /// @param receive_ns when it came, robot clock
+  /// @param sender identity of the sender: a DDS writer, an address
+  /// @param sample plausible, stamp on the sender's clock; if kAccepted, its stamp is replaced by the robot's
+  ///        clock, strictly ascending
+  /// @param receive_ns time of arrival, robot clock
   BaseVerdict check(std::uint64_t sender, PressureSample& sample, std::int64_t receive_ns) noexcept;
 
-  /// That sender has ended, for all that is known.
+  /// The sender has ended (a DDS writer was deleted).
   void sender_gone(std::uint64_t sender) noexcept;
 
   [[nodiscard]] bool lost(std::int64_t now_ns) const noexcept { return left_ || cadence_.silent(now_ns); }
@@ -90,7 +94,7 @@ class BaseStationStream {
   [[nodiscard]] BaseStationStatus status() const noexcept;
 
  private:
-  /// One clock of a base station, as its samples show it.
+  /// Clock of a base station, estimated from its samples.
   struct Clock {
     ClockAnchor anchor;
     std::int64_t first_ns = 0;          // base's clock
@@ -101,20 +105,20 @@ class BaseStationStream {
     std::uint32_t samples = 0;
 
     void add(std::int64_t stamp_ns, std::int64_t receive_ns) noexcept;
-    /// How late a sample is by this clock, negative: early [ns].
+    /// Transport delay of a sample beyond the smallest seen, by this clock; negative: early [ns].
     [[nodiscard]] std::int64_t lateness_ns(std::int64_t stamp_ns, std::int64_t receive_ns) const noexcept {
       return receive_ns - stamp_ns - anchor.offset_ns();
     }
   };
-  /// Fingerprints of accepted samples whose last bits are the same; the oldest makes room.
+  /// Fingerprints of accepted samples with equal low bits; a ring, the oldest is overwritten.
   struct Bucket {
     std::array<std::uint64_t, 8> prints{};
     std::uint8_t next = 0;
   };
   static constexpr std::size_t kBuckets = 1024;
   static constexpr std::size_t kRivals = 4;
-  /// Another sender than the one in use. Whether it is a restart of that one or another base station beside
-  /// it shows when the one in use is heard again.
+  /// Sender other than the one in use: a restart of that one, or another base station beside it. It is beside
+  /// it if the one in use is heard again.
   struct Rival {
     std::uint64_t sender = 0;
     bool known = false;

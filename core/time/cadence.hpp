@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Learnt sample interval of a stream.
 #pragma once
 
 #include <algorithm>
@@ -6,35 +7,35 @@
 
 namespace isobar {
 
-/// How often the samples of a stream come, learnt from the stream itself, and when they no longer do.
+/// Sample interval of a stream, learnt from the stream itself, and detection of its silence.
 ///
-/// The interval is a running mean over some ten samples. A longer pause counts as no more than the silence
-/// that it is, so that one outage does not pass for a slow stream, and a stream that has become slower is
-/// learnt within some ten samples.
+/// The interval is a running mean over about ten samples. Pauses are clipped at the limit of silence, so one
+/// outage does not look like a slow stream, while a slower rate is still learnt within about ten samples.
 class Cadence {
  public:
-  /// Silence is told after so many intervals: two samples lost in a row are ordinary on a radio link …
+  /// Intervals without a sample after which a stream is silent: on a radio link two samples in a row may be
+  /// lost.
   static constexpr std::int64_t kIntervalsToSilence = 4;
-  /// … but not before this [ns], whatever the rate, and no later than that.
+  /// Bounds of the limit at any rate.
   static constexpr std::int64_t kShortestLimitNs = 500'000'000;
   static constexpr std::int64_t kLongestLimitNs = 30'000'000'000;
-  /// The limit until an interval is known [ns]: the slowest base stations send every few seconds.
+  /// Limit until an interval is known: the slowest base stations send every few seconds.
   static constexpr std::int64_t kFirstLimitNs = 10'000'000'000;
 
-  /// A sample came at `time_ns`, not before the one before.
+  /// A sample arrived at `time_ns`; times must not descend.
   void add(std::int64_t time_ns) noexcept {
     if (samples_ > 0) learn(std::max<std::int64_t>(0, time_ns - last_ns_));
     last_ns_ = time_ns;
     ++samples_;
   }
-  /// Forgets everything: another sender.
+  /// Forgets everything, for another sender.
   void restart() noexcept { *this = Cadence{}; }
 
   [[nodiscard]] bool started() const noexcept { return samples_ > 0; }
   [[nodiscard]] std::int64_t last_ns() const noexcept { return last_ns_; }
-  /// 0: not known yet.
+  /// 0: unknown.
   [[nodiscard]] std::int64_t interval_ns() const noexcept { return samples_ > 1 ? interval_ns_ : 0; }
-  /// A pause longer than this is silence [ns].
+  /// Longest pause that is not silence [ns].
   [[nodiscard]] std::int64_t limit_ns() const noexcept {
     return samples_ > 1 ? std::clamp(kIntervalsToSilence * interval_ns_, kShortestLimitNs, kLongestLimitNs)
                         : kFirstLimitNs;

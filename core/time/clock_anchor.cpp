@@ -8,9 +8,10 @@
 namespace isobar {
 namespace {
 
+/// Denominator of parts per million.
 constexpr std::int64_t kMillion = 1'000'000;
 
-/// The difference nearest to zero between two readings of a clock that wraps.
+/// Smallest difference between two readings of a clock that wraps.
 std::int64_t wrapped_difference(std::int64_t to_ns, std::int64_t from_ns, std::int64_t period_ns) {
   const std::int64_t difference = to_ns - from_ns;
   if (period_ns == 0) {
@@ -32,8 +33,8 @@ bool within(std::int64_t a, std::int64_t b, std::int64_t limit) { return (a > b 
 ClockAnchor::ClockAnchor(const ClockAnchorConfig& config) : config_(config) {}
 
 ClockAnchor::Finding ClockAnchor::add(std::int64_t device_ns, std::int64_t host_ns) {
-  host_ns = std::clamp(host_ns, kPlausibleStampLowestNs,
-                       kPlausibleStampHighestNs);  // differences must not overflow
+  // Clamped so that differences cannot overflow.
+  host_ns = std::clamp(host_ns, kPlausibleStampLowestNs, kPlausibleStampHighestNs);
   if (!anchored_) {
     return first(device_ns, host_ns);
   }
@@ -48,7 +49,7 @@ ClockAnchor::Finding ClockAnchor::add(std::int64_t device_ns, std::int64_t host_
     const bool device_close = elapsed_ns > -config_.max_cadence_ns && elapsed_ns <= config_.max_cadence_ns;
     const bool host_regular = host_elapsed_ns >= 0 && host_elapsed_ns <= config_.max_cadence_ns;
     if (!device_close && host_regular) {
-      return re_anchor(difference_ns, host_ns);  // only the device's clock broke its cadence
+      return re_anchor(difference_ns, host_ns);  // only the device's clock stepped
     }
     return suspect(difference_ns, host_ns, device_regular);
   }
@@ -94,7 +95,7 @@ ClockAnchor::Finding ClockAnchor::suspect(std::int64_t difference_ns, std::int64
     candidate_high_ns_ = difference_ns;
     candidate_device_ns_ = device_ns_;
     candidate_host_ns_ = host_ns;
-    // Delay makes samples late, but neither early nor does it disturb the device's own cadence.
+    // A transport delay makes samples late, never early, and leaves the device's stamps regular.
     candidate_is_delay_ = difference_ns > offset_ns_ && device_regular;
   }
   ++candidate_samples_;
@@ -106,7 +107,8 @@ ClockAnchor::Finding ClockAnchor::suspect(std::int64_t difference_ns, std::int64
     return re_anchor(candidate_low_ns_, host_ns);
   }
   if (device_regular) {
-    newest_ns_ = device_ns_;  // the device goes on; its host time is what the offset says
+    // The device is regular: take its host time from the kept offset.
+    newest_ns_ = device_ns_;
     newest_host_ns_ = device_ns_ + offset_ns_;
   }
   return Finding::kHostSuspect;

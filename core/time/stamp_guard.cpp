@@ -6,7 +6,7 @@
 namespace isobar {
 namespace {
 
-/// No stream is so slow that steps longer than this are its cadence [ns].
+/// Longest step that can be the interval of a slow stream.
 constexpr std::int64_t kSlowestCadenceNs = 600'000'000'000;
 
 }  // namespace
@@ -36,12 +36,11 @@ StampVerdict StampGuard::check(std::int64_t stamp_ns) {
     return StampVerdict::kAccept;
   }
   if (holding_ && stamp_ns == held_ns_) {
-    ++duplicates_;  // a copy is no witness
+    ++duplicates_;  // a copy does not confirm the held sample
     return StampVerdict::kHeld;
   }
   if (holding_) {
-    // A stream that is slower than max_forward_ns makes one such step after the other, all of about one
-    // length.
+    // A stream slower than max_forward_ns: successive steps of similar length.
     const std::int64_t held_step_ns = held_ns_ - newest_ns_;
     const std::int64_t step_ns = stamp_ns - held_ns_;
     const bool slow =

@@ -90,7 +90,7 @@ void fill_altitude(const Prior& prior, const DdsConfig& names, AltitudeMessage& 
   fill_header(prior.stamp_ns, names.map_frame, message.header);
   message.height = prior.height_m;
   message.variance = prior.height_variance_m2;
-  message.source = text(height_source_name(prior.height_source).data());
+  message.source = text(kHeightSourceNames.name(prior.height_source).data());
 }
 
 void fill_transform(std::int64_t stamp_ns, const std::string& parent, const std::string& child,

@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/stamp.hpp"
+
 namespace isobar::evaluation {
 
 namespace {
-
-double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
-  return static_cast<double>(to_ns - from_ns) * 1e-9;
-}
 
 StampedPose interpolated(const StampedPose& a, const StampedPose& b, double fraction, std::int64_t stamp_ns) {
   return {stamp_ns, a.position_m + fraction * (b.position_m - a.position_m),
@@ -26,7 +24,7 @@ Eigen::Isometry3d yaw_and_translation(double yaw, const Eigen::Vector3d& from_m,
 }
 
 Eigen::Isometry3d start_alignment(const PosePair& first) {
-  // The rotation about z closest to R = C_reference C_estimate^T, so that a tilted base does not matter.
+  // Rotation about z closest to R = C_reference C_estimate^T: independent of roll and pitch.
   const Eigen::Quaterniond rotation = first.reference.attitude * first.estimate.attitude.conjugate();
   return yaw_and_translation(2.0 * std::atan2(rotation.z(), rotation.w()), first.estimate.position_m,
                              first.reference.position_m);
@@ -68,7 +66,7 @@ std::vector<PosePair> associate(const Trajectory& reference, const Trajectory& e
   const std::vector<double> distance_m = travelled_distance_m(reference.poses);
   std::vector<PosePair> pairs;
   pairs.reserve(estimate.poses.size());
-  std::size_t after = 0;  // first reference pose at or after the stamp
+  std::size_t after = 0;  // index of the first reference pose at or after the stamp
   for (const StampedPose& pose : estimate.poses) {
     while (after < reference.poses.size() && reference.poses[after].stamp_ns < pose.stamp_ns) ++after;
     if (after == reference.poses.size()) break;

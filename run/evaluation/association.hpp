@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which pose of the estimate belongs to which pose of the reference, and how they are laid over each other.
+// Association of an estimate's poses with the reference, and alignment of the two.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,7 @@
 
 namespace isobar::evaluation {
 
-/// An estimate's pose and the reference at the same instant.
+/// Pose of the estimate and of the reference at the same time.
 struct PosePair {
   std::int64_t stamp_ns = 0;
   double distance_m = 0.0;  ///< travelled by the reference since its start
@@ -20,20 +20,19 @@ struct PosePair {
   StampedPose estimate;
 };
 
-/// Pairs every pose of the estimate that lies within the reference's time with the reference interpolated at
-/// its stamp. Poses that fall into a hole of the reference longer than `max_gap_s` are left out.
+/// Pairs each pose of the estimate within the reference's time span with the reference interpolated at its
+/// stamp. Poses in a gap of the reference longer than `max_gap_s` are left out.
 std::vector<PosePair> associate(const Trajectory& reference, const Trajectory& estimate, double max_gap_s);
 
-/// Share 0 … 1 of the reference's time span that lies between two poses of the estimate less than `max_gap_s`
-/// apart. The time before the first and after the last pose counts as covered if it is shorter than that.
+/// Share 0 … 1 of the reference's time span covered by the estimate: time between two poses less than
+/// `max_gap_s` apart, and time before the first and after the last pose if shorter than that.
 double coverage(const Trajectory& reference, const Trajectory& estimate, double max_gap_s);
 
-/// How an estimate is moved onto the reference. Both must be gravity-aligned but for kRigid.
+/// Alignment of an estimate with the reference. Both must be gravity-aligned, except for kRigid.
 enum class Alignment {
-  kStart,           ///< x, y, z and yaw made equal at the first common pose: what the drift is measured from
-  kYawTranslation,  ///< x, y, z and yaw that minimise the sum of squared distances (Umeyama 1991, about z
-                    ///< only)
-  kRigid,  ///< rotation and translation that do so (Umeyama 1991): hides tilt, use it to compare shapes
+  kStart,           ///< equal x, y, z and yaw at the first common pose: shows the drift from there
+  kYawTranslation,  ///< least-squares x, y, z and yaw (Umeyama 1991, about z only)
+  kRigid,           ///< least-squares rotation and translation (Umeyama 1991): hides tilt, compares shapes
 };
 
 /// T_reference_estimate of the pairs. Identity if there are none.

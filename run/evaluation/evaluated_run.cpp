@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/errors.hpp"
+#include "core/names.hpp"
 #include "run/files/text_file.hpp"
 
 namespace isobar::evaluation {
@@ -15,15 +16,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Enough for every picture of the report.
+// Points kept of a map: enough for every picture of the report.
 constexpr std::size_t kMaxMapPoints = 1'500'000;
 
-// A pose or two before the reference starts are not worth a note.
+// Share of poses outside the reference above which a note is given: a pose or two at the start are normal.
 constexpr double kNotedShareOutside = 0.005;
 
 std::string repairs_note(const std::string& name, const StampRepairs& repairs) {
   return name + ": " + std::to_string(repairs.backwards) + " poses were out of order and sorted, " +
-         std::to_string(repairs.duplicates) + " with a stamp seen before were dropped.";
+         std::to_string(repairs.duplicates) + " with a repeated stamp were dropped.";
 }
 
 bool needed_repair(const StampRepairs& repairs) { return repairs.backwards + repairs.duplicates > 0; }
@@ -60,8 +61,7 @@ void add_notes(EvaluatedRun& run) {
   run.notes = run.reference.notes;
   if (std::any_of(run.methods.begin(), run.methods.end(),
                   [](const EvaluatedMethod& m) { return m.evaluation.figures.whole_run_as_flat; })) {
-    run.notes.emplace_back(
-        "No flat segments are named: the relative error on z is taken over the whole run.");
+    run.notes.emplace_back("No flat segments: the relative error on z is over the whole run.");
   }
   for (const EvaluatedMethod& method : run.methods) {
     const MethodFigures& figures = method.evaluation.figures;
@@ -136,14 +136,16 @@ const FloorHeight* floor_at(const EvaluatedMethod& method, double level_m, doubl
 }
 
 std::string display_name(const std::string& method) {
-  static const std::map<std::string, std::string> kNames{{"3dof", "3-DOF"},
-                                                         {"4dof", "4-DOF"},
-                                                         {"6dof", "6-DOF"},
-                                                         {"4dof-altitude", "4-DOF altitude"},
-                                                         {"6dof-altitude", "6-DOF altitude"},
-                                                         {"odometry", "Odometry"}};
-  const auto found = kNames.find(method);
-  return found == kNames.end() ? method : found->second;
+  static constexpr NameTable<Method, 6> kDisplayNames{{{
+      {Method::k6Dof, "6-DOF"},
+      {Method::k4Dof, "4-DOF"},
+      {Method::k3Dof, "3-DOF"},
+      {Method::k6DofAltitude, "6-DOF altitude"},
+      {Method::k4DofAltitude, "4-DOF altitude"},
+      {Method::kOdometry, "Odometry"},
+  }}};
+  const std::optional<Method> known = kMethodNames.value(method);
+  return known ? std::string(kDisplayNames.name(*known)) : method;
 }
 
 }  // namespace isobar::evaluation

@@ -13,6 +13,7 @@
 
 namespace isobar::evaluation {
 
+/// Reference trajectory and segments.
 struct ReferenceData {
   std::filesystem::path source;
   Trajectory trajectory;
@@ -26,11 +27,13 @@ struct ReferenceData {
 ReferenceData load_reference(const std::filesystem::path& path,
                              const std::optional<std::filesystem::path>& segments_file = std::nullopt);
 
+/// Where an estimate is read from.
 struct EstimateSource {
   std::string name;            ///< in tables and charts; empty: set by default_names()
   std::filesystem::path path;  ///< a .tum file, or the folder of a run
 };
 
+/// One evaluated estimate.
 struct EvaluatedMethod {
   std::string name;
   Evaluation evaluation;
@@ -39,6 +42,7 @@ struct EvaluatedMethod {
   std::vector<std::array<float, 3>> map_points;  ///< reference frame [m], thinned; empty for a .tum file
 };
 
+/// Reference and all evaluated estimates.
 struct EvaluatedRun {
   ReferenceData reference;
   std::vector<EvaluatedMethod> methods;
@@ -62,7 +66,7 @@ std::string display_name(const std::string& method);
 /// Mean heights of the floors in the reference [m], ascending; empty without flat segments.
 std::vector<double> floor_levels_m(const EvaluatedRun& run);
 
-/// The method's figures of the floor within `floor_gap_m` of a height; null when it was never there.
+/// The method's figures of the floor within `floor_gap_m` of a height; null if the method has no such floor.
 const FloorHeight* floor_at(const EvaluatedMethod& method, double level_m, double floor_gap_m);
 
 }  // namespace isobar::evaluation

@@ -65,7 +65,7 @@ void add_absolute_figures(Evaluation& evaluation, const EvaluationOptions& optio
     figures.ate_max_m = std::max(figures.ate_max_m, error_m);
   }
   figures.ate_rms_m = std::sqrt(sum_m2 / static_cast<double>(aligned.size()));
-  // The rotation about z closest to what is left at the end, as the alignment at the start took it.
+  // Rotation about z closest to the remaining one at the last pose, as in the alignment at the start.
   const PosePair& last = evaluation.pairs.back();
   const Eigen::Quaterniond left = last.estimate.attitude * last.reference.attitude.conjugate();
   figures.yaw_drift_rad = wrap_angle_rad(2.0 * std::atan2(left.z(), left.w()));
@@ -75,7 +75,7 @@ void add_absolute_figures(Evaluation& evaluation, const EvaluationOptions& optio
   }
 }
 
-/// Both sorted by stamp; a pose whose stamp has no sigma of its own is left out.
+/// Poses without a sigma of exactly their stamp are left out.
 double share_within_two_sigma(const std::vector<PosePair>& pairs, std::vector<HeightSigma> sigmas) {
   std::sort(sigmas.begin(), sigmas.end(),
             [](const HeightSigma& a, const HeightSigma& b) { return a.stamp_ns < b.stamp_ns; });

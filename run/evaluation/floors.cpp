@@ -8,6 +8,7 @@ namespace isobar::evaluation {
 
 namespace {
 
+/// Sums over one flat segment.
 struct Visit {
   double reference_sum_m = 0.0;
   double error_sum_m = 0.0;
@@ -34,7 +35,7 @@ std::vector<Visit> visits_by_height(const std::vector<PosePair>& pairs, const st
   return visits;
 }
 
-/// Of visits[begin … end-1].
+/// Floor of visits [begin, end).
 FloorHeight floor_of(const std::vector<Visit>& visits, std::size_t begin, std::size_t end) {
   Visit all;
   FloorHeight floor;

@@ -7,10 +7,12 @@ namespace isobar::evaluation {
 
 namespace {
 
-constexpr double kLongestWindow = 1.1;  // times the length asked for
-constexpr double kRoundingM = 1e-6;     // of a sum of steps
+// Longest window relative to the wanted length: beyond it the estimate has a gap.
+constexpr double kLongestWindowRatio = 1.1;
+// Tolerance for the rounding of summed distances.
+constexpr double kRoundingM = 1e-6;
 
-/// Appends the windows within pairs[begin … end-1].
+/// Appends the windows within pairs [begin, end).
 void append_windows(const std::vector<PosePair>& pairs, std::size_t begin, std::size_t end,
                     const WindowOptions& options, std::vector<Window>& windows) {
   std::size_t last = begin;
@@ -23,7 +25,7 @@ void append_windows(const std::vector<PosePair>& pairs, std::size_t begin, std::
     while (last < end && pairs[last].distance_m < start_m + options.length_m - 2.0 * kRoundingM) ++last;
     if (last == end) return;
     const double travelled_m = pairs[last].distance_m - pairs[first].distance_m;
-    if (travelled_m <= kLongestWindow * options.length_m) windows.push_back({first, last, travelled_m});
+    if (travelled_m <= kLongestWindowRatio * options.length_m) windows.push_back({first, last, travelled_m});
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Errors over a fixed length of travel: how fast an estimate drifts, whatever happened before.
+// Relative errors over windows of a fixed length of travel: drift, independent of earlier errors.
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,22 @@
 
 namespace isobar::evaluation {
 
-/// Windows start at poses `start_step_m` of travel apart, so that neither a robot at rest nor a faster stream
-/// of poses weighs more, and end at the first pose `length_m` further along the reference. A window more than
-/// a tenth longer than that (a hole in the estimate) is left out.
+/// Windows start every `start_step_m` of travel, so that neither a robot at rest nor a higher pose rate gets
+/// more weight, and end at the first pose `length_m` further along the reference. Windows longer by more than
+/// a tenth (a gap in the estimate) are left out.
 struct WindowOptions {
   double length_m = 5.0;
   double start_step_m = 0.1;
 };
 
-/// Indices into the pairs and the reference's travel in between.
+/// Indices of the first and last pair, and the reference's travel between them.
 struct Window {
   std::size_t first = 0;
   std::size_t last = 0;
   double travelled_m = 0.0;
 };
 
-/// All windows that lie wholly in one of the segments; over everything if `segments` is null.
+/// All windows that lie entirely within one segment; over the whole run if `segments` is null.
 std::vector<Window> make_windows(const std::vector<PosePair>& pairs, const std::vector<Segment>* segments,
                                  const WindowOptions& options);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Named spans of time of a recording, from its segments.csv.
+// Labelled time spans of a recording, from its segments.csv.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,10 @@
 
 namespace isobar::evaluation {
 
-/// Label of the spans on level floors, over which the paper's relative error on z is taken.
+/// Label of segments on level floors, over which the paper's relative error on z is computed.
 inline constexpr std::string_view kFlatLabel = "flat";
 
+/// Labelled time span.
 struct Segment {
   std::int64_t start_ns = 0;
   std::int64_t end_ns = 0;  ///< not before start_ns
@@ -22,11 +23,11 @@ struct Segment {
   }
 };
 
-/// Parses segments.csv (columns t_start_ns, t_end_ns, label in any order). Throws DataError "name:line:
-/// rule".
+/// Parses segments.csv (columns t_start_ns, t_end_ns, label in any order).
+/// @throws DataError "name:line: rule" when a line breaks a rule
 std::vector<Segment> parse_segments_csv(std::string_view text, const std::string& name);
 
-/// Those with kFlatLabel, in order of time.
+/// Segments with kFlatLabel, in order of time.
 std::vector<Segment> flat_segments(const std::vector<Segment>& segments);
 
 }  // namespace isobar::evaluation

@@ -15,12 +15,12 @@ namespace isobar::evaluation {
 namespace {
 
 constexpr double kNsPerS = 1e9;
-/// Beyond this a stamp in seconds no longer fits 64 bits of nanoseconds.
+/// Largest stamp that fits 64 bits of nanoseconds.
 constexpr double kLargestStampS = 9.2e9;
 
 bool is_separator(char c) { return c == ' ' || c == '\t' || c == ',' || c == '\r'; }
 
-/// The next word of the line, which is shortened by it; empty at the end.
+/// Removes the next word from `line` and returns it; empty at the end.
 std::string_view next_word(std::string_view& line) {
   std::size_t begin = 0;
   while (begin < line.size() && is_separator(line[begin])) ++begin;
@@ -36,14 +36,14 @@ std::optional<double> parse_number(std::string_view word) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-/// Seconds as nanoseconds; plain decimals exactly, which a double of 1.7e9 s could not hold (240 ns).
+/// Seconds to nanoseconds. Plain decimals are converted exactly: a double of 1.7e9 s resolves only 240 ns.
 std::optional<std::int64_t> parse_stamp_ns(std::string_view word) {
   const std::optional<double> seconds = parse_number(word);
   if (!seconds || std::abs(*seconds) > kLargestStampS) return std::nullopt;
   if (word.find_first_of("eE") != std::string_view::npos) return std::llround(*seconds * kNsPerS);
   const bool negative = word.front() == '-';
   std::int64_t stamp_ns = 0;
-  int decimals = -1;  // -1 before the point
+  int decimals = -1;  // digits after the point; -1: before it
   for (const char c : word) {
     if (c == '.') decimals = 0;
     if (c < '0' || c > '9') continue;
@@ -68,10 +68,10 @@ StampedPose parse_pose(std::string_view line, const std::string& where) {
     if (!number) throw DataError(where + "'" + std::string(word) + "' is not a finite number");
     value = *number;
   }
-  if (!next_word(line).empty()) throw DataError(where + "more than the eight numbers t x y z qx qy qz qw");
+  if (!next_word(line).empty()) throw DataError(where + "a pose has only eight numbers: t x y z qx qy qz qw");
   StampedPose pose{
       *stamp_ns, {values[0], values[1], values[2]}, {values[6], values[3], values[4], values[5]}};
-  // Files with four decimals are off by 1e-4; anything further from unit length is no rotation.
+  // Rounding to four decimals gives 1e-4; a larger deviation from unit length is not a rotation.
   if (std::abs(pose.attitude.norm() - 1.0) > 0.01)
     throw DataError(where + "qx qy qz qw is not a unit quaternion");
   pose.attitude.normalize();
@@ -115,7 +115,7 @@ Trajectory parse_tum(std::string_view text, const std::string& name) {
 }
 
 std::vector<double> travelled_distance_m(const std::vector<StampedPose>& poses, double min_step_m) {
-  std::vector<double> distance_m(poses.size(), 0.0);  // first the raw length of the path, noise included
+  std::vector<double> distance_m(poses.size(), 0.0);  // first the raw length of the path, including noise
   for (std::size_t i = 1; i < poses.size(); ++i) {
     distance_m[i] = distance_m[i - 1] + (poses[i].position_m - poses[i - 1].position_m).norm();
   }

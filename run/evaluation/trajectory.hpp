@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A trajectory as the evaluation sees it: time-ordered poses of base_link, and where they come from.
+// Trajectory: poses of base_link in order of time, and the TUM file format.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,48 +12,48 @@
 
 namespace isobar::evaluation {
 
-/// Pose of base_link in the trajectory's own gravity-aligned frame.
+/// Pose of base_link in the gravity-aligned frame of the trajectory.
 struct StampedPose {
   std::int64_t stamp_ns = 0;
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
-  Eigen::Quaterniond attitude =
-      Eigen::Quaterniond::Identity();  ///< unit length; rotates base_link into the frame
+  /// Unit length; rotates base_link into the frame.
+  Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();
 };
 
-/// What had to be repaired to make stamps strictly increase.
+/// Repairs that made the stamps strictly ascending.
 struct StampRepairs {
-  std::size_t duplicates = 0;  ///< poses dropped because an earlier line had the same stamp
-  std::size_t backwards = 0;   ///< poses that stood after a later one and were sorted
+  std::size_t duplicates = 0;  ///< dropped: an earlier line has the same stamp
+  std::size_t backwards = 0;   ///< moved: a previous line has a later stamp
 };
 
-/// Poses with strictly increasing stamps.
+/// Poses with strictly ascending stamps.
 struct Trajectory {
   std::vector<StampedPose> poses;
   StampRepairs repairs;
 
   [[nodiscard]] bool empty() const { return poses.empty(); }
-  /// Time from the first to the last pose [s]; 0 if there are fewer than two.
+  /// Time from the first to the last pose [s]; 0 for fewer than two poses.
   [[nodiscard]] double duration_s() const;
 };
 
-/// Sorts by stamp and drops all but the first of equal stamps, counting both.
+/// Sorts by stamp, keeps the first of equal stamps, and counts the repairs.
 Trajectory make_trajectory(std::vector<StampedPose> poses);
 
 /// Parses the TUM trajectory format: `t x y z qx qy qz qw`, t in seconds, '#' starts a comment line. Blank
-/// lines, CRLF, commas or tabs between the numbers are accepted; quaternions are normalised. The stamp is
-/// read digit by digit, so that nine decimals give exact nanoseconds. `name` is what errors call the text.
-/// Throws DataError "name:line: rule" on a broken line, and if the text has no pose.
+/// lines, CRLF, commas or tabs between the numbers are accepted; quaternions are normalised. Stamps are read
+/// digit by digit: nine decimals give exact nanoseconds. `name`: name of the text in errors.
+/// @throws DataError "name:line: rule" when a line breaks a rule, or when there is no pose
 Trajectory parse_tum(std::string_view text, const std::string& name);
 
-/// Travelled distance at each pose [m]: the length of the polygon through poses that lie at least
-/// `min_step_m` apart, so that noise of a robot at rest does not count as travel; poses between its corners
-/// share out the side by the raw path's length. Never decreases; same length as `poses`.
+/// Travelled distance at each pose [m]: length of the polygon through poses at least `min_step_m` apart, so
+/// that noise at rest does not count as travel. Poses between its corners divide a side in proportion to the
+/// raw path. Non-decreasing; same length as `poses`.
 std::vector<double> travelled_distance_m(const std::vector<StampedPose>& poses, double min_step_m = 0.05);
 
-/// Rotation about z of an attitude [rad], -pi … pi (yaw of the fixed-axis x, y, z angles of REP-103).
+/// Yaw of an attitude [rad], -pi … pi (fixed-axis x, y, z angles of REP-103).
 double yaw_rad(const Eigen::Quaterniond& attitude);
 
-/// Angle in -pi … pi that differs from `angle_rad` by whole turns.
+/// Angle modulo 2 pi, within -pi … pi.
 double wrap_angle_rad(double angle_rad);
 
 }  // namespace isobar::evaluation

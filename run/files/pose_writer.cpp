@@ -53,8 +53,8 @@ std::string_view status_line(const PoseEstimate& pose, double altimeter_height_m
       line.data(), line.size(),
       "%lld,%u,%s,%s,%s,%d,%u,%u,%u,%.4f,%.6f,%.6g,%.6g,%.6g,%.3f,%.4f,%.4f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%."
       "6g\n",
-      static_cast<long long>(pose.stamp_ns), pose.sequence, mode_name(pose.mode).data(),
-      method_name(pose.effective_method).data(), height_source_name(pose.height_source).data(),
+      static_cast<long long>(pose.stamp_ns), pose.sequence, kPoseModeNames.name(pose.mode).data(),
+      kMethodNames.name(pose.effective_method).data(), kHeightSourceNames.name(pose.height_source).data(),
       pose.degenerate ? 1 : 0, pose.iterations, pose.sampled_points, pose.matched_pairs, pose.overlap,
       pose.residual_rms_m, eigenvalues[0], eigenvalues[1], eigenvalues[2], pose.registration_ms,
       altimeter_height_m, altimeter_sd_m, p.x(), p.y(), p.z(), sd(0), sd(1), sd(2), sd(5));

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "core/statistics/distribution.hpp"
 #include "run/recording/sample_csv.hpp"
 
 namespace isobar::recording {
@@ -20,9 +21,7 @@ constexpr std::int64_t kTogetherNs = 300'000'000;
 
 /// Lowest and highest stamp among those near the median.
 StampSpan robust_span(std::vector<std::int64_t>& stamps_ns) {
-  auto middle = stamps_ns.begin() + static_cast<std::ptrdiff_t>(stamps_ns.size() / 2);
-  std::nth_element(stamps_ns.begin(), middle, stamps_ns.end());
-  const std::int64_t median_ns = *middle;
+  const std::int64_t median_ns = upper_median(stamps_ns);
   StampSpan span{median_ns, median_ns};
   for (const std::int64_t stamp_ns : stamps_ns) {
     if (std::abs(stamp_ns - median_ns) <= kNeighbourhoodNs) {

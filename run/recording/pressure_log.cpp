@@ -209,8 +209,8 @@ PressureLog read_pressure_log(const std::filesystem::path& file, const PressureC
   }
   const UnitFinding unit = find_unit(
       {columns.pressure_unit, header.pressure, raw.units_line, median_pressure(raw.rows)}, log.file + ": ");
-  log.notes.push_back("pressure is in " + std::string(unit_name(unit.unit)) + " (column '" + header.pressure +
-                      "', " + unit.reason + ")");
+  log.notes.push_back("pressure is in " + std::string(kPressureUnitNames.name(unit.unit)) + " (column '" +
+                      header.pressure + "', " + unit.reason + ")");
   log.notes.push_back(time.note());
   if (log.has_temperature) {
     log.notes.push_back("temperature is in degC (column '" + header.temperature + "')");

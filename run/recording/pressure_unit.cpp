@@ -12,7 +12,6 @@
 namespace isobar::recording {
 namespace {
 
-constexpr std::array kUnits = {PressureUnit::kPa, PressureUnit::kHectopascal, PressureUnit::kKilopascal};
 // From the top of Mount Everest to a mine 1.1 km down [Pa]: narrow enough that values in hPa and in kPa
 // cannot be taken for each other.
 constexpr double kLowestPa = 30e3;
@@ -52,23 +51,12 @@ UnitFinding checked(PressureUnit unit, const std::string& reason, const UnitClue
   if (fits(clues.median, unit)) {
     return {unit, reason};
   }
-  throw DataError(place + "pressure is in " + unit_name(unit) + ", " + reason + ", but its median, " +
-                  short_text(clues.median) + " " + unit_name(unit) + ", is no air pressure");
+  const std::string name(kPressureUnitNames.name(unit));
+  throw DataError(place + "pressure is in " + name + ", " + reason + ", but its median, " +
+                  short_text(clues.median) + " " + name + ", is no air pressure");
 }
 
 }  // namespace
-
-const char* unit_name(PressureUnit unit) {
-  switch (unit) {
-    case PressureUnit::kPa:
-      return "Pa";
-    case PressureUnit::kHectopascal:
-      return "hPa";
-    case PressureUnit::kKilopascal:
-      return "kPa";
-  }
-  return "Pa";
-}
 
 double pascals_per(PressureUnit unit) {
   switch (unit) {
@@ -122,7 +110,7 @@ UnitFinding find_unit(const UnitClues& clues, const std::string& place) {
         units_in(clues.column_name).empty() ? "as the line of units says" : "as the column's name says",
         clues, place);
   }
-  for (const PressureUnit unit : kUnits) {
+  for (const auto& [unit, name] : kPressureUnitNames.entries) {
     if (fits(clues.median, unit)) {
       return {unit,
               "the only unit in which its median, " + short_text(clues.median) + ", is an air pressure"};

@@ -7,12 +7,18 @@
 #include <string>
 #include <string_view>
 
+#include "core/name_table.hpp"
+
 namespace isobar::recording {
 
 enum class PressureUnit : std::uint8_t { kPa, kHectopascal, kKilopascal };
 
-/// "Pa", "hPa", "kPa".
-const char* unit_name(PressureUnit unit);
+inline constexpr NameTable<PressureUnit, 3> kPressureUnitNames{{{
+    {PressureUnit::kPa, "Pa"},
+    {PressureUnit::kHectopascal, "hPa"},
+    {PressureUnit::kKilopascal, "kPa"},
+}}};
+
 double pascals_per(PressureUnit unit);
 
 /// The unit that a word names: Pa, hPa, mbar, mb, millibar, kPa, in any case.

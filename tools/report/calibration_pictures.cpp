@@ -90,7 +90,7 @@ void draw_medians(Picture& picture, const Cloud& cloud, const Axes& axes) {
 std::string calibration_row_name(CompensationModel model) {
   if (model == CompensationModel::kNone) return "A'_m, as it is";
   if (model == CompensationModel::kOffset) return "A'_m + offset";
-  return model_name(model);
+  return std::string(kCompensationModelNames.name(model));
 }
 
 Picture residual_boxes(const Calibration& calibration) {

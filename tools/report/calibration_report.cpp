@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/calibration/still_period.hpp"
 #include "core/statistics/distribution.hpp"
 #include "tools/report/aligned_rows.hpp"
 #include "tools/report/calibration_pictures.hpp"
@@ -64,7 +65,7 @@ std::string models_table(const CalibrationReport& report) {
 std::string tiles(const CalibrationReport& report) {
   const ModelResult& chosen = report.calibration.model(report.chosen);
   const ModelResult& offset = report.calibration.model(CompensationModel::kOffset);
-  return tile_row({{"Model", model_name(report.chosen),
+  return tile_row({{"Model", std::string(kCompensationModelNames.name(report.chosen)),
                     std::to_string(free_coefficient_count(report.chosen)) +
                         " coefficients, condition number " + fixed(chosen.condition_number, 1)},
                    {"Residual, median |r|", fixed(chosen.residual.median_abs_pa, 2) + " Pa",
@@ -72,7 +73,7 @@ std::string tiles(const CalibrationReport& report) {
                    {"Residual, rms", fixed(chosen.residual.rms_pa, 2) + " Pa",
                     "with an offset alone " + fixed(offset.residual.rms_pa, 2) + " Pa"},
                    {"Cross-validated residual, rms", fixed(chosen.cross_validated_rms_pa, 2) + " Pa",
-                    "white noise of a sample " + fixed(white_noise_pa(chosen.residuals_pa), 2) + " Pa"}});
+                    "white noise of a sample " + fixed(robust_sigma(chosen.residuals_pa), 2) + " Pa"}});
 }
 
 }  // namespace
@@ -85,7 +86,8 @@ std::string calibration_table(const Calibration& calibration,
   for (const ModelResult& result : calibration.models) {
     Cells cells = row_of(result, offset);
     if (!result.left_out.empty()) {
-      left_out += std::string(model_name(result.model)) + " was left out: " + result.left_out + "\n";
+      left_out += std::string(kCompensationModelNames.name(result.model)) +
+                  " was left out: " + result.left_out + "\n";
     } else {
       rows.push_back(std::move(cells));
     }

@@ -16,7 +16,7 @@ namespace isobar::bench {
 
 namespace {
 
-/// Where in a record x, y and z stand.
+/// Byte offsets of x, y and z in a record.
 struct Layout {
   std::size_t record_bytes = 0;
   std::array<std::size_t, 3> offset{};
@@ -27,7 +27,7 @@ struct Layout {
   throw DataError(file.string() + ": " + rule);
 }
 
-/// Header of a PCD file, up to and with its DATA line.
+/// Header of a PCD file, up to and including its DATA line.
 class PcdHeader {
  public:
   PcdHeader(std::istream& stream, const std::filesystem::path& file) : file_(file) {
@@ -53,7 +53,7 @@ class PcdHeader {
     const bool complete = !fields_.empty() && sizes_.size() == fields_.size() &&
                           types_.size() == fields_.size() &&
                           (counts_.empty() || counts_.size() == fields_.size());
-    if (!complete) refuse(file_, "FIELDS, SIZE, TYPE and COUNT must have equally many entries");
+    if (!complete) refuse(file_, "FIELDS, SIZE, TYPE and COUNT must have the same number of entries");
     Layout layout;
     layout.point_count = points_;
     std::array<bool, 3> found{};
@@ -66,7 +66,7 @@ class PcdHeader {
       }
       layout.record_bytes += sizes_[i] * (counts_.empty() ? 1 : counts_[i]);
     }
-    if (!found[0] || !found[1] || !found[2]) refuse(file_, "FIELDS: x, y and z must be among them");
+    if (!found[0] || !found[1] || !found[2]) refuse(file_, "FIELDS: must include x, y and z");
     return layout;
   }
 
@@ -118,7 +118,7 @@ void read_cloud(const std::filesystem::path& file, Scan& scan) {
   if (file.extension() == ".pcd") layout = PcdHeader(stream, file).layout();
   std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
   if (bytes.size() < layout.point_count * layout.record_bytes || layout.point_count == 0) {
-    refuse(file, "must hold " + std::to_string(layout.point_count) + " points, and at least one");
+    refuse(file, "must hold " + std::to_string(layout.point_count) + " points (at least one)");
   }
   const std::size_t stride = (layout.point_count + Scan::kMaxPoints - 1) / Scan::kMaxPoints;
   scan.point_count = 0;

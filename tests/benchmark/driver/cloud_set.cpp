@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A folder of clouds as a data set. Nothing is known beside the clouds: no IMU, no wheels, no times of
-// points.
+// Folder of clouds as a data set: no IMU, no wheels, no times of points.
 #include "config/config.hpp"
 #include "core/errors.hpp"
 #include "daemon/stage_settings.hpp"
@@ -12,11 +11,11 @@ namespace isobar::bench {
 namespace {
 
 constexpr std::int64_t kStartNs = 1'700'000'000'000'000'000;
-// Time between two clouds. They carry none; with 0.4 s the constant-velocity model allows what a walk or a
-// car does between two of them.
+// Assumed time between two clouds, which have no stamps: with 0.4 s the constant-velocity model allows the
+// motion of a walk or a car between two of them.
 constexpr std::int64_t kStepNs = 400'000'000;
 
-/// All that is known of such a platform: it stands on the ground, and moves somehow.
+/// Prior of an unknown platform: upright, with unknown motion.
 Prior ignorant_prior(std::int64_t stamp_ns) {
   constexpr double kTurnRateRadS = 0.15;
   Prior prior;
@@ -49,7 +48,7 @@ class CloudSet : public DataSet {
       scan->stamp_ns = scan->end_stamp_ns = stamp_ns;
       scan->sequence = static_cast<std::uint32_t>((stamp_ns - kStartNs) / kStepNs);
       sink.on_prior(ignorant_prior(stamp_ns));
-      sink.on_scan(*scan, 0.0);  // there are no packets to decode
+      sink.on_scan(*scan, 0.0);  // no packets to decode
       stamp_ns += kStepNs;
     }
   }

@@ -13,7 +13,7 @@ namespace isobar::bench {
 
 namespace {
 
-/// Every figure that says how good a build is, by name: "median ms, registration".
+/// Appends the compared figures of one data set with their names: "registration, median ms".
 void collect(const Json& data, std::vector<std::pair<std::string, double>>& figures) {
   const auto add = [&](const std::string& name, const Json& value) {
     if (value.is_number()) figures.emplace_back(name, value.get<double>());
@@ -37,12 +37,7 @@ void collect(const Json& data, std::vector<std::pair<std::string, double>>& figu
   }
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return quantile(values, 0.5);
-}
-
-/// One figure over all pairs of runs.
+/// Medians of one figure over the runs, and its ratios over the pairs.
 Json figure_json(const std::string& name, const std::vector<double>& a, const std::vector<double>& b) {
   Json row{{"figure", name}, {"a", median(a)}, {"b", median(b)}, {"ratio", nullptr}};
   std::vector<double> ratios;
@@ -80,7 +75,7 @@ Series series_of(const std::vector<Json>& runs, std::size_t index) {
       series.values.resize(figures.size());
     }
     if (figures.size() != series.names.size())
-      throw DataError("the runs of one build differ in their figures");
+      throw DataError("the runs of one build have different figures");
     for (std::size_t i = 0; i < figures.size(); ++i) series.values[i].push_back(figures[i].second);
   }
   return series;
@@ -96,7 +91,7 @@ Json compare_data(const std::vector<Json>& a, const std::vector<Json>& b, std::s
   Json rows = Json::array();
   for (std::size_t i = 0; i < of_a.names.size(); ++i) {
     const auto found = std::find(of_b.names.begin(), of_b.names.end(), of_a.names[i]);
-    if (found == of_b.names.end()) continue;  // a figure that only one of the builds knows
+    if (found == of_b.names.end()) continue;  // figure of one build only
     rows.push_back(figure_json(of_a.names[i], of_a.values[i],
                                of_b.values[static_cast<std::size_t>(found - of_b.names.begin())]));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two builds on the same data: ratios of results that were made in turns.
+// Comparison of two builds on the same data: ratios of results of alternating runs.
 #pragma once
 
 #include <string>
@@ -9,13 +9,15 @@
 
 namespace isobar::bench {
 
-/// A JSON file. Throws DataError.
+/// Reads a JSON file.
+/// @throws DataError when the file cannot be read or is not JSON
 Json read_json(const std::string& file);
 
-/// `a` and `b`: files that `isobar_benchmark run` wrote, equally many; the i-th of both were made one after
-/// the other, so that what disturbed the machine disturbed both. For every data set and figure the median of
-/// the ratios b / a of these pairs, with the smallest and the largest. Throws DataError where they do not
-/// belong together, UsageError where their numbers differ.
+/// Compares results of `isobar_benchmark run`: per data set and figure the median, smallest and largest ratio
+/// b / a over the pairs. `a`, `b`: equally many files; the i-th of both come from successive runs, so that
+/// disturbances of the machine affect both.
+/// @throws DataError when the files are of different data or not results of a run
+/// @throws UsageError when the numbers of files differ
 Json compare_results(const std::vector<std::string>& a, const std::vector<std::string>& b);
 
 void print_comparison(const Json& ratios);

@@ -11,7 +11,7 @@ namespace isobar::bench {
 
 namespace {
 
-/// Folder of the scenario's recording, made now if it was not yet. A run cut short has a folder of its own.
+/// Folder of the scenario's recording, simulated if missing. A shortened run has its own folder.
 std::filesystem::path simulated(const std::string& scenario, const DataSetOptions& options) {
   std::string name = scenario + "-" + std::to_string(options.seed);
   if (std::isfinite(options.stop_after_s))
@@ -19,7 +19,7 @@ std::filesystem::path simulated(const std::string& scenario, const DataSetOption
   const std::filesystem::path folder = options.cache / name;
   if (std::filesystem::exists(folder)) return folder;
   std::fprintf(stderr, "simulating %s\n", name.c_str());
-  // Under another name until it is complete, so that a run that was stopped leaves no half recording.
+  // Renamed once complete: an interrupted run leaves no partial recording under the final name.
   const std::filesystem::path unfinished = options.cache / (name + ".unfinished");
   std::filesystem::remove_all(unfinished);
   std::filesystem::create_directories(options.cache);

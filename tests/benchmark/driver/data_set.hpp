@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the benchmark runs on: a recording, a scenario that becomes one, or a folder of point clouds.
+// Data sets of the benchmark: recordings, simulated scenarios, folders of point clouds.
 #pragma once
 
 #include <filesystem>
@@ -16,18 +16,18 @@
 
 namespace isobar::bench {
 
-/// Takes what a data set gives, in the order in which registration would see it.
+/// Receives priors and scans of a data set, in the order of the registration stage.
 class ScanSink {
  public:
   virtual ~ScanSink() = default;
   virtual void on_prior(const Prior& prior) = 0;
-  /// A scan whose end the priors have reached; `decode_ms`: CPU time from its packets to it.
+  /// A scan, once priors reach its end; `decode_ms`: CPU time of decoding its packets.
   virtual void on_scan(const Scan& scan, double decode_ms) = 0;
-  /// True where it needs no more.
+  /// True to end the pass.
   [[nodiscard]] virtual bool done() const { return false; }
 };
 
-/// A sequence of scans with priors that can be played any number of times, always the same.
+/// Sequence of scans with priors; every pass gives the same.
 class DataSet {
  public:
   virtual ~DataSet() = default;
@@ -35,7 +35,7 @@ class DataSet {
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const StageSettings& settings() const { return settings_; }
-  /// Empty: nobody knows the path.
+  /// Reference path; empty if unknown.
   [[nodiscard]] const evaluation::Trajectory& reference() const { return reference_; }
 
  protected:
@@ -47,12 +47,14 @@ class DataSet {
 struct DataSetOptions {
   std::uint64_t seed = 1;  ///< of scenarios
   double stop_after_s = std::numeric_limits<double>::infinity();
-  std::filesystem::path cache = "build/benchmark/data";  ///< where recordings of scenarios are kept
+  std::filesystem::path cache = "build/benchmark/data";  ///< folder of the scenarios' recordings
   Config config;                                         ///< sensors and mounts come from the recording
 };
 
-/// `what`: a folder with recording.toml, a folder with *.pcd or *.bin, else the name of a scenario, which is
-/// simulated once and kept. Throws DataError, UsageError.
+/// Opens a data set. `what`: a folder with recording.toml, a folder with *.pcd or *.bin, else the name of a
+/// scenario, which is simulated once and kept.
+/// @throws DataError when files break their format
+/// @throws UsageError when there is no such scenario
 std::unique_ptr<DataSet> open_data_set(const std::string& what, const DataSetOptions& options);
 
 std::unique_ptr<DataSet> open_recording(const std::filesystem::path& folder, const DataSetOptions& options);

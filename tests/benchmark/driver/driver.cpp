@@ -28,7 +28,7 @@ Json run_on(DataSet& data, const DriverOptions& options) {
   std::vector<Pass> passes;
   for (int i = 0; i < options.repeat; ++i) {
     passes.push_back(measure_pass(data, i == 0));
-    if (passes.back().scans.empty()) throw DataError(data.name() + ": not one scan could be decoded");
+    if (passes.back().scans.empty()) throw DataError(data.name() + ": contains no decodable scan");
   }
   Json result =
       own_figures(data, passes, options.with_stages ? measure_stages(data) : std::vector<StageCosts>{});

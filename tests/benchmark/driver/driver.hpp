@@ -13,13 +13,14 @@ struct DriverOptions {
   std::vector<std::string> data;  ///< see open_data_set()
   DataSetOptions data_options;
   int repeat = 3;                 ///< passes over each data set, >= 1
-  bool with_stages = true;        ///< one more pass that splits registrations by stage
-  bool with_peers = true;         ///< one more pass side by side with the peers
-  std::size_t peer_scans = 1200;  ///< of that pass, at most: the peers are slow
+  bool with_stages = true;        ///< additional pass: time of each stage of the registration
+  bool with_peers = true;         ///< additional pass with the peers
+  std::size_t peer_scans = 1200;  ///< at most, in that pass: the peers are slow
 };
 
-/// Measures on every data set. {machine, data: [{name, ms, growth, memory, …, peers}]}. Throws DataError,
-/// UsageError.
+/// Measures on every data set. Returns {machine, data: [{name, ms, growth, memory, …, peers}]}.
+/// @throws DataError when a data set cannot be read
+/// @throws UsageError when there is no such scenario
 nlohmann::ordered_json run_benchmark(const DriverOptions& options);
 
 }  // namespace isobar::bench

@@ -16,7 +16,7 @@ namespace isobar::bench {
 
 namespace {
 
-/// The counter's file, or -1 and why.
+/// File descriptor of the counter, or -1 and the reason.
 int open_counter(std::uint64_t event, std::string& refusal) {
   perf_event_attr attributes{};
   attributes.type = PERF_TYPE_HARDWARE;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the processor counts of this thread, and what the kernel counts of this process.
+// Hardware counters of this thread, and resident memory of this process.
 #pragma once
 
 #include <cstdint>
@@ -7,20 +7,20 @@
 
 namespace isobar::bench {
 
-/// Counts since the start of the thread's counters; only differences mean something.
+/// Counts since an arbitrary start: use differences.
 struct HardwareCounts {
   std::uint64_t instructions = 0;
-  std::uint64_t cache_misses = 0;  ///< of the last level
+  std::uint64_t cache_misses = 0;  ///< last-level cache
 };
 
-/// Why a counter does not run: "not allowed: …", "not there: …"; empty where it does.
+/// Reason why a counter is not available: "not allowed: …", "not there: …"; empty if it runs.
 struct CounterRefusals {
   std::string instructions;
   std::string cache_misses;
 };
 
-/// Instructions and cache misses of the constructing thread in user space, by perf_event_open(2). Virtual
-/// machines often have the one without the other.
+/// Instructions and cache misses of the constructing thread in user space (perf_event_open(2)). Virtual
+/// machines often have only one of them.
 class HardwareCounters {
  public:
   HardwareCounters();
@@ -29,16 +29,16 @@ class HardwareCounters {
   HardwareCounters& operator=(const HardwareCounters&) = delete;
 
   [[nodiscard]] const CounterRefusals& refusals() const { return refusals_; }
-  /// Zero where a counter does not run.
+  /// Zero for a counter that is not available.
   [[nodiscard]] HardwareCounts read() const;
 
  private:
   CounterRefusals refusals_;
-  int instructions_;  // files of the counters, -1: none
+  int instructions_;  // file descriptors of the counters; -1: none
   int cache_misses_;
 };
 
-/// Resident memory of this process without file pages [bytes], after free memory went back to the system.
+/// Resident memory of this process without file pages [bytes], after returning free memory to the system.
 std::uint64_t resident_bytes();
 
 }  // namespace isobar::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// isobar_benchmark: what registration and map cost a scan, beside their peers.
+// isobar_benchmark: cost per scan of registration and map, compared with peers.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -27,22 +27,23 @@ void add_run(CLI::App& app, DriverOptions& options, std::string& config, std::st
   CLI::App* run = app.add_subcommand("run", "Measure on recordings, scenarios and clouds");
   run->add_option("DATA", options.data, "recording folder, folder of *.pcd or *.bin, or scenario")
       ->required();
-  run->add_option("--seed", options.data_options.seed, "of scenarios")->capture_default_str();
-  run->add_option("--stop-after", options.data_options.stop_after_s, "leave out what comes later [s]")
+  run->add_option("--seed", options.data_options.seed, "random seed of scenarios")->capture_default_str();
+  run->add_option("--stop-after", options.data_options.stop_after_s,
+                  "use only the first part of a recording [s]")
       ->check(CLI::PositiveNumber);
   run->add_option("--cache", options.data_options.cache, "folder for recordings of scenarios")
       ->capture_default_str();
   run->add_option("--config", config, "TOML file; sensors and mounts come from the recording")
       ->check(CLI::ExistingFile);
-  run->add_option("--repeat", options.repeat, "passes; of each figure of a scan the median is taken")
+  run->add_option("--repeat", options.repeat, "passes; each figure of a scan is the median over them")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
-  run->add_flag("!--no-stages", options.with_stages, "do not split registrations by stage");
+  run->add_flag("!--no-stages", options.with_stages, "do not measure the stages of a registration");
   run->add_flag("!--no-peers", options.with_peers, "do not run the peers");
-  run->add_option("--peer-scans", options.peer_scans, "scans of the pass with the peers")
+  run->add_option("--peer-scans", options.peer_scans, "largest number of scans with the peers")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  run->add_option("--micro", micro, "JSON of Google Benchmark that becomes part of the result")
+  run->add_option("--micro", micro, "JSON of Google Benchmark to include in the result")
       ->check(CLI::ExistingFile);
   run->add_option("--out", out, "file for the result as JSON");
   run->callback([&] {
@@ -55,7 +56,7 @@ void add_run(CLI::App& app, DriverOptions& options, std::string& config, std::st
 }
 
 void add_compare(CLI::App& app, std::vector<std::string>& a, std::vector<std::string>& b, std::string& out) {
-  CLI::App* compare = app.add_subcommand("compare", "Ratios of results that were made in turns");
+  CLI::App* compare = app.add_subcommand("compare", "Compare two builds by results of alternating runs");
   compare->add_option("--a", a, "results of the first build, in order")->required()->check(CLI::ExistingFile);
   compare->add_option("--b", b, "results of the second build, in order")
       ->required()
@@ -69,7 +70,7 @@ void add_compare(CLI::App& app, std::vector<std::string>& a, std::vector<std::st
 }
 
 int main_with_errors(int argc, char** argv) {
-  CLI::App app{"isobar_benchmark: what registration and map cost a scan. Times are CPU times of the thread."};
+  CLI::App app{"isobar_benchmark: cost per scan of registration and map. Times are CPU times of the thread."};
   app.require_subcommand(1);
   DriverOptions options;
   std::string config;

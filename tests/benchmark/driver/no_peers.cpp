@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stands in for pcl_peers.cpp where there is no PCL.
+// Replaces pcl_peers.cpp in builds without PCL.
 #include "tests/benchmark/driver/peer.hpp"
 
 namespace isobar::bench {

@@ -10,7 +10,7 @@ namespace {
 
 using test::allocation_count;
 
-// Scans between two looks at the memory: each look gives free memory back to the system, which costs the next
+// Scans between two measurements of the memory: each returns free memory to the system, which costs the next
 // scans page faults.
 constexpr std::size_t kMemoryInterval = 100;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One pass of the system under test over a data set: what each scan cost, and where it led.
+// One pass of the system under test over a data set: cost and pose of each scan.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,14 @@
 
 namespace isobar::bench {
 
-/// CPU time and more of one scan.
+/// Cost of one scan: CPU times, allocations, hardware counts.
 struct ScanCosts {
-  double decode_ms = 0.0;        ///< 0 where there are no packets
+  double decode_ms = 0.0;        ///< 0 without packets
   double registration_ms = 0.0;  ///< deskew to solve
-  double map_ms = 0.0;           ///< 0 where the map did not want the scan, but for asking
-  double hand_over_ms = 0.0;     ///< where map_changed
+  double map_ms = 0.0;           ///< almost 0 if the map did not take the scan
+  double hand_over_ms = 0.0;     ///< if map_changed
   bool map_changed = false;
-  bool registered = false;  ///< else the pose is the prior's, or the map is being started
+  bool registered = false;  ///< false: the pose is the prior's, or the map is bootstrapping
   std::size_t registration_allocations = 0;
   std::size_t map_allocations = 0;
   HardwareCounts registration_counts;
@@ -40,20 +40,20 @@ struct MemorySample {
 
 struct Pass {
   std::vector<ScanCosts> scans;
-  std::vector<MemorySample> memory;  ///< before the first scan, then some, then after the last
+  std::vector<MemorySample> memory;  ///< before the first scan, at intervals, and after the last
   std::vector<evaluation::StampedPose> poses;
   CounterRefusals refusals;
 };
 
-/// Runs decoder, registration and map over all scans and measures each on its own. `look_at_memory`: see how
-/// the process grows. Only the first pass over a data set can tell (what it frees goes back to the system but
-/// for pages that are still in part used), and each look disturbs the next scan.
+/// Runs decoder, registration and map over all scans and measures each separately. `look_at_memory`: sample
+/// the memory of the process. Meaningful in the first pass over a data set only (later ones reuse partly
+/// freed pages); each sample disturbs the next scan.
 Pass measure_pass(DataSet& data, bool look_at_memory);
 
-/// Runs them once more and splits the time of each registration by stage, for scans that were registered.
+/// Another pass that measures the stages of each successful registration.
 std::vector<StageCosts> measure_stages(DataSet& data);
 
-/// A pose as trajectories have it.
+/// Pose as in a trajectory.
 evaluation::StampedPose stamped(std::int64_t stamp_ns, const Eigen::Isometry3d& T_map_base);
 
 }  // namespace isobar::bench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// PCL's point-to-plane ICP and its GICP, one thread each, with what helps them: the tree of the map and its
-// normals are made when the map changes, not for every scan.
+// PCL's point-to-plane ICP and GICP, one thread each. In their favour, tree and normals of the map are
+// computed when the map changes, not for every scan.
 #include <pcl/filters/approximate_voxel_grid.h>
 #include <pcl/registration/gicp.h>
 #include <pcl/registration/icp.h>
@@ -12,14 +12,14 @@ namespace isobar::bench {
 
 namespace {
 
-// Thins a scan of a corridor to about as many points as ours takes.
+// Voxel size: thins a scan of a corridor to about as many points as our registration uses.
 constexpr float kScanVoxelM = 0.25F;
-// Fewer targets than this are no map yet.
+// Smallest number of targets of a usable map.
 constexpr std::size_t kFewestTargets = 200;
-// Share of a plane's variance that GICP leaves along its normal; PCL's own default.
+// GICP's relative variance along a plane's normal; PCL's default.
 constexpr double kGicpEpsilon = 1e-3;
 
-/// The points of a scan, thinned by PCL.
+/// Points of a scan, thinned by PCL.
 PeerCloud::Ptr thinned(std::span<const ScanPoint> cloud) {
   PeerCloud::Ptr all(new PeerCloud);
   all->reserve(cloud.size());
@@ -36,7 +36,7 @@ PeerCloud::Ptr thinned(std::span<const ScanPoint> cloud) {
   return thin;
 }
 
-/// What both have in common: their map, and how PCL's registrations are asked.
+/// Common part: the map, and the call of PCL's registration.
 class PclPeer : public Peer {
  public:
   PclPeer(std::string name, const PeerSettings& settings)
@@ -52,7 +52,7 @@ class PclPeer : public Peer {
     registration.align(aligned, guess.matrix().cast<float>());
     const Eigen::Matrix4d T = registration.getFinalTransformation().template cast<double>();
     Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
-    // Float products of many steps are not quite a rotation any more.
+    // Restore orthonormality after float products of many steps.
     T_map_base.linear() = Eigen::Quaterniond(T.topLeftCorner<3, 3>()).normalized().toRotationMatrix();
     T_map_base.translation() = T.topRightCorner<3, 1>();
     if (!registration.hasConverged()) return {guess, false};
@@ -75,7 +75,7 @@ class PclPeer : public Peer {
   void configure(double max_distance_m) {
     registration().setMaxCorrespondenceDistance(max_distance_m);
     registration().setMaximumIterations(settings_.max_iterations);
-    // PCL's is the square of a step.
+    // PCL takes the squared step.
     registration().setTransformationEpsilon(settings_.convergence_m * settings_.convergence_m);
   }
 
@@ -85,9 +85,9 @@ class PclPeer : public Peer {
   PeerMap map_;
 };
 
-// Of the two distances each takes the one with the smaller error after the first two minutes of three-floors
-// (seed 1): ICP 0.41 m against 0.64 m, GICP 0.27 m against 0.40 m. Thirty iterations in place of twelve
-// change neither by more than 2 cm.
+// Each peer uses the one of the two distances with the smaller error after the first two minutes of
+// three-floors (seed 1): ICP 0.41 m against 0.64 m, GICP 0.27 m against 0.40 m. Thirty instead of twelve
+// iterations change neither by more than 2 cm.
 class PointToPlane : public PclPeer {
  public:
   explicit PointToPlane(const PeerSettings& settings) : PclPeer("PCL point-to-plane ICP", settings) {
@@ -110,7 +110,7 @@ class Gicp : public PclPeer {
   using Algorithm = pcl::GeneralizedIterativeClosestPoint<pcl::PointNormal, pcl::PointNormal>;
   Registration& registration() override { return gicp_; }
 
-  /// Its planes as GICP would make them from neighbours: variance 1 along the plane and epsilon across.
+  /// Covariances as GICP computes them from neighbours: variance 1 along the plane, epsilon across.
   void target_changed(const PeerCloud& target) override {
     const auto covariances = pcl::make_shared<Algorithm::MatricesVector>();
     covariances->reserve(target.size());

@@ -11,15 +11,15 @@ namespace isobar::bench {
 
 namespace {
 
-// Edge of a voxel: near enough that a wall's neighbours fill the search below, far enough for a small tree.
+// Edge of a voxel: small enough for the neighbour search below on a wall, large enough for a small tree.
 constexpr float kVoxelM = 0.2F;
-// Neighbours of a normal: within this distance, and at least so many.
+// Neighbours of a normal: search radius and smallest number.
 constexpr double kNeighbourM = 0.6;
 constexpr std::size_t kFewestNeighbours = 6;
-// Variance across a line of neighbours, as share of that along it, below which they are one ring.
+// Ratio of variances across and along a line below which neighbours lie on one ring.
 constexpr float kLineShare = 0.05F;
 constexpr float kNoNormal = -1.0F;
-// Far points are dropped when the robot has moved by this much.
+// Motion of the robot after which far points are dropped.
 constexpr float kForgetStepM = 10.0F;
 
 }  // namespace

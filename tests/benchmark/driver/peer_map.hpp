@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The local map of the peers: PCL's search tree over points with normals, grown scan by scan.
+// Local map of the peers: points with normals and a PCL search tree, extended scan by scan.
 #pragma once
 
 #include <pcl/point_cloud.h>
@@ -18,16 +18,16 @@ namespace isobar::bench {
 
 using PeerCloud = pcl::PointCloud<pcl::PointNormal>;
 
-/// At most one point a voxel. A point's normal is that of its neighbours in the map, of many scans and rings;
-/// it becomes a target only when these span a plane, since neighbours on one ring make a line.
+/// At most one point per voxel. A point's normal is fitted to its neighbours in the map, from many scans and
+/// rings. It becomes a target only if these span a plane: neighbours on one ring form a line.
 class PeerMap {
  public:
   explicit PeerMap(double radius_m) : radius_m_(radius_m) {}
 
-  /// Adds p_base placed at `T_map_base`, fits the normals that are new, and builds the tree of the targets.
+  /// Adds points (p_base) at `T_map_base`, fits new normals, and rebuilds the tree of the targets.
   void add(std::span<const ScanPoint> cloud, const Eigen::Isometry3d& T_map_base);
 
-  /// Points with normals, and a tree over them. Null before there are any.
+  /// Points with normals, and their tree; null if there are none.
   [[nodiscard]] const PeerCloud::Ptr& target() const { return target_; }
   [[nodiscard]] const pcl::search::KdTree<pcl::PointNormal>::Ptr& tree() const { return tree_; }
 
@@ -40,9 +40,9 @@ class PeerMap {
   void build_target();
 
   double radius_m_;
-  PeerCloud::Ptr points_{new PeerCloud};                   // all; those without a normal have curvature -1
-  std::unordered_map<std::uint64_t, bool> voxels_;         // those that hold a point
-  Eigen::Vector3f p_forgot_at_ = Eigen::Vector3f::Zero();  // where far points were dropped last
+  PeerCloud::Ptr points_{new PeerCloud};                   // all points; without a normal: curvature -1
+  std::unordered_map<std::uint64_t, bool> voxels_;         // occupied voxels
+  Eigen::Vector3f p_forgot_at_ = Eigen::Vector3f::Zero();  // place of the last dropping of far points
   pcl::search::KdTree<pcl::PointNormal> neighbours_{false};
   PeerCloud::Ptr target_;
   pcl::search::KdTree<pcl::PointNormal>::Ptr tree_;

@@ -14,7 +14,7 @@ namespace isobar::bench {
 
 namespace {
 
-/// A peer with what it needs to follow the robot.
+/// A peer with its motion model and map updates.
 class PeerRunner {
  public:
   PeerRunner(std::unique_ptr<Peer> peer, const StageSettings& settings)
@@ -93,7 +93,7 @@ class PeerSink : public ScanSink {
 
     Prior end;
     const std::span<const ScanPoint> cloud = deskewing_.deskew(scan, end);
-    if (!end.attitude_valid) return;  // ours has not started either
+    if (!end.attitude_valid) return;  // our registration has not started either
     pass_.ours.registration_ms.push_back(registration_ms);
     pass_.ours.map_ms.push_back(map_ms);
     pass_.ours.poses.push_back(stamped(out_->pose.stamp_ns, out_->pose.T_map_base));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ours and the peers side by side: every scan through all of them, one after the other, on one thread.
+// Pass with the peers: our registration and the peers process each scan in turn, on one thread.
 #pragma once
 
 #include <string>
@@ -11,24 +11,24 @@
 
 namespace isobar::bench {
 
-/// What one system did with the scans of the pass.
+/// Results of one system in the pass.
 struct SystemRun {
   std::string name;
-  std::vector<double> registration_ms;  ///< a scan
-  std::vector<double> map_ms;           ///< a scan; 0 where the map was not updated
+  std::vector<double> registration_ms;  ///< per scan
+  std::vector<double> map_ms;           ///< per scan; 0 without a map update
   std::vector<evaluation::StampedPose> poses;
-  std::size_t failures = 0;  ///< scans on which it did not converge
+  std::size_t failures = 0;  ///< scans without convergence
 };
 
 struct PeerPass {
   SystemRun ours;
-  std::vector<SystemRun> peers;  ///< as many entries a series as ours
+  std::vector<SystemRun> peers;  ///< series as long as ours
 };
 
-/// Takes the first `max_scans` scans after the start. Ours deskews inside of its time; the peers get the same
-/// clouds deskewed, and thin them inside of theirs. All start from the same prior by a motion model of their
-/// own: roll and pitch from gravity, height from pressure, the way from dead reckoning. All add a scan to the
-/// map under the same conditions (MapConfig::update_…).
+/// Processes the first `max_scans` scans after the start. Our time includes deskewing; the peers get the
+/// deskewed cloud, and their time includes thinning. All start from the same priors through their own motion
+/// model: roll and pitch from gravity, height from pressure, translation from dead reckoning. All update
+/// their map under the same conditions (MapConfig::update_…).
 PeerPass measure_peers(DataSet& data, std::vector<std::unique_ptr<Peer>> peers, std::size_t max_scans);
 
 }  // namespace isobar::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A recording folder as a data set: decoder and prior estimator in lock step, as `isobar replay` runs them.
+// Recording folder as a data set: decoder and prior estimator in lock step, as in `isobar replay`.
 #include <deque>
 #include <optional>
 #include <utility>
@@ -15,14 +15,14 @@ namespace isobar::bench {
 
 namespace {
 
-// As in LockStep: more scans than this wait only when the IMU is silent.
+// As in LockStep: more waiting scans than this mean that the IMU is silent.
 constexpr std::size_t kMaxWaitingScans = 4;
 
 /// One pass over a recording.
 ///
-/// Reading the thread's clock costs as much as decoding half a packet. So events wait until there is a batch
-/// of packets; all of them are decoded at once, with the clock read around the batch and where a scan ends;
-/// then the events go on in their order, as if nothing had happened.
+/// Reading the thread's clock costs as much as decoding half a packet. Events are therefore delayed until
+/// there is a batch of packets, which is decoded at once; the clock is read around the batch and at the end
+/// of a scan. Then the events continue in their original order.
 class RecordingPass {
  public:
   RecordingPass(const StageSettings& settings, ScanSink& sink)
@@ -52,7 +52,7 @@ class RecordingPass {
   struct Buffered {
     recording::Event event;
     std::vector<std::uint8_t> packet;
-    std::unique_ptr<Scan> scan;  // that this packet completed
+    std::unique_ptr<Scan> scan;  // completed by this packet
     double decode_ms;            // of that scan
   };
   static constexpr std::size_t kBatch = 16;

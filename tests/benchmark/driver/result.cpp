@@ -21,7 +21,7 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// `figure` of every scan, the median over the passes.
+/// Median over the passes of `figure`, for each scan.
 template <class Figure>
 std::vector<double> over_passes(const std::vector<Pass>& passes, Figure figure) {
   std::vector<double> values(passes.front().scans.size());
@@ -33,7 +33,7 @@ std::vector<double> over_passes(const std::vector<Pass>& passes, Figure figure) 
   return values;
 }
 
-/// The last tenth of the registered scans against the first one.
+/// Growth: last tenth of the registered scans against the first.
 Json growth_json(const std::vector<double>& total_ms) {
   if (total_ms.empty()) return nullptr;
   const std::size_t tenth = std::max<std::size_t>(1, total_ms.size() / 10);
@@ -47,7 +47,7 @@ Json growth_json(const std::vector<double>& total_ms) {
           {"median_ratio", median(last) / median(first)}};
 }
 
-/// Before the first scan is registered there is no map that could have grown.
+/// Total times of registered scans: before the first one there is no map that could grow.
 std::vector<double> registered_totals(const std::vector<Pass>& passes) {
   const std::vector<double> all = over_passes(passes, [](const ScanCosts& scan) { return scan.total_ms(); });
   std::vector<double> kept;
@@ -88,7 +88,7 @@ Json allocations_json(const Pass& pass) {
   return {{"registration", quantiles_json(registration)}, {"map", quantiles_json(map)}};
 }
 
-/// Counts a scan; in place of those that the machine does not give, why.
+/// Hardware counts per scan; for a counter that is not available, the reason.
 Json counters_json(const std::vector<Pass>& passes) {
   const CounterRefusals& refusals = passes.front().refusals;
   const auto of = [&](const std::string& refusal, HardwareCounts ScanCosts::*part,
@@ -107,7 +107,7 @@ Json counters_json(const std::vector<Pass>& passes) {
           {"cache misses, map", of(refusals.cache_misses, &Scan::map_counts, &Counts::cache_misses)}};
 }
 
-/// Error of the path against the reference, both laid over each other at the start; null: nobody knows it.
+/// Error of the path against the reference, aligned at the start; null without a reference.
 Json error_json(const DataSet& data, const std::vector<evaluation::StampedPose>& poses) {
   if (data.reference().empty()) return nullptr;
   const auto result = evaluation::evaluate(data.reference(), {}, evaluation::make_trajectory(poses), {});

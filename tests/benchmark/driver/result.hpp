@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From passes to figures. The result of a run is one JSON document; the tables are printed from it.
+// Figures from passes: the JSON document of a run, and tables printed from it.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -16,18 +16,18 @@ using Json = nlohmann::ordered_json;
 /// {count, mean, median, p90, p99, max}; null without values.
 Json quantiles_json(std::vector<double> values);
 
-/// Costs by stage, growth, memory, allocations, hardware counts and error of one data set. `passes` (at least
-/// one, all over the same scans): of every scan and figure the median over them is taken, so that what
-/// another process of the machine did to one of them is not in it.
+/// Costs by stage, growth, memory, allocations, hardware counts and error of one data set. `passes`: at least
+/// one, all over the same scans. Each figure of a scan is the median over the passes, which removes
+/// disturbances by other processes.
 Json own_figures(const DataSet& data, const std::vector<Pass>& passes, const std::vector<StageCosts>& stages);
 
-/// What each peer needed, and the ratio theirs / ours of every scan.
+/// Cost of each peer, and the ratio theirs / ours per scan.
 Json peer_figures(const DataSet& data, const PeerPass& pass);
 
-/// The processor and the kernel that made the figures.
+/// Processor and kernel of the measurement.
 Json machine_json();
 
-/// Prints a result for people.
+/// Prints a result as tables.
 void print_tables(const Json& result);
 
 }  // namespace isobar::bench

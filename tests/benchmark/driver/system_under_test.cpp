@@ -75,7 +75,7 @@ double StageProbe::time_match(const MapSnapshot& map, const PoseEstimate& pose) 
 }
 
 double StageProbe::time_solve(const PoseEstimate& pose) const {
-  // Any prior will do: what a step costs does not depend on it.
+  // An arbitrary prior: the cost of a step does not depend on it.
   PriorTerm prior;
   prior.information = Matrix6d::Identity() * 1e4;
   const MethodTraits traits = traits_of(pose.effective_method, pose.height_source);

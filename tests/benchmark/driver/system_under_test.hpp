@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Registration and map as the benchmark sees them. This pair of files is the only one of the benchmark that
-// calls Registration, LocalMap, MapSnapshot and the stages of a registration: what changes there changes
-// here.
+// Adapter to registration and map: the only files of the benchmark that call Registration, LocalMap,
+// MapSnapshot and the stages of a registration.
 #pragma once
 
 #include <cstddef>
@@ -14,25 +13,25 @@
 
 namespace isobar::bench {
 
-/// Registration and map, joined as in isobard by the exchange of snapshots, but on one thread.
+/// Registration and map, connected by snapshots as in isobard, but on one thread.
 class SystemUnderTest {
  public:
   explicit SystemUnderTest(const StageSettings& settings);
 
   void add_prior(const Prior& prior) { registration_.add_prior(prior); }
-  /// What the registration thread does with a scan: pins the newest snapshot and registers.
+  /// Work of the registration thread on a scan: pins the newest snapshot and registers.
   void register_scan(const Scan& scan, RegisteredScan& out);
-  /// What the map thread does with it, but for the hand-over. True where the map has a new snapshot.
+  /// Work of the map thread on it, without the hand-over. True if the map has a new snapshot.
   bool update_map(const RegisteredScan& scan);
-  /// Publishes the newest snapshot, which frees the older ones, and pins and lets go of it once.
+  /// Hand-over: publishes the newest snapshot, which frees older ones, then pins and releases it once.
   void hand_over();
 
-  /// The newest snapshot.
+  /// Newest snapshot.
   [[nodiscard]] const MapSnapshot& snapshot() const { return *map_.snapshot(); }
   [[nodiscard]] std::size_t cell_count() const { return map_.cell_count(); }
   [[nodiscard]] std::size_t tile_count() const { return map_.tile_count(); }
   [[nodiscard]] std::size_t plane_count() const { return snapshot().plane_count(); }
-  /// True if the map has a plane within `max_distance_m` of `p_map`: one raw query, as a match makes it.
+  /// One query as in matching: true if the map has a plane within `max_distance_m` of `p_map`.
   [[nodiscard]] bool has_plane_near(const Eigen::Vector3d& p_map, const Eigen::Vector3d& viewpoint_map,
                                     double max_distance_m) const;
 
@@ -50,18 +49,17 @@ struct StageCosts {
   double solve_ms = 0.0;
 };
 
-/// Splits the time of a registration by stage, without a clock inside of it: deskewing and sampling are done
-/// again on the same scan and timed; what remains of the registration is divided between matching and solving
-/// in the proportion of one iteration over all points at the final pose. (Both cost the same share in every
-/// iteration, since both run over the same pairs.)
+/// Time of a registration by stage, without clocks inside it: deskewing and sampling are repeated on the same
+/// scan and timed; the rest is divided between matching and solving in the ratio of one timed iteration over
+/// all points at the final pose (both process the same pairs in every iteration).
 class StageProbe {
  public:
   explicit StageProbe(const StageSettings& settings);
 
   void add_prior(const Prior& prior) { history_.add(prior); }
-  /// All points of `scan`, p_base at its end, and the prior there. Valid until the next call.
+  /// Deskewed points of `scan` (p_base at its end), and the prior there. Valid until the next call.
   std::span<const ScanPoint> deskew(const Scan& scan, Prior& end);
-  /// `registered`: what register_scan() made of `scan` against `map` in `registration_ms`.
+  /// `registered`: result of register_scan() for `scan` against `map`, which took `registration_ms`.
   StageCosts split(const Scan& scan, const MapSnapshot& map, const RegisteredScan& registered,
                    double registration_ms);
 

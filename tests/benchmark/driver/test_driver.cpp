@@ -23,7 +23,7 @@ namespace {
 using namespace isobar;         // NOLINT(google-build-using-namespace)
 using namespace isobar::bench;  // NOLINT(google-build-using-namespace)
 
-/// A folder that goes with the test.
+/// Temporary folder, removed with the test.
 class Folder {
  public:
   Folder() : path_(std::filesystem::temp_directory_path() / ("isobar-bench-" + std::to_string(::getpid()))) {
@@ -38,7 +38,7 @@ class Folder {
   std::filesystem::path path_;
 };
 
-// Seven seconds: gravity is found at once, and for the last three the robot moves.
+// Seven seconds: gravity is found at once; the robot moves in the last three.
 DriverOptions short_run() {
   static const Folder folder;  // simulated once
   DriverOptions options;
@@ -94,7 +94,7 @@ TEST_CASE("a run on a simulated recording gives every figure, and registration a
     CHECK(figures.at("max") >= figures.at("p99"));
   }
   CHECK(data.at("allocations").at("registration").at("max") == 0.0);
-  CHECK(data.at("allocations").at("map").at("max") > 0.0);  // what counts them is alive
+  CHECK(data.at("allocations").at("map").at("max") > 0.0);  // the counter works
   CHECK(data.at("memory").at("end_bytes") > 1e6);
   CHECK(data.at("memory").at("cells") > 100);
   CHECK(data.at("growth").at("mean_ratio") > 0.0);
@@ -102,15 +102,15 @@ TEST_CASE("a run on a simulated recording gives every figure, and registration a
     const std::string& key = item.key();
     const Json& row = item.value();
     CAPTURE(key);
-    CHECK((row.is_string() || row.at("max") > 1e3));  // or why there are none
+    CHECK((row.is_string() || row.at("max") > 1e3));  // or the reason why there are none
   }
-  // A robot that has just started is lost only if the driver feeds it wrongly.
+  // So soon after the start the robot is lost only if the driver feeds it wrongly.
   CHECK(data.at("error").at("final_m") < 0.3);
-  CHECK(data.at("peers").is_string());  // this program has none, and says so
+  CHECK(data.at("peers").is_string());  // the reason: this program has none
   print_tables(result);
 }
 
-TEST_CASE("what the driver measures is what a replay does, to the last bit") {
+TEST_CASE("the poses of the driver are bit-identical to those of a replay") {
   const DriverOptions options = short_run();
   const auto data = open_data_set("stairs-demo", options.data_options);
   const Pass pass = measure_pass(*data, false);
@@ -124,7 +124,7 @@ TEST_CASE("what the driver measures is what a replay does, to the last bit") {
       ++compared;
     }
   }
-  // The first scan can be older than every prior; a replay then gives out no pose of it.
+  // The first scan may be older than every prior: a replay emits no pose for it.
   CHECK(compared + 1 >= pass.poses.size());
   CHECK(compared > 60);
 }
@@ -156,7 +156,7 @@ TEST_CASE("two results are compared figure by figure, in pairs") {
   CHECK_THROWS_AS(compare_results({slow}, {(folder.path() / "none.json").string()}), DataError);
 }
 
-TEST_CASE("a PCD file is read by its header, and one that breaks a rule is refused") {
+TEST_CASE("a PCD file is read according to its header, and a broken one is refused with the rule") {
   const Folder folder;
   const auto scan = std::make_unique<Scan>();
   const std::filesystem::path good = folder.path() / "10.pcd";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Does a scan cost the same after 10 km as at the start? Replays a long recording and prints, for every tenth
-// of it, what registration and all stages together cost a scan, and what memory and disk have grown to.
+// Growth of the cost per scan over 10 km: replays a long recording and prints, for each tenth of it, the cost
+// per scan of registration and of all stages, and the memory and disk used.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -34,7 +34,7 @@ struct Options {
   std::string method;
 };
 
-/// What the process was like when a part of the recording was done.
+/// State of the process at a time of the recording.
 struct Sample {
   double fraction = 0.0;
   double cpu_ms = 0.0;
@@ -81,9 +81,9 @@ Spread spread_of(std::vector<double> values) {
 /// One tenth of the recording.
 struct Part {
   double driven_m = 0.0;
-  std::vector<double> registration_ms;  ///< a scan
-  std::vector<double> all_ms;           ///< a scan, mean over a window of about half a second
-  double resident_mb = 0.0;             ///< most
+  std::vector<double> registration_ms;  ///< per scan
+  std::vector<double> all_ms;           ///< per scan, mean over a window of about half a second
+  double resident_mb = 0.0;             ///< largest
   double disk_mb = 0.0;                 ///< at its end
 };
 
@@ -92,7 +92,7 @@ std::vector<Sample> replay(const Options& options, const Config& config) {
   const isobar::CpuTimer timer;
   isobar::replay(options.recording, config, options.out, [&](double fraction) {
     Sample sample{fraction, timer.elapsed_ms(), resident_mb(), 0.0};
-    // Walking the folder is not for every half second.
+    // Once per part: walking the folder is slow.
     const bool begins = samples.empty() || part_of(fraction) != part_of(samples.back().fraction);
     sample.disk_mb = begins ? disk_mb(options.out) : samples.back().disk_mb;
     if (begins) std::fprintf(stderr, "\r%3.0f %%", 100.0 * fraction);
@@ -127,7 +127,7 @@ std::vector<Part> collect(const Options& options, const std::vector<Sample>& sam
     Part& part = parts[part_of(samples[i].fraction)];
     if (window_scans > 1.0) part.all_ms.push_back((samples[i].cpu_ms - samples[i - 1].cpu_ms) / window_scans);
     part.resident_mb = std::max(part.resident_mb, samples[i].resident_mb);
-    // The disk is looked at when a part begins: that is the end of the one before.
+    // The disk is measured when a part begins, which is the end of the previous one.
     const std::size_t index = part_of(samples[i].fraction);
     if (index > 0 && part_of(samples[i - 1].fraction) != index) parts[index - 1].disk_mb = samples[i].disk_mb;
   }
@@ -160,8 +160,10 @@ void print(const std::vector<Part>& parts) {
 int run(const Options& options) {
   Config config = options.config.empty() ? Config{} : isobar::load_config(options.config);
   if (!options.method.empty()) {
-    const std::optional<isobar::Method> method = isobar::tools::method_of(options.method);
-    if (!method) throw isobar::UsageError("--method: none of " + isobar::tools::method_names());
+    const std::optional<isobar::Method> method = isobar::kMethodNames.value(options.method);
+    if (!method)
+      throw isobar::UsageError("--method: \"" + options.method + "\" is none of " +
+                               isobar::tools::method_names());
     config.method = *method;
   }
   print(collect(options, replay(options, config)));
@@ -171,7 +173,7 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Cost of a scan, memory and disk along a long recording, a tenth of it a line"};
+  CLI::App app{"Cost per scan, memory and disk along a long recording, one line for each tenth"};
   Options options;
   app.add_option("RECORDING", options.recording, "recording folder, of `isobar simulate city-10km`")
       ->required();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When things left and when they arrived, and how much later.
+// Latencies between departures and arrivals.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace isobar::benchmark {
 
-/// Something with a stamp that was seen at `at_ns`, on the steady clock.
+/// A stamped message seen at `at_ns`, steady clock.
 struct Event {
   std::int64_t stamp_ns = 0;
   std::int64_t at_ns = 0;
@@ -30,7 +30,7 @@ inline Summary summary_of(std::vector<std::int64_t> latencies_ns) {
   result.count = latencies_ns.size();
   if (latencies_ns.empty()) return result;
   std::sort(latencies_ns.begin(), latencies_ns.end());
-  // The smallest value that at least this share does not exceed.
+  // Nearest-rank quantile.
   const auto at = [&](double share) {
     const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(latencies_ns.size())));
     return static_cast<double>(latencies_ns[std::max<std::size_t>(rank, 1) - 1]) * 1e-6;
@@ -41,8 +41,8 @@ inline Summary summary_of(std::vector<std::int64_t> latencies_ns) {
   return result;
 }
 
-/// Arrivals matched with departures of the same stamp, give or take `tolerance_ns` (two clocks were
-/// anchored). Both ascend in stamps. Departures without an arrival are counted as `lost`.
+/// Latencies of arrivals matched with departures of the same stamp within `tolerance_ns` (clocks are anchored
+/// separately). Both ascend in stamps. `lost`: number of departures without an arrival.
 struct Matched {
   std::vector<std::int64_t> latencies_ns;
   std::size_t lost = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Those who receive, each in a thread of its own with ordinary scheduling, as a node of the robot's would be.
+// Receivers, each in its own thread with ordinary scheduling, like a node of the robot.
 #pragma once
 
 #include <atomic>
@@ -38,10 +38,10 @@ class PoseListener {
   std::thread thread_;
 };
 
-/// What passed through shared memory.
+/// Messages received through shared memory.
 struct MemoryEvents {
   std::vector<Event> scans, priors, poses;
-  std::vector<Event> wake_ups;           ///< of registered scans: stamp_ns is when they were handed over
+  std::vector<Event> wake_ups;           ///< of registered scans; stamp_ns: time of the hand-over
   std::map<std::string, double> health;  ///< value of each entry of the newest report
 };
 
@@ -52,12 +52,12 @@ struct Queues {
   ipc::Subscriber<RegisteredScan> registered{ipc::topics::kRegisteredScan};
 };
 
-/// The queues of shared memory, from outside of isobard. One in a process.
+/// Subscriber to the queues in shared memory, from outside isobard. At most one per process.
 class MemoryListener {
  public:
-  /// @param queues listens to the queues of every sample, scan and pose, which isobard then has to wake it
-  /// for;
-  ///        else to the health report only
+  /// @param queues true: subscribe to every sample, scan and pose, which isobard must then wake it for;
+  /// false: to the
+  ///        health report only
   explicit MemoryListener(bool queues);
   ~MemoryListener();
   MemoryListener(const MemoryListener&) = delete;

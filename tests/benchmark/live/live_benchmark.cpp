@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// isobard and isobar-dds as they run live, measured by a third process: this one plays a recording over UDP
-// in real time, and is the DDS subscriber. One machine, one clock. Started by `run`, which isolates it.
+// Live benchmark of isobard and isobar-dds: this process plays a recording over UDP in real time and is the
+// DDS subscriber. One machine, one clock. Started by `run`, which isolates it.
 #include <fmt/format.h>
 #include <signal.h>  // NOLINT(modernize-deprecated-headers)
 
@@ -39,7 +39,7 @@ struct Options {
   bool queues = false;
 };
 
-/// The configuration of this measurement, written for both programs.
+/// Writes the configuration of the measurement for both programs.
 std::filesystem::path write_config(const Options& options, const recording::Manifest& manifest) {
   Config config = with_sensors_of(manifest, Config{});
   config.realtime.enabled = !options.ordinary_scheduling;
@@ -48,13 +48,13 @@ std::filesystem::path write_config(const Options& options, const recording::Mani
   return file;
 }
 
-/// A window of time in which is measured.
+/// A phase of the measurement.
 PhaseResult measure(const std::string& name, double seconds, const Programs& programs, Sender& sender,
                     PoseListener& poses, MemoryListener& memory) {
   const Reading before = read(programs, memory);
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
   const Reading after = read(programs, memory);
-  std::this_thread::sleep_for(200ms);  // what left last is still on its way
+  std::this_thread::sleep_for(200ms);  // the last messages are still in transit
   return evaluate(name, before, after, sender, poses, memory);
 }
 
@@ -84,7 +84,7 @@ int run(const Options& options) {
   }
   if (!isobard.running() || !bridge.running())
     throw ServiceError("isobard or isobar-dds ended during the run");
-  if (sender.ended()) throw DataError(options.recording.string() + ": shorter than the measurement");
+  if (sender.ended()) throw DataError(options.recording.string() + ": must be longer than the measurement");
   fmt::print("{}", table(results));
   if (!options.json.empty()) files::write_text_file(options.json, json(results));
   return options.check && !targets_met(results) ? 1 : 0;
@@ -100,8 +100,8 @@ int main_with_errors(int argc, char** argv) {
   app.add_flag("--ordinary-scheduling", options.ordinary_scheduling, "realtime.enabled = false");
   app.add_flag("--stress", options.stress, "a second phase beside `stress-ng --cpu 4`");
   app.add_flag("--queues", options.queues,
-               "latency of the queues in shared memory too; isobard then has one more reader to wake");
-  app.add_flag("--check", options.check, "exit code 1 where a target is missed");
+               "also measure the queues in shared memory; isobard then has one more reader to wake");
+  app.add_flag("--check", options.check, "exit code 1 if a target is missed");
   CLI11_PARSE(app, argc, argv);
   return run(options);
 }

@@ -11,11 +11,11 @@
 namespace isobar::benchmark {
 namespace {
 
-/// Scans come every 50 ms or slower, IMU samples every 2.5 ms or slower: half of it.
+/// Half of the shortest interval: scans 50 ms, IMU samples 2.5 ms.
 constexpr std::int64_t kScanToleranceNs = 25'000'000;
 constexpr std::int64_t kImuToleranceNs = 1'200'000;
 
-/// Entries of the health report whose value counts something.
+/// Entries of the health report that are counters.
 constexpr std::array<std::string_view, 17> kCounts{"lidar/deadline",
                                                    "prior/deadline",
                                                    "registration/deadline",
@@ -87,7 +87,7 @@ std::vector<Target> targets_of(const PhaseResult& result) {
 }
 
 std::string latency_row(const char* what, const Summary& summary) {
-  if (summary.count == 0) return {};  // nobody listened
+  if (summary.count == 0) return {};  // no subscriber
   return fmt::format("  {:<44} {:>8.2f} {:>8.2f} {:>8.2f}  of {}\n", what, summary.median_ms, summary.p99_ms,
                      summary.max_ms, summary.count);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The figures of a phase, their targets, as a table and as JSON.
+// Figures of a phase and their targets, as a table and as JSON.
 #pragma once
 
 #include <map>
@@ -13,13 +13,13 @@
 
 namespace isobar::benchmark {
 
-/// The two programs that are measured.
+/// The two measured programs.
 struct Programs {
   pid_t isobard = 0;
   pid_t bridge = 0;
 };
 
-/// What is known at one moment.
+/// State at one time.
 struct Reading {
   std::int64_t at_ns = 0;
   std::map<std::string, ThreadTimes> isobard, bridge;
@@ -28,10 +28,10 @@ struct Reading {
 };
 [[nodiscard]] Reading read(const Programs& programs, const MemoryListener& memory);
 
-/// Of one thread, or of all threads of a program.
+/// Load of one thread, or of all threads of a program.
 struct Load {
   double cpu_percent = 0.0;        ///< of one core
-  double turns_per_second = 0.0;   ///< times that it got a processor
+  double turns_per_second = 0.0;   ///< time slices per second
   double mean_run_delay_ms = 0.0;  ///< from ready to running
 };
 
@@ -39,15 +39,15 @@ struct PhaseResult {
   std::string name;
   double seconds = 0.0;
   std::size_t scans_sent = 0;
-  std::size_t poses_lost = 0;                   ///< scans whose pose never came over DDS
-  Summary pose_dds;                             ///< last packet sent to pose received over DDS
-  Summary pose_memory;                          ///< … to pose received through shared memory
-  Summary scan_memory;                          ///< … to scan received through shared memory
-  Summary prior_memory;                         ///< IMU datagram sent to prior received through shared memory
-  Summary wake_up;                              ///< registered scan handed over to another process awake
-  std::map<std::string, Load> isobard, bridge;  ///< by thread; "all" is the program
+  std::size_t poses_lost = 0;  ///< scans without a pose over DDS
+  Summary pose_dds;            ///< from last packet sent to pose received over DDS
+  Summary pose_memory;         ///< from last packet sent to pose received through shared memory
+  Summary scan_memory;         ///< from last packet sent to scan received through shared memory
+  Summary prior_memory;        ///< from IMU datagram sent to prior received through shared memory
+  Summary wake_up;             ///< from hand-over of a registered scan to wake-up of another process
+  std::map<std::string, Load> isobard, bridge;  ///< by thread; "all": whole program
   ResidentMemory isobard_memory, bridge_memory;
-  std::map<std::string, double> counts;  ///< health entries that count, how much they grew
+  std::map<std::string, double> counts;  ///< increase of the health counters
 };
 
 [[nodiscard]] PhaseResult evaluate(const std::string& name, const Reading& before, const Reading& after,
@@ -56,7 +56,7 @@ struct PhaseResult {
 
 [[nodiscard]] std::string table(const std::vector<PhaseResult>& results);
 [[nodiscard]] std::string json(const std::vector<PhaseResult>& results);
-/// The targets of real time: latency of the phase, load of isobard, no scan dropped.
+/// Real-time targets: latency of the phase, load of isobard, no dropped scan.
 [[nodiscard]] bool targets_met(const std::vector<PhaseResult>& results);
 
 }  // namespace isobar::benchmark

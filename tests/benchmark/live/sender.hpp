@@ -11,20 +11,20 @@
 
 namespace isobar::benchmark {
 
-/// Plays a recording from a thread of its own, as punctually as the machine allows, and notes what left when.
+/// Plays a recording from its own thread in real time and records departure times.
 class Sender {
  public:
-  /// Starts at once.
+  /// Starts immediately.
   Sender(const std::filesystem::path& recording, std::uint16_t lidar_port);
   ~Sender();  ///< stops
   Sender(const Sender&) = delete;
   Sender& operator=(const Sender&) = delete;
 
-  /// Scans: their end, and when the packet that closes each was sent. IMU samples: their stamp, and when they
-  /// were sent. Stamps of this run, robot clock.
+  /// Departures on the robot clock. Scans: end of the scan, and sending of its closing packet. IMU samples:
+  /// stamp, and sending.
   [[nodiscard]] std::vector<Event> scans() const;
   [[nodiscard]] std::vector<Event> imu_samples() const;
-  /// The recording is at its end.
+  /// Whether the recording has ended.
   [[nodiscard]] bool ended() const { return ended_; }
 
  private:

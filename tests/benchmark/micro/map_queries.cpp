@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One raw query of the map, against the size of the map: that of a match, at random places near its planes.
+// Cost of one map query as in matching, over the size of the map, at random points near its planes.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -15,16 +15,16 @@ namespace {
 
 using namespace isobar;  // NOLINT(google-build-using-namespace)
 
-constexpr double kMaxDistanceM = 0.35;  // of the last iterations
+constexpr double kMaxDistanceM = 0.35;  // in the last iterations
 constexpr double kHeightM = 1.0;        // of the sensor above each floor
 constexpr double kFloorStepM = 4.0;
 constexpr double kPointStepM = 0.1;
-constexpr double kRadiusM = 10.0;  // of what one scan sees
+constexpr double kRadiusM = 10.0;  // seen by one scan
 
-/// Floors one above the other, seen from above at the middle of squares: every point faces its observer.
+/// Stacked floors, observed from above at the centres of squares: every point faces its observer.
 class Floors {
  public:
-  /// Grows square by square, from the middle outward, until the map has `planes`.
+  /// Extends the map square by square, from the centre outward, to `planes` planes.
   explicit Floors(std::size_t planes) : system_(settings()), scan_(std::make_unique<RegisteredScan>()) {
     for (int ring = 0; system_.plane_count() < planes; ++ring) {
       for (int x = -ring; x <= ring; ++x) {
@@ -61,7 +61,7 @@ class Floors {
   static StageSettings settings() {
     StageSettings settings = stage_settings(Config{});
     settings.T_base_lidar = Eigen::Isometry3d::Identity();
-    settings.map.radius_m = 200.0;  // the largest, so that nothing leaves
+    settings.map.radius_m = 200.0;  // the largest: no tile leaves memory
     settings.map.see_through_limit = 0;
     return settings;
   }
@@ -71,7 +71,7 @@ class Floors {
     scan_->pose = PoseEstimate{};
     scan_->pose.mode = PoseMode::kRegistered;
     scan_->pose.T_map_base.translation() = seen_.back();
-    // Two looks, a little apart, give each cell the points that make a plane.
+    // Two scans, slightly displaced, give each cell enough points for a plane.
     for (const double shift : {0.0, kPointStepM / 2.0}) {
       scan_->pose.stamp_ns = (stamp_ns_ += 2'000'000'000);
       scan_->point_count = 0;

@@ -10,7 +10,7 @@
 
 namespace isobar::bench {
 
-/// Gives median, p99 and maximum of `values` as counters of a benchmark.
+/// Sets median, p99 and maximum of `values` as counters of a benchmark.
 inline void count_percentiles(benchmark::State& state, std::vector<double> values, const std::string& unit) {
   if (values.empty()) return;
   std::sort(values.begin(), values.end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the start of the process to isobard's line "ready: …".
+// Time from the start of the process to isobard's line "ready: …".
 #include <benchmark/benchmark.h>
 #include <fcntl.h>
 #include <spawn.h>
@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// An isobard with the default configuration, whose output is read.
+/// An isobard with the default configuration and captured output.
 class Isobard {
  public:
   Isobard() {
@@ -44,7 +44,7 @@ class Isobard {
   Isobard(const Isobard&) = delete;
   Isobard& operator=(const Isobard&) = delete;
 
-  /// Reads until it is ready. False, and said() tells why, if it ended before.
+  /// Waits until it is ready; false if it ended before, said() is then its output.
   bool wait_until_ready() {
     std::array<char, 4096> bytes{};
     while (text_.find("ready:") == std::string::npos) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From send() in one thread to the return of wait() in another, through a queue in shared memory.
+// Wake-up latency: from send() in one thread to the return of wait() in another, through a queue in shared
+// memory.
 #include <benchmark/benchmark.h>
 
 #include <atomic>
@@ -16,7 +17,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr ipc::Topic<ImuSample> kTopic{"benchmark/wake_up", 16, 0};
 
-/// Says when it was woken.
+/// Thread that records its wake-up times.
 class Sleeper {
  public:
   Sleeper() : samples_(kTopic), waiter_({&samples_.raw()}), thread_([this] { loop(); }) {}
@@ -27,7 +28,7 @@ class Sleeper {
   Sleeper(const Sleeper&) = delete;
   Sleeper& operator=(const Sleeper&) = delete;
 
-  /// Waits for the wake-up number `count`.
+  /// Waits for wake-up number `count`.
   [[nodiscard]] Clock::time_point woken(std::uint64_t count) const {
     for (std::uint64_t seen = count_.load(); seen < count; seen = count_.load()) count_.wait(seen);
     return woken_;
@@ -59,7 +60,7 @@ void wake_up(benchmark::State& state) {
   const Sleeper sleeper;
   std::vector<double> waits_us;
   for (auto _ : state) {
-    // So that the other thread really sleeps, as it does between two samples.
+    // The other thread must be asleep, as between two samples.
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     const Clock::time_point sent = Clock::now();
     publisher.send({});

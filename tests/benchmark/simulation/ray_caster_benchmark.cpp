@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rays a second on one core: through the worlds of the scenarios, and whole packets with all that belongs to
-// them.
+// Rays per second on one core: ray casting alone in the scenarios' worlds, and complete packets.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -21,7 +20,7 @@ void packets(benchmark::State& state, Scenario (*make)(std::uint64_t, bool)) {
   std::uint64_t n = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(lidar.packet(n));
-    n = (n + 997) % count;  // all over the run
+    n = (n + 997) % count;  // spread over the run
   }
   state.counters["rays"] =
       benchmark::Counter(384.0 * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);

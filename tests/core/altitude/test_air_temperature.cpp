@@ -25,12 +25,12 @@ TEST_CASE("self-heating of both sensors hardly reaches the estimate") {
     tracker.add(0, at(t), 20.0 + 6.0 * heat);
     tracker.add(1, at(t), 20.0 + 4.0 * heat);
   }
-  // The coldest sensor ends 3.9 K too warm; an hour's time constant lets a tenth of that in.
+  // The coldest sensor ends 3.9 K too warm; an hour's time constant lets a tenth of that through.
   CHECK(tracker.temperature_c() > 20.0);
   CHECK(tracker.temperature_c() < 20.6);
 }
 
-TEST_CASE("the coldest sensor is followed within minutes, without a jump") {
+TEST_CASE("the estimate follows the coldest sensor within minutes, without a jump") {
   AirTemperatureTracker tracker(thermometers_are_right());
   double before = 0.0;
   double largest_step = 0.0;
@@ -45,7 +45,7 @@ TEST_CASE("the coldest sensor is followed within minutes, without a jump") {
   CHECK(largest_step < 0.1);
 }
 
-TEST_CASE("a visit to the cold does not stay beyond the largest self-heating") {
+TEST_CASE("after a visit to the cold the estimate is at most the largest self-heating too low") {
   AirTemperatureTracker tracker(thermometers_are_right());
   for (double t = 0.0; t < 1200.0; t += 0.5) {
     tracker.add(0, at(t), t > 200.0 && t < 600.0 ? -10.0 : 22.0);
@@ -55,7 +55,7 @@ TEST_CASE("a visit to the cold does not stay beyond the largest self-heating") {
   CHECK(tracker.temperature_c() < 22.5);
 }
 
-TEST_CASE("a sensor that fell silent no longer counts") {
+TEST_CASE("a silent sensor is ignored") {
   AirTemperatureConfig config = thermometers_are_right();
   config.max_self_heating_k = 2.0;
   config.rise_time_s = 60.0;
@@ -67,7 +67,7 @@ TEST_CASE("a sensor that fell silent no longer counts") {
   CHECK(tracker.temperature_c() == doctest::Approx(20.0).epsilon(0.01));
 }
 
-TEST_CASE("broken readings and a fixed temperature change nothing") {
+TEST_CASE("implausible readings are ignored, and so is every reading with a fixed temperature") {
   AirTemperatureTracker tracker(thermometers_are_right());
   CHECK(tracker.temperature_c() == AirTemperatureConfig{}.fixed_c);
   tracker.add(0, at(0.0), std::numeric_limits<double>::quiet_NaN());
@@ -85,8 +85,7 @@ TEST_CASE("broken readings and a fixed temperature change nothing") {
   CHECK(constant.temperature_c() == -3.0);
 }
 
-TEST_CASE(
-    "what even the coldest sensor warms itself by is taken off, but not from a temperature that is given") {
+TEST_CASE("the expected self-heating is subtracted from a measured temperature, not from a configured one") {
   AirTemperatureConfig config;
   config.expected_self_heating_k = 0.7;
   AirTemperatureTracker tracker(config);

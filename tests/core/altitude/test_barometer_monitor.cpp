@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int64_t ns(double t) { return static_cast<std::int64_t>(t * 1e9); }
 
-/// A sensor that is asked every 1/hz seconds; `value` may say anything.
+/// A sensor read every 1/hz seconds; `value` gives any pressure.
 struct Sensor {
   BarometerMonitor monitor{AltimeterConfig{}};
   double hz = 32.0;
@@ -31,14 +31,14 @@ struct Sensor {
 
 }  // namespace
 
-TEST_CASE("a sensor that was never heard is off, one that works is well") {
+TEST_CASE("a sensor that never sent is off, a working one is ok") {
   Sensor sensor;
   CHECK(sensor.fault() == BarometerFault::kOff);
   sensor.run_well(5.0);
   CHECK(sensor.fault() == BarometerFault::kOk);
 }
 
-TEST_CASE("silence is known within half a second") {
+TEST_CASE("silence is detected within half a second") {
   Sensor sensor;
   sensor.run_well(5.0);
   CHECK(sensor.monitor.fault(ns(5.0 + 0.3)) == BarometerFault::kOk);
@@ -49,7 +49,7 @@ TEST_CASE("silence is known within half a second") {
   CHECK(sensor.fault() == BarometerFault::kOk);
 }
 
-TEST_CASE("a slow sensor is silent at its own rate only") {
+TEST_CASE("the silence of a slow sensor is judged by its own interval") {
   Sensor sensor;
   sensor.hz = 1.0;
   sensor.run_well(10.0);
@@ -58,10 +58,10 @@ TEST_CASE("a slow sensor is silent at its own rate only") {
   CHECK(sensor.monitor.fault(ns(13.0)) == BarometerFault::kOff);
 }
 
-TEST_CASE("a stuck value is known within two seconds, polling faster than the conversion is none") {
+TEST_CASE("a stuck value is detected within two seconds; polling faster than the conversion is not a fault") {
   Sensor sensor;
   sensor.hz = 100.0;
-  // A new value every 0.2 s: 20 of them look alike.
+  // A new value every 0.2 s: 20 equal samples in a row.
   const auto polled = [&](double at) { return sensor.good(std::floor(5.0 * at)); };
   sensor.run(10.0, polled);
   CHECK(sensor.fault() == BarometerFault::kOk);
@@ -74,7 +74,7 @@ TEST_CASE("a stuck value is known within two seconds, polling faster than the co
   CHECK(sensor.fault() == BarometerFault::kOk);
 }
 
-TEST_CASE("impossible values are known within two seconds") {
+TEST_CASE("implausible values are detected within two seconds") {
   for (const double wrong : {0.0, 2e5, std::numeric_limits<double>::quiet_NaN()}) {
     Sensor sensor;
     sensor.run_well(5.0);
@@ -87,7 +87,7 @@ TEST_CASE("impossible values are known within two seconds") {
   }
 }
 
-TEST_CASE("one spike is an accident, three are a habit that is forgotten again") {
+TEST_CASE("three spikes in ten seconds are a fault, one is not, and the fault ends when the spikes do") {
   Sensor sensor;
   int number = 0;
   const auto spiking = [&](double at) { return ++number % 40 == 0 ? 9e4 : sensor.good(at); };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Base stations that come, go and fail, as the height sees them.
+// Effect on the height of base stations that join, leave and fail.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -10,6 +10,7 @@
 
 #include "core/altitude/differential_altimeter.hpp"
 #include "core/altitude/hypsometry.hpp"
+#include "tests/core/altitude/isothermal_air.hpp"
 
 namespace isobar::test::test_base_reference {
 
@@ -25,7 +26,7 @@ struct Station {
   std::function<bool(double)> on = [](double) { return true; };
 };
 
-/// A robot that stands, 2 m above two stations.
+/// A robot at rest 2 m above two stations.
 struct Scene {
   std::vector<Station> stations{1};
   std::function<double(double)> weather_pa = [](double t) { return 0.02 * t; };
@@ -74,7 +75,7 @@ std::vector<Row> run(const Scene& scene, unsigned seed = 3) {
   return rows;
 }
 
-/// Height at time t, the robot's white noise averaged over 3 s.
+/// Mean height over 3 s about t: averages the robot's white noise.
 double height_at(const std::vector<Row>& rows, double t) {
   double sum = 0.0;
   int count = 0;
@@ -93,7 +94,7 @@ const Row& row_at(const std::vector<Row>& rows, double t) {
   return rows.back();
 }
 
-/// Largest change of the height from one second to the next, noise averaged.
+/// Largest change of the averaged height over 3 s.
 double largest_change_m(const std::vector<Row>& rows, double from_s, double to_s) {
   double largest_m = 0.0;
   for (double t = from_s; t < to_s; t += 1.0)
@@ -113,7 +114,7 @@ TEST_CASE("with a base station, weather of 3 hPa in three hours moves the height
   const auto rows = run(scene);
   for (double t = 60.0; t < 10'790.0; t += 30.0)
     CHECK(std::abs(height_at(rows, t) - height_at(rows, 60.0)) < 0.03 + 0.03);
-  // Twice: the noise of six samples, 0.35 Pa / sqrt(6), is 1.2 cm at either end. Over minutes none is left:
+  // Plus noise: six samples leave 0.35 Pa / sqrt(6), 1.2 cm, at either end. Means over minutes have none:
   double late = 0.0;
   double early = 0.0;
   for (int i = 0; i < 200; ++i) {
@@ -123,7 +124,7 @@ TEST_CASE("with a base station, weather of 3 hPa in three hours moves the height
   CHECK(std::abs(late - early) < 0.03);
 }
 
-TEST_CASE("when the first base station falls silent the second takes over without a step, and it is said") {
+TEST_CASE("when the first base station falls silent the second takes over without a step, and reports it") {
   Scene scene;
   scene.stations.resize(2);
   scene.stations[0].on = [](double t) { return t < 60.0; };
@@ -139,13 +140,12 @@ TEST_CASE("when the first base station falls silent the second takes over withou
   CHECK(switched == 1);
   CHECK(rows.back().active == 1);
   CHECK(rows.back().usable == 1);
-  // Three seconds' noise of the robot (48 samples, 0.05 Pa) and of what was learnt: 1 cm; a step would be 3.4
-  // m.
+  // Noise of the robot over 3 s (48 samples, 0.05 Pa) and of the learnt offset: 1 cm. A step would be 3.4 m.
   CHECK(largest_change_m(rows, 50.0, 110.0) < 0.03);
   CHECK(std::abs(height_at(rows, 115.0) - height_at(rows, 50.0)) < 0.03);
 }
 
-TEST_CASE("of two base stations the one that drifts is found by the robot's own barometer, whichever it is") {
+TEST_CASE("the robot's own barometer identifies the drifting one of two base stations") {
   for (std::size_t bad = 0; bad < 2; ++bad) {
     for (const double rate_pa_s : {0.05, -0.2}) {
       CAPTURE(bad);
@@ -159,8 +159,8 @@ TEST_CASE("of two base stations the one that drifts is found by the robot's own 
       CHECK(row_at(rows, 150.0).fault[1 - bad] == BarometerFault::kOk);
       CHECK(row_at(rows, 150.0).active == 1 - bad);
       CHECK(row_at(rows, 150.0).usable == 1);
-      // Found at 1.5 Pa, 13 cm, and then taken back but for what was learnt of a slow drift before it was
-      // seen.
+      // Detected at 1.5 Pa, 13 cm; then corrected, except for the part of a slow drift learnt before
+      // detection.
       for (double t = 10.0; t < 195.0; t += 1.0)
         CHECK(std::abs(height_at(rows, t) - height_at(rows, 50.0)) < 0.25);
       CHECK(std::abs(height_at(rows, 190.0) - height_at(rows, 50.0)) < 0.06);
@@ -169,13 +169,13 @@ TEST_CASE("of two base stations the one that drifts is found by the robot's own 
 }
 
 TEST_CASE(
-    "where the robot is no witness a drift beyond any weather is found, a slower one is said to be "
+    "without the robot's vote a drift faster than any weather is identified, a slower one is reported as "
     "undecided") {
   Scene scene;
   scene.witness = false;
   scene.stations.resize(2);
   scene.stations[0].extra_pa = [](double t) { return ramp(t, 60.0, 1.0); };
-  // Faster than kStillPa a second would be a jump; this one is a drift of 1 Pa/s.
+  // 1 Pa/s: a drift; faster than kStillPa per second would be a jump.
   const auto fast = run(scene);
   CHECK(fast.back().active == 1);
   scene.stations[0].extra_pa = [](double t) { return ramp(t, 60.0, 0.08); };
@@ -186,7 +186,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a base station that jumps for 15 s does not move the height, and is said to be wrong within two "
+    "a base station that jumps for 15 s does not move the height, and is reported wrong within two "
     "seconds") {
   for (const double size_pa : {30.0, -20'000.0, 12'000.0}) {
     CAPTURE(size_pa);
@@ -203,12 +203,12 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a base station that was restarted with another offset does not move the height; weather it tells does") {
+    "a base station restarted with another offset does not move the height; weather during the outage does") {
   Scene scene;
   scene.weather_pa = [](double t) { return 0.03 * t; };
   scene.stations[0].on = [](double t) { return t < 30.0 || t > 90.0; };
   const auto same = run(scene);
-  // 1.8 Pa of weather in the minute, which the held pressure does not know: 15 cm, known again.
+  // 1.8 Pa of weather in a minute of held pressure: an error of 15 cm, corrected when the base returns.
   CHECK(std::abs(height_at(same, 88.0) - height_at(same, 25.0)) > 0.1);
   CHECK(std::abs(height_at(same, 110.0) - height_at(same, 25.0)) < 0.03);
   scene.stations[0].extra_pa = [](double t) { return t > 60.0 ? 60.0 : 0.0; };

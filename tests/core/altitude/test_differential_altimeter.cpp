@@ -8,6 +8,7 @@
 
 #include "core/altitude/differential_altimeter.hpp"
 #include "core/altitude/hypsometry.hpp"
+#include "tests/core/altitude/isothermal_air.hpp"
 
 namespace isobar::test::test_differential_altimeter {
 
@@ -49,7 +50,7 @@ std::vector<Row> run(const Scene& scene) {
   for (int i = 0; i / 32.0 < scene.duration_s; ++i) {
     const double t = i / 32.0 + 0.01;
     for (; next_base + scene.base_delay_s <= t; next_base += 1.0 / scene.base_hz) {
-      // A wobble in the last digits, as real sensors have: a value that never changes is a stuck one.
+      // Noise in the last digits, as real sensors have: a constant value would be stuck.
       const double pa = 101'000.0 + scene.weather_pa(next_base) + scene.noise_pa * normal(random) +
                         1e-7 * std::sin(next_base);
       if (scene.base_on(next_base)) altimeter.add_base({at(next_base), pa, 20.0});
@@ -72,13 +73,14 @@ TEST_CASE("height against a base station is the true height, whatever the weathe
   for (const Row& row : run(scene)) {
     if (row.t < 2.0) continue;
     CHECK(row.reading.source == HeightSource::kDifferential);
-    // 1 cm: weather within the smoothing time of the base (1 s, 0.05 Pa) and the offset's share of 12 m (80
-    // Pa, 0.1 %).
+    // 1 cm: weather within the base's smoothing time (1 s, 0.05 Pa) and the scale error of the offset over 12
+    // m (80 Pa, 0.1 %).
     CHECK(std::abs(row.reading.height_m - 0.2 * row.t) < 0.015);
   }
 }
 
-TEST_CASE("without a base station the source says so, and the variance grows with the weather") {
+TEST_CASE(
+    "without a base station the source is a single barometer, and the variance grows with the weather") {
   Scene scene;
   scene.base_on = [](double) { return false; };
   const auto rows = run(scene);
@@ -132,12 +134,12 @@ TEST_CASE("late and slow base samples do no harm") {
   for (const Row& row : run(scene)) {
     if (row.t < 4.0) continue;
     CHECK(row.reading.source == HeightSource::kDifferential);
-    // Held for up to 2 s beyond its own smoothing of some seconds: 0.4 Pa at most.
+    // Held for up to 2 s, plus smoothing over some seconds: at most 0.4 Pa.
     CHECK(std::abs(row.reading.height_m) < 0.04);
   }
 }
 
-TEST_CASE("readings scatter as their noise variance says") {
+TEST_CASE("the scatter of readings agrees with their noise variance") {
   Scene scene;
   scene.noise_pa = 0.4;
   scene.duration_s = 120.0;

@@ -11,7 +11,7 @@ namespace {
 PressureSample sample(double t, double pa) { return {static_cast<std::int64_t>(t * 1e9), pa, 20.0}; }
 }  // namespace
 
-TEST_CASE("implausible values and times are told apart") {
+TEST_CASE("implausible values and times are distinguished") {
   PressureGate gate{AltimeterConfig{}};
   CHECK(gate.check(sample(0.0, std::numeric_limits<double>::quiet_NaN())) == PressureStatus::kBadValue);
   CHECK(gate.check(sample(0.0, std::numeric_limits<double>::infinity())) == PressureStatus::kBadValue);
@@ -25,7 +25,7 @@ TEST_CASE("implausible values and times are told apart") {
   CHECK(gate.check(sample(1.1, 1e5 + 1.0)) == PressureStatus::kAccepted);
 }
 
-TEST_CASE("spikes are refused, a new level is believed once it has been confirmed") {
+TEST_CASE("spikes are refused, a new level is accepted once confirmed") {
   const AltimeterConfig config;
   PressureGate gate{config};
   double t = 0.0;
@@ -39,7 +39,7 @@ TEST_CASE("spikes are refused, a new level is believed once it has been confirme
   CHECK(gate.check(sample(t += 0.03, 9e4)) == PressureStatus::kAccepted);
 }
 
-TEST_CASE("after a jump of the clock the next sample follows") {
+TEST_CASE("after a clock jump the next sample is accepted") {
   PressureGate gate{AltimeterConfig{}};
   gate.check(sample(1000.0, 1e5));
   CHECK(gate.check(sample(10.0, 1e5 + 1.0)) == PressureStatus::kBadTime);

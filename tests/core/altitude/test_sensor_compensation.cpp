@@ -34,7 +34,7 @@ PressureSample sample(double pressure_pa, double temperature_c) { return {0, pre
 
 }  // namespace
 
-TEST_CASE("without a calibration a sample stays as it is") {
+TEST_CASE("without a calibration a sample is unchanged") {
   SensorCompensation none;
   PressureSample s = sample(98'765.4, 21.0);
   CHECK(none.apply(s) == Result::kInside);
@@ -42,7 +42,7 @@ TEST_CASE("without a calibration a sample stays as it is") {
   CHECK(std::isnan(s.variance_pa2));
 }
 
-TEST_CASE("within its range a calibration is eq. (1), and gives the variance that the sender does not know") {
+TEST_CASE("within its range a calibration is eq. (1), and supplies a variance unknown to the sender") {
   SensorCompensation compensation(calibrated());
   PressureSample s = sample(102'500.0, 30.0);
   CHECK(compensation.apply(s) == Result::kInside);
@@ -54,7 +54,7 @@ TEST_CASE("within its range a calibration is eq. (1), and gives the variance tha
   CHECK(s.variance_pa2 == 9.0);
 }
 
-TEST_CASE("outside of its range the nearest correction holds, without a step and without a bent slope") {
+TEST_CASE("outside its range the nearest correction holds: continuous, with the slope of the sensor") {
   SensorCompensation compensation(calibrated());
   const auto corrected = [&](double p, double t, Result expected) {
     PressureSample s = sample(p, t);
@@ -69,7 +69,8 @@ TEST_CASE("outside of its range the nearest correction holds, without a step and
 }
 
 TEST_CASE(
-    "a sample without temperature is compensated with the last one known, at first with the range's middle") {
+    "a sample without temperature is compensated with the last known one, initially the middle of the "
+    "range") {
   SensorCompensation compensation(calibrated());
   PressureSample s = sample(100'000.0, NAN);
   CHECK(compensation.apply(s) == Result::kNoTemperature);
@@ -82,7 +83,7 @@ TEST_CASE(
   CHECK(std::isnan(s.temperature_c));
 }
 
-TEST_CASE("a pressure that is stuck stays stuck though the temperature moves") {
+TEST_CASE("a stuck pressure stays bit-identical while the temperature changes") {
   SensorCompensation compensation(calibrated());
   PressureSample first = sample(100'000.0, 20.0);
   PressureSample second = sample(100'000.0, 21.0);
@@ -91,7 +92,7 @@ TEST_CASE("a pressure that is stuck stays stuck though the temperature moves") {
   CHECK(first.pressure_pa == second.pressure_pa);
 }
 
-TEST_CASE("a model without temperature asks for none and is nowhere too warm") {
+TEST_CASE("a model without temperature terms is valid without a temperature and at any temperature") {
   CompensationConfig config = calibrated();
   config.model = CompensationModel::kP;
   config.coefficients[1] = 0.0;
@@ -102,14 +103,14 @@ TEST_CASE("a model without temperature asks for none and is nowhere too warm") {
   CHECK(compensation.apply(s) == Result::kInside);
 }
 
-TEST_CASE("values that are no pressure pass through for the gate to refuse") {
+TEST_CASE("a pressure that is not finite passes unchanged, for the gate to refuse") {
   SensorCompensation compensation(calibrated());
   PressureSample s = sample(NAN, 20.0);
   CHECK(compensation.apply(s) == Result::kInside);
   CHECK(std::isnan(s.pressure_pa));
 }
 
-TEST_CASE("a calibration that cannot be one is refused with the key and the rule") {
+TEST_CASE("an invalid calibration is refused with the key and the rule") {
   const auto broken = [](auto change) {
     CompensationConfig config = calibrated();
     change(config);

@@ -45,7 +45,7 @@ double slope(const std::vector<AllanPoint>& points, double from_s, double to_s) 
 
 }  // namespace
 
-TEST_CASE("the Allan deviation of a series counted by hand") {
+TEST_CASE("the Allan deviation of a short series equals the value computed by hand") {
   // Means of one: differences 2, -1, 3 -> (4 + 1 + 9) / (2 * 3). Means of two: 2, 2.5, 3.5 -> 1.5^2 / 2.
   const std::vector<double> values{1.0, 3.0, 2.0, 5.0};
   const auto points = overlapping_allan(values, 0.5);
@@ -57,20 +57,19 @@ TEST_CASE("the Allan deviation of a series counted by hand") {
   CHECK(overlapping_allan(std::vector<double>{1.0}, 0.5).empty());
 }
 
-TEST_CASE("white noise falls with slope -1/2, and is the only part that is found") {
+TEST_CASE("white noise falls with slope -1/2, and is the only part that is identified") {
   const auto points = overlapping_allan(still_sensor(100'000, 0.35, 0.0, 0.0, 1), kDt);
   // 100 000 samples average 32 s a hundred times: a slope over three decades is good to 0.02.
   CHECK(slope(points, kDt, 30.0) == doctest::Approx(-0.5).epsilon(0.05).scale(0.0));
   CHECK(points.front().deviation == doctest::Approx(0.35).epsilon(0.01).scale(0.0));
   const AllanNoise noise = identify_noise(points);
   CHECK(noise.white / std::sqrt(kDt) == doctest::Approx(0.35).epsilon(0.01).scale(0.0));
-  // What is left over for the others is below the white noise of the longest useful average, 0.35 /
-  // sqrt(3e4).
+  // The other parts are below the white noise of the longest useful average, 0.35 / sqrt(3e4).
   CHECK(0.664 * noise.bias_instability < 0.004);
   CHECK(noise.walk * std::sqrt(100.0 / 3.0) < 0.01);
 }
 
-TEST_CASE("a random walk rises with slope +1/2 and has the deviation of its closed form") {
+TEST_CASE("a random walk rises with slope +1/2 and agrees with its closed form") {
   const auto points = overlapping_allan(still_sensor(100'000, 0.0, 0.06, 0.0, 2), kDt);
   CHECK(slope(points, 0.5, 20.0) == doctest::Approx(0.5).epsilon(0.1).scale(0.0));
   // One sample apart: half of the variance of a step. Many: K sqrt(tau / 3).
@@ -80,7 +79,7 @@ TEST_CASE("a random walk rises with slope +1/2 and has the deviation of its clos
   CHECK(noise.white / std::sqrt(kDt) < 0.003);
 }
 
-TEST_CASE("a ramp alone has the deviation R tau / sqrt(2), and is not taken for a walk") {
+TEST_CASE("a ramp alone has the deviation R tau / sqrt(2), and is not identified as a walk") {
   const auto points = overlapping_allan(still_sensor(4'000, 0.0, 0.0, 0.03, 3), kDt);
   for (const AllanPoint& point : points) {
     // Sums of 4000 values of 1e5 Pa keep eight digits.
@@ -92,12 +91,11 @@ TEST_CASE("a ramp alone has the deviation R tau / sqrt(2), and is not taken for 
   CHECK(noise.walk < 1e-3);
 }
 
-TEST_CASE(
-    "white noise, walk and weather are told apart in one series, and the model goes through the points") {
+TEST_CASE("white noise, walk and weather are separated in one series, and the model fits the points") {
   const auto points = overlapping_allan(still_sensor(200'000, 0.35, 0.02, 0.01, 4), kDt);
   const AllanNoise noise = identify_noise(points);
   CHECK(noise.white / std::sqrt(kDt) == doctest::Approx(0.35).epsilon(0.02).scale(0.0));
-  // The walk shows between 10 and 30 s only, where some 300 averages are independent: 10 %, two of these.
+  // The walk dominates between 10 and 30 s only, with some 300 independent averages: 10 %, times two.
   CHECK(noise.walk == doctest::Approx(0.02).epsilon(0.2).scale(0.0));
   CHECK(noise.ramp == doctest::Approx(0.01).epsilon(0.1).scale(0.0));
   for (const AllanPoint& point : points) {
@@ -107,7 +105,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("bias instability is a floor that neither white noise nor a walk explains") {
+TEST_CASE("bias instability is identified as a floor, not as white noise or a walk") {
   // A sum of Gauss-Markov processes, time constants an octave apart, is flicker noise between their ends.
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
@@ -131,9 +129,9 @@ TEST_CASE("bias instability is a floor that neither white noise nor a walk expla
   }
 }
 
-TEST_CASE("sigma does not mind motion, doors and spikes") {
+TEST_CASE("the robust sigma is insensitive to motion, doors and spikes") {
   std::vector<double> values = still_sensor(4'000, 0.35, 0.0, 0.0, 6);
-  // 0.0139 is the spread of a median of 4000: 1.17 / sqrt(4000), times a little for the overlap.
+  // 0.0139 is the standard deviation of a median of 4000: 1.17 / sqrt(4000), slightly more for the overlap.
   CHECK(robust_sigma(values) == doctest::Approx(0.35).epsilon(0.06).scale(0.0));
   for (std::size_t i = 1000; i < 3000; ++i) values[i] -= 0.2 * static_cast<double>(i - 1000);  // 0.5 m/s up
   for (std::size_t i = 0; i < values.size(); i += 100) values[i] += 500.0;
@@ -141,7 +139,7 @@ TEST_CASE("sigma does not mind motion, doors and spikes") {
   CHECK(robust_sigma(std::vector<double>{1.0, 2.0}) == 0.0);
 }
 
-TEST_CASE("the longest still period ends where the sensor rises, and weather does not end it") {
+TEST_CASE("the longest still period ends at a rise of the sensor, not in a storm") {
   // 40 s still, 10 s up by 5 m, then 80 s still in a storm of 100 Pa an hour.
   std::vector<double> values = still_sensor(130 * 32, 0.35, 0.0, -100.0 / 3600.0, 7);
   std::vector<double> times(values.size());

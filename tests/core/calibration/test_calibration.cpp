@@ -7,7 +7,7 @@
 
 #include "core/calibration/calibration.hpp"
 #include "core/errors.hpp"
-#include "tests/core/altitude/chamber.hpp"
+#include "tests/core/calibration/chamber.hpp"
 
 namespace isobar::test::test_calibration {
 
@@ -37,7 +37,8 @@ const ModelResult& recommended(const Calibration& calibration) {
 }  // namespace
 
 TEST_CASE(
-    "a chamber with 4 Pa of noise gives the true pressure to 1 Pa, and no more terms than the sensor has") {
+    "a chamber run with 4 Pa of noise recovers the true pressure to 1 Pa with no more terms than the sensor "
+    "has") {
   for (unsigned seed = 1; seed <= 6; ++seed) {
     CAPTURE(seed);
     const Chamber simulated = chamber(simple_truth(), seed);
@@ -45,13 +46,13 @@ TEST_CASE(
     const ModelResult& best = recommended(calibration);
     CHECK(best.model == CompensationModel::kSimple);
     CHECK(simulated.systematic_rms_pa(best.compensation, calibration.range) <= 1.0);
-    // What remains is the noise: 4 Pa, to three standard errors of 8280 samples.
+    // The residual is the noise: 4 Pa, to three standard errors of 8280 samples.
     CHECK(best.residual.sd_pa == doctest::Approx(4.0).epsilon(0.025));
     CHECK(calibration.config(best.model).sigma_pa == doctest::Approx(4.0).epsilon(0.05));
   }
 }
 
-TEST_CASE("terms that the sensor has are found, each kind by the model that has them") {
+TEST_CASE("each kind of term is recovered by the model that contains it") {
   struct Kind {
     CompensationModel expected;
     int i;
@@ -60,7 +61,7 @@ TEST_CASE("terms that the sensor has are found, each kind by the model that has 
   };
   for (const Kind& kind : {Kind{CompensationModel::kInd, 0, 2, 15.0}, Kind{CompensationModel::kM, 1, 1, 12.0},
                            Kind{CompensationModel::kFull, 2, 2, 60.0}}) {
-    CAPTURE(model_name(kind.expected));
+    CAPTURE(kCompensationModelNames.name(kind.expected));
     Eigen::Matrix4d truth = simple_truth();
     truth(kind.i, kind.j) += kind.pa;
     if (kind.expected == CompensationModel::kFull) truth(1, 2) -= 50.0;
@@ -71,19 +72,19 @@ TEST_CASE("terms that the sensor has are found, each kind by the model that has 
   }
 }
 
-TEST_CASE("a sensor that is only off by a constant gets a constant") {
+TEST_CASE("a sensor with a constant error gets the offset model") {
   Eigen::Matrix4d truth = Eigen::Matrix4d::Zero();
   truth(0, 0) = 98'000.0 - 120.0;
   truth(1, 0) = 1'500.0;
   const Calibration calibration = calibrate(chamber(truth, 5).record());
   CHECK(recommended(calibration).model == CompensationModel::kOffset);
   CHECK(calibration.reason.find("offset") != std::string::npos);
-  // As it is, the sensor errs by its offset; after it, by noise.
+  // Uncompensated, the error is the offset; compensated, the noise.
   CHECK(calibration.model(CompensationModel::kNone).residual.rms_pa == doctest::Approx(120.0).epsilon(0.01));
   CHECK(calibration.model(CompensationModel::kOffset).residual.rms_pa == doctest::Approx(4.0).epsilon(0.025));
 }
 
-TEST_CASE("the factor of many blocks solves as a decomposition of the whole matrix does") {
+TEST_CASE("the blockwise factor gives the solution of a decomposition of the whole matrix") {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   std::vector<CalibrationPair> pairs;
@@ -109,7 +110,7 @@ TEST_CASE("the factor of many blocks solves as a decomposition of the whole matr
   const Eigen::VectorXd expected = design.colPivHouseholderQr().solve(right);
   const auto found = halves.solve(kMaskM);
   const Eigen::Matrix4d& c = found.compensation.centred();
-  // 1e-7 Pa: rounding of a stable solution, a million times below what a barometer resolves.
+  // 1e-7 Pa: rounding of a stable solution, a millionth of a barometer's resolution.
   CHECK(std::abs(c(0, 0) - 98'000.0 - expected(0)) < 1e-7);
   CHECK(std::abs(c(0, 1) - expected(1)) < 1e-7);
   CHECK(std::abs(c(1, 0) - 1'500.0 - expected(2)) < 1e-7);
@@ -128,12 +129,12 @@ TEST_CASE("centred and scaled, all sixteen columns are well conditioned") {
   CHECK(calibration.model(CompensationModel::kP).condition_number < 1e2);
 }
 
-TEST_CASE("what temperature does is not fitted to a temperature that stands still, and the reason is given") {
+TEST_CASE("temperature terms are not fitted at a constant temperature, and the reason is given") {
   auto recordings = chamber(simple_truth(), 4).record();
   recordings.erase(recordings.begin(), recordings.end() - 1);  // the static hours: 22.0 +- 0.3 degC
   const Calibration calibration = calibrate(recordings);
   for (const ModelResult& result : calibration.models) {
-    CAPTURE(model_name(result.model));
+    CAPTURE(kCompensationModelNames.name(result.model));
     CHECK(result.left_out.empty() == !uses_temperature(result.model));
   }
   CHECK(calibration.model(CompensationModel::kSimple).left_out.find("0.6 K") != std::string::npos);
@@ -142,7 +143,7 @@ TEST_CASE("what temperature does is not fitted to a temperature that stands stil
   CHECK(calibration.validation.find("one recording only") != std::string::npos);
 }
 
-TEST_CASE("exactly one temperature leaves no choice among its terms and harms nothing else") {
+TEST_CASE("exactly one temperature excludes temperature terms and no others") {
   auto recordings = chamber(simple_truth(), 4).record();
   for (auto& recording : recordings) {
     for (auto& pair : recording.pairs) pair.temperature_c = 21.0;
@@ -152,7 +153,7 @@ TEST_CASE("exactly one temperature leaves no choice among its terms and harms no
   CHECK(std::isfinite(calibration.model(CompensationModel::kP).residual.rms_pa));
 }
 
-TEST_CASE("a reference that is the sensor, or too few moments, are errors") {
+TEST_CASE("a reference that is the sensor itself, and too few pairs, are refused") {
   auto recordings = chamber(simple_truth(), 4).record();
   for (auto& recording : recordings) {
     for (auto& pair : recording.pairs) pair.reference_pa = pair.pressure_pa;
@@ -165,7 +166,8 @@ TEST_CASE("a reference that is the sensor, or too few moments, are errors") {
 }
 
 TEST_CASE(
-    "of models alike the simplest is taken, and a gain beyond its standard error is worth a coefficient") {
+    "the simplest of equivalent models is chosen, and a gain beyond its standard error justifies a "
+    "coefficient") {
   const auto model = [](CompensationModel which, std::vector<double> squares) {
     ModelResult result;
     result.model = which;
@@ -178,12 +180,12 @@ TEST_CASE(
                                                model(CompensationModel::kSimple, {16, 17, 17, 18}),
                                                model(CompensationModel::kFull, {15, 16.5, 16.5, 18})};
   CHECK(simplest_within_one_error(one_is_enough, weights, 0.01) == 1);
-  // The same means, but recordings differ too much to tell.
+  // The same means, but the scatter between recordings is too large to decide.
   const std::vector<ModelResult> unsure{model(CompensationModel::kP, {10, 12, 33, 33}),
                                         model(CompensationModel::kSimple, {7, 8, 26, 27}),
                                         model(CompensationModel::kFull, {6, 7, 26, 27})};
   CHECK(simplest_within_one_error(unsure, weights, 0.01) == 0);
-  // Surely better, but by less than it is worth.
+  // Significantly better, but by less than least_gain.
   const std::vector<ModelResult> not_worth_it{model(CompensationModel::kP, {10.1, 10.1, 10.1, 10.1}),
                                               model(CompensationModel::kSimple, {10, 10, 10, 10})};
   CHECK(simplest_within_one_error(not_worth_it, weights, 0.01) == 0);
@@ -194,7 +196,7 @@ TEST_CASE(
   CHECK(simplest_within_one_error(left_out, {}, 0.01) == 0);
 }
 
-TEST_CASE("residual figures are those of the definition") {
+TEST_CASE("residual figures equal their definitions") {
   const std::vector<double> residuals{-3.0, 1.0, 1.0, 5.0, 1.0};
   const ResidualFigures figures = residual_figures(residuals);
   CHECK(figures.mean_pa == doctest::Approx(1.0));

@@ -14,7 +14,7 @@ namespace {
 
 std::int64_t stamp(double time_s) { return static_cast<std::int64_t>(std::llround(time_s * 1e9)); }
 
-/// Weather as a random walk, one value a second, linear between: the same for everyone who asks.
+/// Weather: a random walk with one value a second, linear between; the same for all sensors.
 class Weather {
  public:
   explicit Weather(unsigned seed, double walk_pa_sqrt_s = 0.15) {
@@ -46,7 +46,7 @@ PressureSeries sampled(const std::function<double(double)>& pressure_pa, double 
 
 }  // namespace
 
-TEST_CASE("a mean over a span is the integral of the straight lines between samples") {
+TEST_CASE("a mean over a window is the integral of the linear interpolation") {
   const PressureSeries series({stamp(0), stamp(1), stamp(3)}, {10.0, 20.0, 0.0}, 5.0);
   CHECK(series.mean_pa(0.5, 0.0) == doctest::Approx(15.0));
   CHECK(series.mean_pa(2.0, 0.0) == doctest::Approx(10.0));
@@ -57,7 +57,7 @@ TEST_CASE("a mean over a span is the integral of the straight lines between samp
   CHECK(std::isnan(PressureSeries({stamp(0)}, {1.0}).mean_pa(0.0, 0.0)));
 }
 
-TEST_CASE("nothing is said about a gap") {
+TEST_CASE("a mean is undefined in a gap") {
   const PressureSeries series({stamp(0), stamp(1), stamp(2), stamp(100), stamp(101)}, {1, 2, 3, 4, 5});
   CHECK(series.mean_pa(1.5, 0.0) == doctest::Approx(2.5));
   CHECK(std::isnan(series.mean_pa(50.0, 0.0)));
@@ -65,7 +65,7 @@ TEST_CASE("nothing is said about a gap") {
   CHECK(series.mean_pa(100.5, 1.0) == doctest::Approx(4.5));
 }
 
-TEST_CASE("a wrong time zone is found to a few seconds from weather alone, whatever the rates are") {
+TEST_CASE("a wrong time zone is found to a few seconds from weather alone, at any sample rates") {
   struct Rates {
     double sensor_s;
     double reference_s;
@@ -74,7 +74,7 @@ TEST_CASE("a wrong time zone is found to a few seconds from weather alone, whate
     CAPTURE(rates.sensor_s);
     CAPTURE(rates.reference_s);
     const Weather weather(7);
-    // The sensor's own drift with the temperature of the day is larger than what the weather does in an hour.
+    // The sensor drifts with the daily temperature by more than the weather changes in an hour.
     const auto with_drift = [&](double t) { return weather(t) + 40.0 * std::sin(t / 9'000.0) + 300.0; };
     const std::vector<PressureSeries> sensor{
         sampled(with_drift, 20'000.0, 70'000.0, rates.sensor_s, 7'213.0, 1.0, 1),
@@ -83,14 +83,14 @@ TEST_CASE("a wrong time zone is found to a few seconds from weather alone, whate
     const ClockShift shift = find_clock_shift(sensor, reference);
     CHECK(shift.doubt.empty());
     CHECK(shift.correlation > 0.5);
-    // An eighth of the slower log's interval, and what the search says of itself.
+    // An eighth of the slower log's interval, and the reported standard deviation.
     CHECK(std::abs(shift.shift_s + 7'213.0) < 7.5);
     CHECK(std::abs(shift.shift_s + 7'213.0) < 4.0 * shift.sigma_s);
     CHECK(shift.next_best_correlation < 0.5 * shift.correlation);
   }
 }
 
-TEST_CASE("logs of different weather, of none, or shorter than any weather are doubted") {
+TEST_CASE("logs of different weather, of constant pressure, or too short give a doubtful shift") {
   const Weather here(7);
   const Weather elsewhere(8);
   const auto noon = [](double) { return 98'000.0; };
@@ -104,14 +104,14 @@ TEST_CASE("logs of different weather, of none, or shorter than any weather are d
   CHECK_FALSE(doubt(PressureSeries({}, {})).empty());
 }
 
-TEST_CASE("a pressure that repeats itself has no one shift") {
+TEST_CASE("a periodic pressure has no unique shift") {
   const auto waves = [](double t) { return 98'000.0 + 50.0 * std::sin(t * 6.283185307 / 1'800.0); };
   const PressureSeries reference = sampled(waves, 0.0, 90'000.0, 60.0, 0.0, 0.3, 3);
   const PressureSeries sensor = sampled(waves, 20'000.0, 70'000.0, 60.0, 0.0, 0.3, 4);
-  CHECK(find_clock_shift({&sensor, 1}, reference).doubt == "two shifts make the logs alike");
+  CHECK(find_clock_shift({&sensor, 1}, reference).doubt == "the logs correlate almost equally at two shifts");
 }
 
-TEST_CASE("samples meet the reference at the shifted time, and those that cannot are counted") {
+TEST_CASE("samples are paired with the reference at the shifted time, and unpaired ones are counted") {
   std::vector<std::int64_t> stamps;
   std::vector<double> values;
   for (int k = 0; k <= 100; ++k) {
@@ -132,7 +132,7 @@ TEST_CASE("samples meet the reference at the shifted time, and those that cannot
   CHECK(counts.without_reference == 4);
 }
 
-TEST_CASE("spikes of either sensor are left out, slow errors are not") {
+TEST_CASE("spikes of either sensor are removed, slow errors are not") {
   std::vector<CalibrationRecording> recordings(2);
   for (int k = 0; k < 200; ++k) {
     const double temperature_pa = 100.0 * std::sin(0.1 * k);

@@ -15,7 +15,7 @@ namespace {
 constexpr double kSigma = 0.35;
 constexpr double kDt = 1.0 / 32.0;
 
-/// Runs the filter into its steady state.
+/// Filter in its steady state.
 PressureFilter settled_filter(const FilterDesign& design) {
   PressureFilter filter(design.walk_pa_sqrt_s);
   for (int i = 0; i < 20'000; ++i) filter.add(1e5, kDt, kSigma * kSigma);
@@ -24,7 +24,7 @@ PressureFilter settled_filter(const FilterDesign& design) {
 
 }  // namespace
 
-TEST_CASE("the filter built from a design has its gain, its lag and its noise") {
+TEST_CASE("a filter built from a design has its gain, lag and noise") {
   for (const double lag_s : {0.1, 0.5, 2.0, 8.0}) {
     const FilterDesign design = design_for_lag(kSigma, kDt, lag_s);
     CHECK(design.delay_s == doctest::Approx(lag_s));
@@ -46,7 +46,7 @@ TEST_CASE("the filter built from a design has its gain, its lag and its noise") 
   }
 }
 
-TEST_CASE("a sine at the design's bandwidth comes through with 1/sqrt(2) of its amplitude") {
+TEST_CASE("a sine at the design's bandwidth is attenuated to 1/sqrt(2)") {
   for (const double bandwidth_hz : {0.05, 0.5, 4.0}) {
     const FilterDesign design = design_for_bandwidth(kSigma, kDt, bandwidth_hz);
     CHECK(design.bandwidth_hz == doctest::Approx(bandwidth_hz));
@@ -66,16 +66,17 @@ TEST_CASE("a sine at the design's bandwidth comes through with 1/sqrt(2) of its 
   }
 }
 
-TEST_CASE("a wanted output noise gives the fastest filter that has it") {
-  const FilterDesign design = design_for_noise(kSigma, kDt, 0.1);  // the paper's wanted resolution
+TEST_CASE("a design for an output noise has that noise") {
+  const FilterDesign design = design_for_noise(kSigma, kDt, 0.1);  // the paper's target resolution
   CHECK(design.output_sigma_pa == doctest::Approx(0.1));
   CHECK(design_for_lag(kSigma, kDt, design.delay_s).output_sigma_pa == doctest::Approx(0.1));
-  // A filter that is faster than half the sample rate has no -3 dB point: it says the Nyquist frequency.
+  // A filter without a -3 dB point below the Nyquist frequency reports the Nyquist frequency.
   CHECK(design_for_gain(kSigma, kDt, 0.95).bandwidth_hz == doctest::Approx(16.0));
 }
 
-TEST_CASE("with its delay taken off the stamp, the filter is on time in a climb, from the first sample on") {
-  // Uneven stamps, noise that changes: the delay is the filter's own, not that of its steady state.
+TEST_CASE(
+    "with stamps corrected for its delay, the filter follows a climb without lag from the first sample on") {
+  // Uneven stamps and changing noise: the delay is the actual one, not that of the steady state.
   std::mt19937 random(2);
   std::uniform_real_distribution<double> interval(0.005, 0.2);
   const auto climb_pa = [](double time_s) { return 1e5 - 6.0 * time_s; };  // 0.5 m/s

@@ -10,6 +10,7 @@
 #include "core/altitude/hypsometry.hpp"
 #include "core/calibration/height_difference.hpp"
 #include "core/calibration/weather_smoother.hpp"
+#include "tests/core/altitude/isothermal_air.hpp"
 
 namespace isobar::test::test_height_difference {
 
@@ -18,7 +19,7 @@ namespace {
 constexpr double kAirK = 290.0;
 constexpr std::int64_t kStartNs = 1'760'000'000'000'000'000;
 
-/// Samples `dt_s` apart of a pressure as a function of time.
+/// Log of a pressure given as a function of time, samples `dt_s` apart.
 template <typename Pressure>
 std::vector<PressureSample> sampled(double from_s, double to_s, double dt_s, double sigma_pa, unsigned seed,
                                     const Pressure& pressure_pa) {
@@ -38,7 +39,7 @@ double seconds(std::int64_t stamp_ns) { return 1e-9 * static_cast<double>(stamp_
 
 }  // namespace
 
-TEST_CASE("without a filter the difference is the hypsometric height, whatever the weather does in common") {
+TEST_CASE("unfiltered, the difference is the hypsometric height in any common weather") {
   const auto weather = [](double t) { return 101'000.0 + 50.0 * std::sin(0.05 * t); };
   const auto moved = sampled(0.0, 60.0, 1.0 / 32.0, 0.0, 1,
                              [&](double t) { return hypsometric_pressure_pa(weather(t), 0.1 * t, kAirK); });
@@ -48,13 +49,13 @@ TEST_CASE("without a filter the difference is the hypsometric height, whatever t
   for (std::size_t i = 0; i < series.heights_m.size(); ++i) {
     const double t = seconds(series.stamps_ns[i]);
     if (t < 0.1 || t > 59.9) continue;  // beyond the standing sensor's samples
-    // Interpolating over 31 ms of this weather costs 50 (0.05)^2 (0.031)^2 / 8 Pa.
+    // Interpolation error over 31 ms of this weather: 50 (0.05)^2 (0.031)^2 / 8 Pa.
     CHECK(series.heights_m[i] == doctest::Approx(0.1 * t).epsilon(1e-5).scale(0.0));
   }
 }
 
-TEST_CASE("through equal low-passes drafts that reach both sensors cancel, and a climb is on time") {
-  // A draft of 20 Pa in 4 s: a low-pass on one side only would leave metres of it.
+TEST_CASE("with equal low-passes common drafts cancel, and a climb has no lag") {
+  // A draft of 20 Pa in 4 s: a low-pass on one side only would leave errors of metres.
   const auto draft = [](double t) { return 101'000.0 + 20.0 * std::sin(2.0 * std::numbers::pi * t / 4.0); };
   const auto moved = sampled(0.0, 120.0, 1.0 / 32.0, 0.3, 3,
                              [&](double t) { return hypsometric_pressure_pa(draft(t), 0.25 * t, kAirK); });
@@ -72,8 +73,8 @@ TEST_CASE("through equal low-passes drafts that reach both sensors cancel, and a
     squares += std::pow(series.heights_m[i] - 0.25 * t, 2);
     count += 1.0;
   }
-  // White noise of 0.5 Pa, less by sqrt(K / (2 - K)) = 0.12 and 8.4 cm/Pa: 0.53 cm. The draft adds what the
-  // interpolation between the stamps of the two sensors leaves of it.
+  // White noise of 0.5 Pa times sqrt(K / (2 - K)) = 0.12 and 8.4 cm/Pa: 0.53 cm. The draft adds the error of
+  // interpolating between the stamps of the two sensors.
   CHECK(std::sqrt(squares / count) < 0.008);
   const HeightSeries raw = height_difference(filter_log(moved, 0.0), filter_log(standing, lag_s), kAirK);
   double largest = 0.0;
@@ -83,13 +84,13 @@ TEST_CASE("through equal low-passes drafts that reach both sensors cancel, and a
   CHECK(largest > 0.5);
 }
 
-TEST_CASE("a base of one row a minute is smoothed without lag, and carried on beyond its rows") {
+TEST_CASE("a base with one row a minute is smoothed without lag, and extrapolated beyond its rows") {
   // 90 Pa an hour, 7.6 m; rows with 3 Pa of noise, the last one four minutes before the end.
   const auto weather = [](double t) { return 94'200.0 + 0.025 * t; };
   const auto moved = sampled(0.0, 3600.0, 0.1, 0.1, 5, [&](double t) { return weather(t) - 200.0; });
   const auto rows = sampled(30.0, 3360.0, 60.0, 3.0, 6, weather);
   const FilteredPressure base = smooth_weather(rows);
-  // 55 rows: the median of their second differences is good to 20 %.
+  // The median of the second differences of 55 rows is accurate to 20 %.
   CHECK(base.sigma_pa == doctest::Approx(3.0).epsilon(0.4).scale(0.0));
   const HeightSeries series = height_difference(filter_log(moved, 1.0), base, kAirK);
   double largest_m = 0.0;
@@ -102,14 +103,14 @@ TEST_CASE("a base of one row a minute is smoothed without lag, and carried on be
     squares += height_m * height_m;
   }
   const auto count = static_cast<double>(series.heights_m.size());
-  // Ten rows at a time are averaged: 1 Pa of their noise is left, 9 cm, twice that at the ends.
+  // About ten rows are averaged: 1 Pa of noise remains, 9 cm, twice that at the ends.
   CHECK(std::sqrt(squares / count - std::pow(sum_m / count, 2)) < 0.12);
   CHECK(largest_m < 0.4);
 }
 
 TEST_CASE("the smoother is the least-squares solution of its own model") {
-  // Three rows, of which the first and the last lie on a line: by symmetry the middle is pulled towards it,
-  // and all three keep their mean.
+  // Three rows, the first and the last on a line: by symmetry the middle is pulled towards it, and the mean
+  // of all three is preserved.
   std::vector<PressureSample> rows(3);
   for (std::size_t i = 0; i < 3; ++i)
     rows[i].stamp_ns = kStartNs + 60'000'000'000 * static_cast<std::int64_t>(i);
@@ -123,7 +124,7 @@ TEST_CASE("the smoother is the least-squares solution of its own model") {
   const FilteredPressure smooth = smooth_weather(rows, model);
   REQUIRE(smooth.pressures_pa.size() == 5);
   const double middle_pa = 9.0 * (1.0 + a) / (1.0 + 3.0 * a);
-  // Nothing known of the level is 1e4 Pa here: its share is 1e-7 of the noise.
+  // The uninformative prior of the level, 1e4 Pa, contributes 1e-7 of the noise.
   CHECK(smooth.pressures_pa[2] - 1e5 == doctest::Approx(middle_pa).epsilon(1e-5).scale(0.0));
   CHECK(smooth.pressures_pa[1] - 1e5 == doctest::Approx(a * middle_pa / (1.0 + a)).epsilon(1e-5).scale(0.0));
   CHECK(smooth.pressures_pa[3] == doctest::Approx(smooth.pressures_pa[1]));

@@ -9,7 +9,7 @@
 
 namespace isobar::test::test_sensor_noise {
 
-TEST_CASE("a sensor that was carried up the stairs is judged by the part in which it stood") {
+TEST_CASE("the noise of a sensor carried up the stairs is taken from its still period") {
   std::mt19937 random(1);
   std::normal_distribution<double> normal(0.0, 0.35);
   std::vector<double> times;
@@ -24,16 +24,16 @@ TEST_CASE("a sensor that was carried up the stairs is judged by the part in whic
   CHECK(times[noise.still.begin] >= 40.0);
   CHECK(times[noise.still.begin] <= 45.0);
   CHECK(noise.interval_s == doctest::Approx(1.0 / 32.0));
-  // 5000 samples: sigma by the median of differences is good to 2 %, by the Allan deviation to 1 %.
+  // 5000 samples: sigma is accurate to 2 % by the median of differences, to 1 % by the Allan deviation.
   CHECK(noise.sigma_pa == doctest::Approx(0.35).epsilon(0.06).scale(0.0));
   CHECK(noise.allan_sigma_pa() == doctest::Approx(0.35).epsilon(0.04).scale(0.0));
   CHECK(noise.parts.walk < 0.02);
-  // All of it, motion included, is no white noise any more.
+  // The whole series, motion included, is not white noise.
   CHECK(study_still_noise(times, pressures).parts.walk + study_still_noise(times, pressures).parts.ramp >
         0.5);
 }
 
-TEST_CASE("a sensor that never stands gives no study") {
+TEST_CASE("a sensor that is never still gives an empty result") {
   std::vector<double> times;
   std::vector<double> pressures;
   for (int i = 0; i < 1000; ++i) {

@@ -18,8 +18,8 @@ struct Stairs {
   std::vector<double> times_s;
 };
 
-/// Levels of the given lengths, a step up (+1) or down (-1) after each; the white noise of a pair of DPS310
-/// is 4.2 cm a sample.
+/// Levels of the given durations, each followed by a step up (+1) or down (-1); white noise of a pair of
+/// DPS310: 4.2 cm per sample.
 Stairs stairs(const std::vector<double>& dwells_s, const std::vector<int>& directions, double step_m,
               double sigma_m, double drift_m_s, unsigned seed) {
   std::mt19937 random(seed);
@@ -52,30 +52,30 @@ const std::vector<double> kUneven{9.0, 6.0, 20.0, 12.0, 7.0, 15.0, 5.5, 11.0, 18
 
 }  // namespace
 
-TEST_CASE("ten steps of 3 cm are found in the white noise of two DPS310, however long the levels are") {
+TEST_CASE("ten steps of 3 cm are found in the white noise of two DPS310, at any duration of the levels") {
   for (const unsigned seed : {1U, 2U, 3U, 4U}) {
     const Stairs up = stairs(kUneven, kUp, 0.03, 0.042, 0.0, seed);
     const FoundSteps found = find_steps(up.track, {0.03, 10});
-    // sqrt(26) (4.2 / 3)^2 / 32 Hz; the worst of forty is some four sigmas of this long-tailed distribution.
+    // sqrt(26) (4.2 / 3)^2 / 32 Hz; the worst of forty is about four sigmas of this long-tailed distribution.
     CHECK(found.uncertainty_s == doctest::Approx(std::sqrt(26.0) * 1.96 / 32.0).epsilon(0.15).scale(0.0));
     CHECK(worst_s(found.times_s, up.times_s) < 1.5);
     CHECK(worst_s(find_steps(up.track, {0.03}).times_s, up.times_s) < 1.5);
   }
 }
 
-TEST_CASE("steps that sink, turn round, or stand on a sensor that drifts are found as well") {
+TEST_CASE("steps down, reversing steps, and steps under sensor drift are found, too") {
   const Stairs down = stairs(kUneven, std::vector<int>(10, -1), 0.03, 0.03, 0.0, 5);
   CHECK(worst_s(find_steps(down.track, {0.03}).times_s, down.times_s) < 1.0);
   const Stairs turning = stairs(kUneven, {1, 1, -1, 1, -1, -1, 1, -1, 1, 1}, 0.13, 0.042, 0.0, 6);
   CHECK(worst_s(find_steps(turning.track, {0.13}).times_s, turning.times_s) < 0.2);
   const Stairs fine = stairs(kUneven, {1, -1, 1, -1, 1, -1, 1, -1, 1, -1}, 0.03, 0.042, 0.0, 16);
   CHECK(worst_s(find_steps(fine.track, {0.03}).times_s, fine.times_s) < 1.5);
-  // 1 cm a minute: a barometer that warms up by half a kelvin.
+  // 1 cm a minute: a barometer warming up by half a kelvin.
   const Stairs drifting = stairs(kUneven, kUp, 0.03, 0.03, 1.7e-4, 7);
   CHECK(worst_s(find_steps(drifting.track, {0.03}).times_s, drifting.times_s) < 1.0);
 }
 
-TEST_CASE("no steps are found where there are none, and noise that hides them is said") {
+TEST_CASE("no steps are found where there are none, and noise that hides them shows in the uncertainty") {
   const Stairs still = stairs({120.0}, {}, 0.03, 0.042, 0.0, 8);
   CHECK(find_steps(still.track, {0.03}).times_s.empty());
   CHECK(find_steps({}, {0.03}).times_s.empty());
@@ -83,7 +83,7 @@ TEST_CASE("no steps are found where there are none, and noise that hides them is
   CHECK(find_steps(hidden.track, {0.03}).uncertainty_s > 5.0);
 }
 
-TEST_CASE("errors of a staircase counted by hand") {
+TEST_CASE("errors of a staircase equal those computed by hand") {
   // Levels read 1.00, 1.04, 1.06 where steps are 3 cm: errors +1 cm, -1 cm.
   HeightTrack track;
   for (int i = 0; i < 300; ++i) {
@@ -102,11 +102,11 @@ TEST_CASE("errors of a staircase counted by hand") {
   // An odd number of samples leaves 2 mm / 70 in the mean.
   CHECK(errors.steps_m[0] == doctest::Approx(0.01).epsilon(0.01).scale(0.0));
   CHECK(errors.steps_m[1] == doctest::Approx(-0.01).epsilon(0.01).scale(0.0));
-  CHECK(errors.samples_m.size() == 70 + 89);  // a span ends before its end
+  CHECK(errors.samples_m.size() == 70 + 89);  // the end of a span is exclusive
   for (const double error_m : errors.samples_m) {
     CHECK(std::abs(std::abs(error_m) - 0.01) == doctest::Approx(0.002).epsilon(0.05).scale(0.0));
   }
-  // A plateau that nothing is left of is no plateau.
+  // A plateau shortened to nothing is left out.
   CHECK(staircase_errors(track, shortened(plateaus, 6.0, 3.0)).steps_m.empty());
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/altitude/hypsometry.hpp"
 #include "core/prior/rotation.hpp"
+#include "tests/core/altitude/isothermal_air.hpp"
 
 namespace isobar::test {
 namespace {

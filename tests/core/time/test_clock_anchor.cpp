@@ -24,8 +24,7 @@ ClockAnchorConfig hourly() {
   return config;
 }
 
-/// A device that is read every 1.327 ms for `seconds`; its clock starts at `start_ns` and runs fast by
-/// `drift_ppm`.
+/// A device read every 1.327 ms for `seconds`; its clock starts at `start_ns` and is fast by `drift_ppm`.
 struct Device {
   std::int64_t start_ns = 0;
   double drift_ppm = 0.0;
@@ -38,8 +37,7 @@ struct Device {
 
 }  // namespace
 
-TEST_CASE(
-    "Jitter, drift of both signs, late packets and the hourly wrap leave the mapped time right to 0.2 ms") {
+TEST_CASE("Jitter, drift of either sign, late packets and the hourly wrap cause errors of at most 0.2 ms") {
   for (const double drift_ppm : {-50.0, 0.0, 50.0}) {
     std::mt19937_64 random(5);
     std::exponential_distribution<double> jitter(1.0 / 200e3);  // 0.2 ms on average, never early
@@ -61,7 +59,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A first packet that is late by 40 ms is corrected by the packets after it") {
+TEST_CASE("A first packet that is late by 40 ms is corrected by the following packets") {
   const Device device;
   ClockAnchor anchor(hourly());
   for (int i = 0; i < 10; ++i) {
@@ -70,7 +68,7 @@ TEST_CASE("A first packet that is late by 40 ms is corrected by the packets afte
   CHECK(anchor.to_host_ns(anchor.device_unwrapped_ns()) - device.true_host_ns(9) == 0);
 }
 
-TEST_CASE("A device clock that is set re-anchors with the very next packet, forward and backward") {
+TEST_CASE("A step of the device clock, forward or backward, re-anchors at the next packet") {
   for (const std::int64_t jump_ns : {1'000 * kSecond, -1'000 * kSecond, 2 * kSecond, -2 * kSecond}) {
     ClockAnchor anchor(hourly());
     const Device before{1'800 * kSecond};
@@ -84,7 +82,7 @@ TEST_CASE("A device clock that is set re-anchors with the very next packet, forw
   }
 }
 
-TEST_CASE("One absurd host stamp changes nothing, however far off") {
+TEST_CASE("A single absurd host stamp changes nothing") {
   for (const std::int64_t off_ns : {-kHost, 10 * kMs, -10 * kMs, 100 * kMs, -100 * kMs, kHost}) {
     ClockAnchor anchor(hourly());
     const Device device;
@@ -96,9 +94,7 @@ TEST_CASE("One absurd host stamp changes nothing, however far off") {
   }
 }
 
-TEST_CASE(
-    "A host clock that is set is followed after half a second when it went forward, at once when it went "
-    "back") {
+TEST_CASE("A step of the host clock is followed after half a second if forward, at once if backward") {
   for (const std::int64_t jump_ns : {10 * kSecond, -10 * kSecond}) {
     ClockAnchor anchor(hourly());
     const Device device;
@@ -111,18 +107,18 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A burst of packets that waited for seconds does not move the anchor") {
+TEST_CASE("A burst of packets delayed by seconds does not move the anchor") {
   ClockAnchor anchor(hourly());
   const Device device;
   for (int i = 0; i < 4'000; ++i) {
-    const bool waited = i >= 1'000 && i < 2'500;  // all of them arrive with the last one
+    const bool waited = i >= 1'000 && i < 2'500;  // all arrive with the last one
     anchor.add(device.stamp_ns(i), device.true_host_ns(waited ? 2'500 : i));
     CHECK(std::abs(anchor.to_host_ns(anchor.device_unwrapped_ns()) - device.true_host_ns(i)) < kMs);
   }
   CHECK(anchor.steps() == 0);
 }
 
-TEST_CASE("Five seconds of silence are no step") {
+TEST_CASE("Five seconds of silence are not a step") {
   ClockAnchor anchor(hourly());
   const Device device{kHour - 3 * kSecond};
   for (int i = 0; i < 5'000; ++i) {

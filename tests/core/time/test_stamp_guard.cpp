@@ -24,7 +24,7 @@ std::vector<V> verdicts(StampGuard& guard, const std::vector<std::int64_t>& stam
 
 }  // namespace
 
-TEST_CASE("One absurd stamp is held and never makes later ones look old") {
+TEST_CASE("One absurd stamp is held and does not make later ones look old") {
   StampGuard guard;
   CHECK(verdicts(guard, {1'000, 1'010, 9'000'000'000, 1'020, 1'030, 5, 1'040}) ==
         std::vector<V>{V::kAccept, V::kAccept, V::kHeld, V::kAccept, V::kAccept, V::kHeld, V::kAccept});
@@ -42,13 +42,13 @@ TEST_CASE("A gap and a clock set back are confirmed by the second sample") {
   CHECK(guard.absurd() == 0);
 }
 
-TEST_CASE("Two different absurd stamps in a row do not confirm each other; nor does a copy of the first") {
+TEST_CASE("Neither a different absurd stamp nor a copy confirms a held stamp") {
   StampGuard guard;
   CHECK(verdicts(guard, {1'000, 9'000'000, 5'000'000, 1'010, 9'000'000, 9'000'000, 1'020}) ==
         std::vector<V>{V::kAccept, V::kHeld, V::kHeld, V::kAccept, V::kHeld, V::kHeld, V::kAccept});
 }
 
-TEST_CASE("Repeated and overtaken stamps are told apart and counted") {
+TEST_CASE("Repeated and overtaken stamps are distinguished and counted") {
   StampGuard guard;
   CHECK(verdicts(guard, {1'000, 1'000, 1'020, 1'010, 1'030}) ==
         std::vector<V>{V::kAccept, V::kDuplicate, V::kAccept, V::kReordered, V::kAccept});

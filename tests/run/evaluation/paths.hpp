@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Paths in closed form for the tests of the evaluation.
+// Closed-form paths for the tests of the evaluation.
 #pragma once
 
 #include <cmath>
@@ -36,15 +36,15 @@ inline Trajectory sampled(double duration_s, double step_s, const std::function<
   return trajectory;
 }
 
-/// 1 m/s along x for `duration_s`; the height climbs by `slope` per metre, the heading turns by `turn_rad_m`
-/// per metre without the position following it.
+/// Straight path: 1 m/s along x for `duration_s`, climbing `slope` per metre; the heading alone turns by
+/// `turn_rad_m` per metre.
 inline Trajectory straight(double duration_s, double step_s, double slope = 0.0, double turn_rad_m = 0.0) {
   return sampled(duration_s, step_s, [&](double t_s) {
     return StampedPose{0, {t_s, 0.0, slope * t_s}, yaw_rotation(turn_rad_m * t_s)};
   });
 }
 
-/// A winding walk over hills with roll and pitch: nothing about it is special.
+/// Generic path: a winding walk over hills with roll and pitch.
 inline Trajectory winding(double duration_s, double step_s) {
   return sampled(duration_s, step_s, [](double t) {
     const Eigen::Quaterniond attitude = yaw_rotation(0.3 * t) *

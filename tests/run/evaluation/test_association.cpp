@@ -13,14 +13,14 @@ using namespace isobar::test;
 
 namespace {
 
-/// Without the poses whose time lies in (from_s, to_s).
+/// Trajectory without the poses in (from_s, to_s).
 Trajectory with_hole(Trajectory t, double from_s, double to_s) {
   std::erase_if(t.poses,
                 [&](const StampedPose& p) { return p.stamp_ns > at_ns(from_s) && p.stamp_ns < at_ns(to_s); });
   return t;
 }
 
-/// Largest distance left between estimate and reference.
+/// Largest distance between estimate and reference.
 double largest_distance_m(const std::vector<PosePair>& pairs) {
   double largest = 0.0;
   for (const PosePair& p : pairs)
@@ -31,7 +31,8 @@ double largest_distance_m(const std::vector<PosePair>& pairs) {
 }  // namespace
 
 TEST_CASE(
-    "the reference is interpolated at the estimate's stamps: exactly on a straight path at constant turn") {
+    "the reference is interpolated at the estimate's stamps, exactly on a straight path at a constant turn "
+    "rate") {
   const Trajectory reference = straight(10.0, 0.25, 0.1, 0.2);
   const Trajectory estimate = straight(10.0, 0.1, 0.1, 0.2);
   const std::vector<PosePair> pairs = associate(reference, estimate, 0.5);
@@ -44,7 +45,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("poses before, after and in a long hole of the reference have no pair") {
+TEST_CASE("poses before, after and in a long gap of the reference have no pair") {
   const Trajectory estimate = straight(10.0, 0.1);
   Trajectory reference = with_hole(straight(10.0, 0.01), 4.0, 6.0);
   std::erase_if(reference.poses,
@@ -54,7 +55,7 @@ TEST_CASE("poses before, after and in a long hole of the reference have no pair"
   CHECK(associate(reference, straight(10.0, 0.1), 2.5).size() == 81);
 }
 
-TEST_CASE("coverage is the share of time without the holes") {
+TEST_CASE("coverage is the share of time outside gaps") {
   const Trajectory reference = straight(10.0, 0.01);
   CHECK(coverage(reference, straight(10.0, 0.1), 0.5) == doctest::Approx(1.0));
   CHECK(coverage(reference, with_hole(straight(10.0, 0.1), 3.0, 5.0), 0.5) == doctest::Approx(0.8));
@@ -65,8 +66,7 @@ TEST_CASE("coverage is the share of time without the holes") {
   CHECK(coverage(reference, Trajectory{}, 0.5) == 0.0);
 }
 
-TEST_CASE(
-    "an estimate that is the reference moved by yaw and shift is laid back onto it by every alignment") {
+TEST_CASE("every alignment recovers a reference that was moved by yaw and translation") {
   const Trajectory reference = winding(60.0, 0.05);
   const Trajectory estimate = transformed(yaw_and_shift(2.2, {5, -7, 3}), reference);
   for (const Alignment alignment : {Alignment::kStart, Alignment::kYawTranslation, Alignment::kRigid}) {
@@ -77,7 +77,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("only the rigid alignment takes out a tilt, since tilt is an error of a gravity-aligned estimate") {
+TEST_CASE("only the rigid alignment removes tilt, which is an error of a gravity-aligned estimate") {
   const Trajectory reference = winding(60.0, 0.05);
   Eigen::Isometry3d tilt = yaw_and_shift(0.4, {1, 2, 3});
   tilt.rotate(Eigen::AngleAxisd(5 * kDegree, Eigen::Vector3d::UnitX()));
@@ -92,7 +92,7 @@ TEST_CASE("only the rigid alignment takes out a tilt, since tilt is an error of 
   CHECK(left_m(Alignment::kYawTranslation) > 1.0);
 }
 
-TEST_CASE("no small turn or shift makes the sum of squared distances smaller than the yaw alignment's") {
+TEST_CASE("the yaw alignment is a minimum of the sum of squared distances") {
   std::mt19937 random(5);
   std::normal_distribution<double> noise_m(0.0, 0.3);
   const Trajectory reference = winding(60.0, 0.1);

@@ -13,7 +13,7 @@ using doctest::Approx;
 
 namespace {
 
-/// A step in height of `step_m` from `at_s` on.
+/// Estimate with a step of the height by `step_m` at `at_s`.
 Trajectory stepped(Trajectory t, double at_s, double step_m) {
   for (StampedPose& p : t.poses) {
     if (p.stamp_ns >= at_ns(at_s)) p.position_m.z() += step_m;
@@ -23,7 +23,7 @@ Trajectory stepped(Trajectory t, double at_s, double step_m) {
 
 }  // namespace
 
-TEST_CASE("a perfect estimate in its own frame has no error, full coverage and is not lost") {
+TEST_CASE("a perfect estimate in another frame has no error and full coverage, and is not lost") {
   const Trajectory reference = winding(100.0, 0.05);
   const Evaluation e = evaluate(reference, {}, transformed(yaw_and_shift(1.5, {1, 2, 3}), reference), {});
   CHECK(e.figures.ate_max_m < 1e-9);
@@ -47,7 +47,7 @@ TEST_CASE("a height that drifts by 2 % over 100 m: z-RPE 2 %, final height error
   CHECK(e.figures.ate_share == Approx(0.02 / std::sqrt(3.0)).epsilon(2e-3));
 }
 
-TEST_CASE("a heading that drifts by 0.1 degree a metre: 10 degrees after 100 m, signed") {
+TEST_CASE("a heading that drifts by 0.1 degree per metre has a signed yaw drift of 10 degrees after 100 m") {
   const Evaluation left = evaluate(straight(100.0, 0.01), {}, straight(100.0, 0.1, 0.0, 0.1 * kDegree), {});
   CHECK(left.figures.yaw_drift_rad / kDegree == Approx(10.0).epsilon(1e-6));
   CHECK(left.figures.yaw_drift_rad_m * 100.0 / kDegree == Approx(10.0).epsilon(1e-6));
@@ -55,14 +55,14 @@ TEST_CASE("a heading that drifts by 0.1 degree a metre: 10 degrees after 100 m, 
   CHECK(right.figures.yaw_drift_rad / kDegree == Approx(-10.0).epsilon(1e-6));
 }
 
-TEST_CASE("a wrong heading at the start alone is aligned away, together with the way it led") {
+TEST_CASE("the alignment at the start removes a wrong initial heading and the displacement it causes") {
   const Trajectory reference = winding(60.0, 0.05);
   const Evaluation e =
       evaluate(reference, {}, transformed(yaw_and_shift(30 * kDegree, {0, 0, 0}), reference), {});
   CHECK(e.figures.ate_max_m < 1e-9);
 }
 
-TEST_CASE("all figures stay when reference and estimate move together by yaw and shift") {
+TEST_CASE("figures are invariant when reference and estimate move together by yaw and translation") {
   const Trajectory reference = winding(100.0, 0.05);
   Trajectory estimate = transformed(yaw_and_shift(0.3, {0, 1, 0}), winding(100.0, 0.1));
   for (std::size_t i = 0; i < estimate.poses.size(); ++i)
@@ -78,7 +78,7 @@ TEST_CASE("all figures stay when reference and estimate move together by yaw and
   CHECK(b.final_height_error_m == Approx(a.final_height_error_m).epsilon(1e-9));
 }
 
-TEST_CASE("z-RPE looks at flat segments only: an error made on the stairs is not in it, but in the floors") {
+TEST_CASE("z-RPE covers flat segments only: an error made on stairs appears in the floor heights instead") {
   const std::vector<Segment> segments{
       {at_ns(0), at_ns(40), "flat"}, {at_ns(40), at_ns(60), "stairs"}, {at_ns(60), at_ns(100), "flat"}};
   const auto climb = [](double t) { return t < 40 ? 0.0 : (t < 60 ? 0.2 * (t - 40) : 4.0); };
@@ -95,7 +95,7 @@ TEST_CASE("z-RPE looks at flat segments only: an error made on the stairs is not
   CHECK(f.floors[1].mean_error_m == Approx(0.3));
 }
 
-TEST_CASE("a floor visited twice is one floor, and its worst visit is named") {
+TEST_CASE("a floor visited twice is one floor, with the error of its worst visit") {
   const std::vector<Segment> segments{
       {at_ns(0), at_ns(20), "flat"}, {at_ns(40), at_ns(60), "flat"}, {at_ns(80), at_ns(100), "flat"}};
   const Trajectory reference = sampled(100.0, 0.05, [](double t) {
@@ -109,14 +109,14 @@ TEST_CASE("a floor visited twice is one floor, and its worst visit is named") {
   CHECK(f.floors[1].mean_error_m == Approx(-0.1).epsilon(1e-6));
 }
 
-TEST_CASE("a run is lost when it stops early or leaves the reference for good, not when it merely drifts") {
+TEST_CASE("a run is lost when it stops early or leaves the reference far behind, not when it only drifts") {
   const Trajectory reference = straight(200.0, 0.01);
   CHECK_FALSE(evaluate(reference, {}, straight(200.0, 0.1, 0.02), {}).figures.lost);  // 4 m in 200 m
   CHECK(evaluate(reference, {}, straight(190.0, 0.1), {}).figures.lost);              // 95 % covered
   CHECK(evaluate(reference, {}, stepped(straight(200.0, 0.1), 100.0, 20.0), {}).figures.lost);
 }
 
-TEST_CASE("a height error of 2 m that grows evenly is within twice a sigma of 0.5 m for half of the time") {
+TEST_CASE("a height error that grows evenly to 2 m is within two sigma of 0.5 m for half of the time") {
   const Trajectory estimate = straight(100.0, 0.1, 0.02);
   std::vector<HeightSigma> sigmas;
   for (const StampedPose& p : estimate.poses) sigmas.push_back({p.stamp_ns, 0.5});

@@ -25,7 +25,7 @@ TEST_CASE("a height that drifts by 2 % of the way has a relative error on z of 2
     CHECK(error == doctest::Approx(0.02).epsilon(1e-6));
 }
 
-TEST_CASE("a window lies in one segment with both ends, and bridges none") {
+TEST_CASE("both ends of a window lie in the same segment") {
   const std::vector<PosePair> pairs = pairs_of(straight(40.0, 0.01), straight(40.0, 0.1));
   const std::vector<Segment> segments{
       {at_ns(0), at_ns(12), "flat"}, {at_ns(20), at_ns(24.5), "flat"}, {at_ns(30), at_ns(36), "flat"}};
@@ -45,7 +45,7 @@ TEST_CASE("a window lies in one segment with both ends, and bridges none") {
   CHECK(in_third);
 }
 
-TEST_CASE("neither a rest nor a faster stream of poses adds windows") {
+TEST_CASE("neither a rest nor a higher pose rate adds windows") {
   const auto pausing = [](double step_s) {
     return sampled(60.0, step_s, [](double t) {  // 20 m, 20 s of rest, 20 m
       const double x = t < 20 ? t : (t < 40 ? 20.0 : t - 20.0);
@@ -61,7 +61,7 @@ TEST_CASE("neither a rest nor a faster stream of poses adds windows") {
   CHECK(count(0.01) == doctest::Approx(351).epsilon(0.01));
 }
 
-TEST_CASE("a window that a hole of the estimate makes too long is left out") {
+TEST_CASE("a window that a gap of the estimate makes too long is left out") {
   Trajectory estimate = straight(40.0, 0.1);
   std::erase_if(estimate.poses,
                 [](const StampedPose& p) { return p.stamp_ns > at_ns(10) && p.stamp_ns < at_ns(20); });
@@ -69,7 +69,7 @@ TEST_CASE("a window that a hole of the estimate makes too long is left out") {
   for (const Window& window : make_windows(pairs, nullptr, {5.0, 0.1})) CHECK(window.travelled_m < 5.6);
 }
 
-TEST_CASE("an odometer that reads 3 % long has a relative translation error of 3 % and no rotation error") {
+TEST_CASE("a scale error of 3 % is a relative translation error of 3 % without a rotation error") {
   Trajectory estimate = straight(40.0, 0.1);
   for (StampedPose& p : estimate.poses) p.position_m *= 1.03;
   const std::vector<PosePair> pairs = pairs_of(straight(40.0, 0.01), estimate);
@@ -79,7 +79,7 @@ TEST_CASE("an odometer that reads 3 % long has a relative translation error of 3
   }
 }
 
-TEST_CASE("a heading that drifts by half a degree per metre has that relative rotation error") {
+TEST_CASE("a heading drift of half a degree per metre is that relative rotation error") {
   const std::vector<PosePair> pairs = pairs_of(straight(40.0, 0.01), straight(40.0, 0.1, 0.0, 0.5 * kDegree));
   const std::vector<Window> windows = make_windows(pairs, nullptr, {10.0, 0.1});
   REQUIRE_FALSE(windows.empty());
@@ -88,7 +88,7 @@ TEST_CASE("a heading that drifts by half a degree per metre has that relative ro
   }
 }
 
-TEST_CASE("relative errors do not change when the estimate is moved by yaw and shift") {
+TEST_CASE("relative errors are invariant when the estimate is moved by yaw and translation") {
   const Trajectory reference = winding(60.0, 0.05);
   Trajectory estimate = reference;
   for (StampedPose& p : estimate.poses)

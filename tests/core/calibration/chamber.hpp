@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A sensor in a climate chamber beside a reference, after the paper's: eight cycles from 50 to 15 degC, one
-// to 0, five hours at room temperature; the weather goes on meanwhile.
+// Simulated sensor and reference in a climate chamber, after the paper's: eight cycles from 50 to 15 degC,
+// one to 0, five hours at room temperature, with changing weather.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace isobar::test {
 
 struct Chamber {
-  Compensation hidden;  ///< true pressure of a raw one
+  Compensation hidden;  ///< raw to true pressure
   double noise_pa = 4.0;
   unsigned seed = 1;
 
@@ -39,8 +39,7 @@ struct Chamber {
     return recordings;
   }
 
-  /// Rms of compensated minus true pressure over 5 … 50 degC and the pressures of the recordings: what no
-  /// averaging takes out.
+  /// Systematic error: rms of compensated minus true pressure over 5 … 50 degC and the recorded pressures.
   [[nodiscard]] double systematic_rms_pa(const Compensation& found, const CalibratedRange& range) const {
     double sum = 0.0;
     int count = 0;
