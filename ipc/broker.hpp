@@ -21,8 +21,7 @@ void set_fatal_action(FatalAction action) noexcept;
 class Broker {
  public:
   /// @throws ServiceError when another isobard runs on this machine, when /dev/shm is too small (the text
-  /// gives
-  ///         the MB needed and available), or when the system refuses shared memory.
+  ///         gives the MB needed and available), or when the system refuses shared memory
   Broker();
   /// Attached processes keep running but receive nothing more. Waits up to 2 s for them to detach.
   ~Broker();

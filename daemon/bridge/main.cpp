@@ -71,7 +71,7 @@ class Connection {
     network.announce(settings, receiving_.readers());
   }
 
-  /// One round of the supervise loop. Restarts the process when the connection is of no more use.
+  /// One round of the supervise loop. Restarts the process when the connection has become useless.
   /// @return true when the pose thread has completed a round since the last call
   bool check() {
     forwarding_.put_received(receiving_.counts());
@@ -101,7 +101,7 @@ class Connection {
   Network& network_;
   Forwarding forwarding_;
   const Receiving receiving_;
-  bool watches_for_network_;  ///< loopback was chosen for want of a network
+  bool watches_for_network_;  ///< loopback was chosen, as no other interface was up
   std::uint64_t rounds_ = 0;
 };
 

@@ -40,8 +40,7 @@ class IsobardClock {
 /// Counts of received messages, for the diagnostics.
 struct ReceivedCounts {
   std::uint64_t refused = 0;  ///< implausible
-  std::uint64_t too_early =
-      0;  ///< before isobard's clock was known, or without a free chunk in shared memory
+  std::uint64_t too_early = 0;  ///< no clock of isobard yet, or no free chunk in shared memory
   /// Base stations with readers, [0 … station_count-1].
   std::array<BaseStationStatus, 2> stations;
   std::size_t station_count = 0;

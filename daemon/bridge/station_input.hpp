@@ -19,7 +19,7 @@ class Temperatures {
   /// @param source identifier of the base station
   void add(std::uint64_t source, const dds::TemperatureSample& sample) noexcept;
   /// Temperature of this source with the stamp nearest to `stamp_ns` [degrees C]; NaN: none within 2 s.
-  /// isobar itself sends both with the same stamp.
+  /// A base station's isobar-dds sends both with the same stamp.
   [[nodiscard]] double at(std::uint64_t source, std::int64_t stamp_ns) const noexcept;
 
  private:

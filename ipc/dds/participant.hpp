@@ -51,8 +51,7 @@ struct ParticipantSettings {
 class Participant {
  public:
   /// @throws ServiceError when the network interface does not exist, when the domain has no free port, or
-  /// when
-  ///         DDS fails otherwise
+  ///         when DDS fails otherwise
   explicit Participant(const ParticipantSettings& settings);
 
   [[nodiscard]] dds_entity_t get() const noexcept { return participant_.get(); }
