@@ -95,24 +95,23 @@ TEST_CASE("a bridge that was stopped for 4 s continues") {
   CHECK(stand_in.running());
 }
 
-TEST_CASE("the bridge stops on SIGTERM right after isobard was killed") {
+/// Exit code of a forwarding bridge that gets SIGTERM right after isobard got `number`.
+int bridge_exit_code_after(int number) {
   Listener<dds::OdometryMessage> listener(dds::topics::kOdom);
-  ChildProcess stand_in({ISOBAR_STAND_IN});
+  const ChildProcess stand_in({ISOBAR_STAND_IN});
   ChildProcess bridge({ISOBAR_DDS_PROGRAM});
   CHECK(listener.receive(20));
-  stand_in.signal(SIGKILL);
+  stand_in.signal(number);
   bridge.signal(SIGTERM);
-  CHECK(bridge.wait(20s) == 0);
+  return bridge.wait(20s);
+}
+
+TEST_CASE("the bridge stops on SIGTERM right after isobard was killed") {
+  CHECK(bridge_exit_code_after(SIGKILL) == 0);
 }
 
 TEST_CASE("the bridge stops on SIGTERM although isobard hangs and does not answer") {
-  Listener<dds::OdometryMessage> listener(dds::topics::kOdom);
-  ChildProcess stand_in({ISOBAR_STAND_IN});
-  ChildProcess bridge({ISOBAR_DDS_PROGRAM});
-  CHECK(listener.receive(20));
-  stand_in.signal(SIGSTOP);
-  bridge.signal(SIGTERM);
-  CHECK(bridge.wait(20s) == 0);
+  CHECK(bridge_exit_code_after(SIGSTOP) == 0);
 }
 
 TEST_CASE("a base station's pressure reaches isobard on the robot clock; implausible pressures do not") {
