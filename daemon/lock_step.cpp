@@ -10,11 +10,11 @@ constexpr ScanQueueConfig kLockStepQueue{.reach_ns = 0, .wait_ns = 1, .admission
 
 }  // namespace
 
-LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileShelf* shelf)
+LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileStorage* storage)
     : decoder_(settings.lidar),
       prior_estimator_(settings.prior),
       registration_(settings.registration, settings.method, settings.T_base_lidar, sink),
-      map_(settings.map, settings.T_base_lidar, shelf),
+      map_(settings.map, settings.T_base_lidar, storage),
       filling_(std::make_unique<Scan>()),
       queue_(kLockStepQueue) {}
 

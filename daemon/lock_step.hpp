@@ -24,11 +24,11 @@ namespace isobar {
 class LockStep {
  public:
   /// @param sink receives the poses
-  /// @param shelf takes the tiles that leave memory; null: they are discarded
-  LockStep(const StageSettings& settings, EstimateSink& sink, TileShelf* shelf = nullptr);
+  /// @param storage takes the tiles that leave memory; null: they are discarded
+  LockStep(const StageSettings& settings, EstimateSink& sink, TileStorage* storage = nullptr);
 
   void handle(const recording::Event& event);
-  /// Registers the waiting scans and puts the rest of the map on the shelf. Call once, at the end.
+  /// Registers the waiting scans and stores the tiles in memory. Call once, at the end.
   void finish();
 
   [[nodiscard]] const velodyne::VelodyneDecoder& decoder() const { return decoder_; }

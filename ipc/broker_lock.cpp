@@ -22,11 +22,12 @@ namespace isobar::ipc {
 namespace {
 
 constexpr const char* kLockPath = "/dev/shm/isobar.lock";
-/// The lock of iceoryx itself, held by any program with a RouDi inside.
+/// iceoryx's own lock file, held by any program that runs RouDi.
 constexpr const char* kLibraryLockPath = "/tmp/iox-unique-roudi.lock";
 
-/// The holder locks the first byte against all, those who attach share the second.
-constexpr off_t kHolderByte = 0;
+/// Byte ranges of the lock file: the owner has an exclusive lock on the first byte, each attached process a
+/// shared lock on the second.
+constexpr off_t kOwnerByte = 0;
 constexpr off_t kAttachedByte = 1;
 
 struct flock lock_of(short type, off_t byte) {
@@ -38,9 +39,10 @@ struct flock lock_of(short type, off_t byte) {
   return lock;
 }
 
-std::string reason() { return std::strerror(errno); }  // NOLINT(concurrency-mt-unsafe)
+std::string errno_text() { return std::strerror(errno); }  // NOLINT(concurrency-mt-unsafe)
 
-/// Does a process that is not isobard serve iceoryx here? That would end this process inside the library.
+/// Whether another program runs RouDi on this machine. Starting a second one would end this process inside
+/// the library.
 bool library_lock_is_held() {
   const int descriptor = ::open(kLibraryLockPath, O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) {
@@ -56,25 +58,24 @@ bool read_instance(int descriptor, std::uint64_t& instance) noexcept {
          instance != 0;
 }
 
-bool is_held(int descriptor) noexcept {
-  struct flock query = lock_of(F_RDLCK, kHolderByte);
+bool conflicts(int descriptor, struct flock query) noexcept {
   return ::fcntl(descriptor, F_OFD_GETLK, &query) == 0 && query.l_type != F_UNLCK;
 }
 
-bool is_attached_to(int descriptor) noexcept {
-  struct flock query = lock_of(F_WRLCK, kAttachedByte);
-  return ::fcntl(descriptor, F_OFD_GETLK, &query) == 0 && query.l_type != F_UNLCK;
-}
+bool has_owner(int descriptor) noexcept { return conflicts(descriptor, lock_of(F_RDLCK, kOwnerByte)); }
 
-/// A holder that has announced itself; -1: none.
+bool has_attached(int descriptor) noexcept { return conflicts(descriptor, lock_of(F_WRLCK, kAttachedByte)); }
+
+/// Opens the lock file of an owner that has announced itself, with the shared lock of an attached process.
+/// @return descriptor; -1: there is no such owner
 int open_announced(std::uint64_t& instance) {
   const int descriptor = ::open(kLockPath, O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) {
     return -1;
   }
-  // The lock before the number: a number that is read after the lock was seen is never that of a dead holder.
+  // Lock first, then number: a number read while the lock is held belongs to the live owner.
   struct flock attached = lock_of(F_RDLCK, kAttachedByte);
-  if (::fcntl(descriptor, F_OFD_SETLK, &attached) == 0 && is_held(descriptor) &&
+  if (::fcntl(descriptor, F_OFD_SETLK, &attached) == 0 && has_owner(descriptor) &&
       read_instance(descriptor, instance)) {
     return descriptor;
   }
@@ -82,18 +83,19 @@ int open_announced(std::uint64_t& instance) {
   return -1;
 }
 
-/// Opens and locks the file, or throws.
+/// Opens the lock file and takes the owner's lock.
+/// @throws ServiceError when another process has it, or when the file cannot be opened
 int open_and_lock() {
-  // A file that a killed isobard of another user left behind may be opened, but not with O_CREAT: Debian sets
-  // fs.protected_regular.
+  // First without O_CREAT: fs.protected_regular, which Debian sets, refuses O_CREAT on a file that a killed
+  // isobard of another user left behind.
   int descriptor = ::open(kLockPath, O_RDWR | O_CLOEXEC);
   if (descriptor < 0 && errno == ENOENT) {
     descriptor = ::open(kLockPath, O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   }
   if (descriptor < 0) {
-    throw ServiceError(std::string(kLockPath) + ": cannot be opened: " + reason());
+    throw ServiceError(std::string(kLockPath) + ": cannot be opened: " + errno_text());
   }
-  struct flock request = lock_of(F_WRLCK, kHolderByte);
+  struct flock request = lock_of(F_WRLCK, kOwnerByte);
   if (::fcntl(descriptor, F_OFD_SETLK, &request) != 0) {
     ::close(descriptor);
     throw ServiceError("another isobard is running on this machine (it holds " + std::string(kLockPath) +
@@ -102,7 +104,7 @@ int open_and_lock() {
   return descriptor;
 }
 
-/// Is this still the file that others find under the lock's name?
+/// Whether kLockPath still names the opened file.
 bool is_in_place(int descriptor) noexcept {
   struct stat opened {};
   struct stat named {};
@@ -110,7 +112,7 @@ bool is_in_place(int descriptor) noexcept {
          opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
 }
 
-/// Closes a descriptor at the end of a block.
+/// Owner of a file descriptor.
 class Descriptor {
  public:
   explicit Descriptor(int value) : value_(value) {}
@@ -131,7 +133,7 @@ class Descriptor {
 
 BrokerLock BrokerLock::acquire() {
   int descriptor = open_and_lock();
-  while (!is_in_place(descriptor)) {  // its holder removed it between our opening and our lock
+  while (!is_in_place(descriptor)) {  // its owner removed it between open() and the lock
     ::close(descriptor);
     descriptor = open_and_lock();
   }
@@ -141,7 +143,7 @@ BrokerLock BrokerLock::acquire() {
                        std::string(kLibraryLockPath) + "); stop it first: iox-roudi or a second isobard");
   }
   if (::ftruncate(descriptor, 0) != 0) {
-    throw ServiceError(std::string(kLockPath) + ": cannot be written: " + reason());
+    throw ServiceError(std::string(kLockPath) + ": cannot be written: " + errno_text());
   }
   return lock;
 }
@@ -150,19 +152,19 @@ void BrokerLock::announce() {
   std::uint64_t instance = 0;
   while (instance == 0) {
     if (::getrandom(&instance, sizeof(instance), 0) != static_cast<ssize_t>(sizeof(instance))) {
-      throw ServiceError("no random numbers: " + reason());
+      throw ServiceError("getrandom: " + errno_text());
     }
   }
   if (::pwrite(descriptor_, &instance, sizeof(instance), 0) != static_cast<ssize_t>(sizeof(instance))) {
-    throw ServiceError(std::string(kLockPath) + ": cannot be written: " + reason());
+    throw ServiceError(std::string(kLockPath) + ": cannot be written: " + errno_text());
   }
 }
 
-void BrokerLock::withdraw(std::chrono::milliseconds patience) noexcept {
+void BrokerLock::withdraw(std::chrono::milliseconds timeout) noexcept {
   static_cast<void>(::ftruncate(descriptor_, 0) == 0);
-  const auto deadline = std::chrono::steady_clock::now() + patience;
-  // Locks cannot be waited for with a limit; this is the end of the program, not its work.
-  while (is_attached_to(descriptor_) && std::chrono::steady_clock::now() < deadline) {
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  // Polling, because fcntl(2) has no lock wait with a timeout. Only at the end of the program.
+  while (has_attached(descriptor_) && std::chrono::steady_clock::now() < deadline) {
     ::poll(nullptr, 0, 10);
   }
 }
@@ -171,8 +173,8 @@ BrokerLock::BrokerLock(BrokerLock&& other) noexcept : descriptor_(std::exchange(
 
 BrokerLock::~BrokerLock() {
   if (descriptor_ >= 0) {
-    // Removed while it is locked, so that an isobard of another user can start next. A failure leaves the
-    // number of a dead holder behind, which the lock's absence makes harmless.
+    // Unlinked while locked, so that an isobard of another user can start next. If unlinking fails, the stale
+    // instance number is harmless without the lock.
     static_cast<void>(::ftruncate(descriptor_, 0) == 0);
     static_cast<void>(::unlink(kLockPath) == 0);
     ::close(descriptor_);
@@ -182,7 +184,7 @@ BrokerLock::~BrokerLock() {
 BrokerWatch BrokerWatch::find(std::chrono::milliseconds timeout) {
   const auto deadline = std::chrono::steady_clock::now() + timeout;
   const Descriptor changes(::inotify_init1(IN_CLOEXEC | IN_NONBLOCK));
-  // Watched before the first look, so that a start in between is not missed.
+  // The watch precedes the first attempt, so that a start in between is not missed.
   static_cast<void>(::inotify_add_watch(changes.get(), "/dev/shm", IN_CREATE | IN_MODIFY));
   for (;;) {
     std::uint64_t instance = 0;
@@ -193,9 +195,9 @@ BrokerWatch BrokerWatch::find(std::chrono::milliseconds timeout) {
     const auto left =
         std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
     if (left.count() <= 0) {
-      throw ServiceError("isobard is not running: there is no shared memory to attach to");
+      throw ServiceError("isobard is not running: no shared memory to attach to");
     }
-    // A second at most, for machines where inotify is refused.
+    // At most one second, in case inotify is unavailable.
     pollfd waiting{changes.get(), POLLIN, 0};
     static_cast<void>(::poll(&waiting, 1, static_cast<int>(std::min<std::int64_t>(left.count(), 1000))));
     std::array<char, 4096> events{};
@@ -215,7 +217,7 @@ BrokerWatch::~BrokerWatch() {
 
 bool BrokerWatch::alive() const noexcept {
   std::uint64_t instance = 0;
-  return is_held(descriptor_) && read_instance(descriptor_, instance) && instance == instance_;
+  return has_owner(descriptor_) && read_instance(descriptor_, instance) && instance == instance_;
 }
 
 }  // namespace isobar::ipc

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who holds the shared memory of this machine: a lock on a file beside it. The kernel gives the lock back
-// when its holder dies in any way, so that it never lies; an instance number in the file tells one holder
-// from the next.
+// Ownership of this machine's shared memory: a lock file in /dev/shm. The kernel releases the lock when the
+// owner ends, even by SIGKILL, so a held lock always means a live owner. A random instance number in the file
+// distinguishes successive owners.
 #pragma once
 
 #include <chrono>
@@ -9,10 +9,10 @@
 
 namespace isobar::ipc {
 
-/// The holder's side.
+/// The owner's side.
 class BrokerLock {
  public:
-  /// @throws ServiceError another process holds it, or the file cannot be written
+  /// @throws ServiceError when another process owns the shared memory, or when the file cannot be written
   [[nodiscard]] static BrokerLock acquire();
   ~BrokerLock();
   BrokerLock(BrokerLock&& other) noexcept;
@@ -20,24 +20,26 @@ class BrokerLock {
   BrokerLock(const BrokerLock&) = delete;
   BrokerLock& operator=(const BrokerLock&) = delete;
 
-  /// Says that others may attach. Until then a BrokerWatch waits.
-  /// @throws ServiceError the file cannot be written
+  /// Writes the instance number: from now on BrokerWatch::find() succeeds.
+  /// @throws ServiceError when the file cannot be written
   void announce();
 
-  /// Says that the shared memory is about to go, and waits until nobody who attached is left, `patience` at
-  /// most: memory that is taken apart while others work on it can crash both sides.
-  void withdraw(std::chrono::milliseconds patience) noexcept;
+  /// Clears the instance number, then waits until every attached process has detached: removing shared memory
+  /// that is in use can crash both sides.
+  /// @param timeout longest wait
+  void withdraw(std::chrono::milliseconds timeout) noexcept;
 
  private:
   explicit BrokerLock(int descriptor) : descriptor_(descriptor) {}
   int descriptor_;
 };
 
-/// The side of those who attach. The holder sees that this exists.
+/// The side of an attached process. While it exists, the owner counts this process as attached.
 class BrokerWatch {
  public:
-  /// Waits until a holder has announced itself, `timeout` at most (0: looks once).
-  /// @throws ServiceError there was none in time
+  /// Waits until an owner has announced itself.
+  /// @param timeout longest wait; 0: one attempt
+  /// @throws ServiceError when there is none within the timeout
   [[nodiscard]] static BrokerWatch find(std::chrono::milliseconds timeout);
   ~BrokerWatch();
   BrokerWatch(BrokerWatch&& other) noexcept;
@@ -45,7 +47,7 @@ class BrokerWatch {
   BrokerWatch(const BrokerWatch&) = delete;
   BrokerWatch& operator=(const BrokerWatch&) = delete;
 
-  /// False once that holder has gone, even if another has followed.
+  /// False once that owner has ended or withdrawn, even if another one has started since.
   [[nodiscard]] bool alive() const noexcept;
 
  private:

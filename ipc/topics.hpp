@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every topic in shared memory: its name, what it carries, how deep a reader's queue is. All queues drop the
-// oldest message when full and count it: a dead reader never holds up a writer.
+// Table of the topics in shared memory: name, payload type, queue depth, history. A full queue drops its
+// oldest message and the subscriber counts the loss: a dead subscriber never blocks a publisher.
 #pragma once
 
 #include <cstddef>
@@ -14,48 +14,51 @@
 
 namespace isobar::ipc {
 
-/// The local map, thinned for viewers. About 1 MiB.
+/// The local map, downsampled for viewers. About 1 MiB.
 struct MapCloud {
   static constexpr std::uint32_t kMaxPoints = 65'536;
 
-  std::int64_t stamp_ns = 0;      ///< time of the last scan that is in the map
-  std::uint32_t sequence = 0;     ///< counts the published maps
+  std::int64_t stamp_ns = 0;      ///< stamp of the newest scan in the map, robot clock
+  std::uint32_t sequence = 0;     ///< number of maps published before this one
   std::uint32_t point_count = 0;  ///< points[0 … point_count-1] are valid
   ScanPoint points[kMaxPoints];   // NOLINT(modernize-avoid-c-arrays): p_map; time and ring are 0
 
-  MapCloud() {}  // NOLINT: user-written, so that loaning a chunk does not zero a megabyte
+  MapCloud() {}  // NOLINT: user-provided, so that a loan does not zero 1 MiB
 };
 
-/// How well a part of the program is, with the meaning of diagnostic_msgs/DiagnosticStatus.
+/// Level of a health entry, with the values of diagnostic_msgs/DiagnosticStatus.
 enum class HealthLevel : std::uint8_t { kOk = 0, kWarning = 1, kError = 2, kStale = 3 };
 
-/// One line of health. The texts end with a zero byte.
+/// One entry of the health report. The texts are null-terminated.
 struct HealthEntry {
   static constexpr std::size_t kNameBytes = 40;
   static constexpr std::size_t kMessageBytes = 120;
 
-  char name[kNameBytes];  // NOLINT(modernize-avoid-c-arrays): what it is about, such as "lidar/packets_lost"
+  char name[kNameBytes];        // NOLINT(modernize-avoid-c-arrays): subject, such as "lidar/packets_lost"
   char message[kMessageBytes];  // NOLINT(modernize-avoid-c-arrays): one sentence; may be empty
-  double value;                 ///< the figure, in the unit that the name or the message says
+  double value;                 ///< in the unit given by the name or the message
   HealthLevel level;
 };
 
-/// The health of isobard, once a second.
+/// The health of isobard, published once a second.
 struct HealthReport {
   static constexpr std::uint32_t kMaxEntries = 64;
-  /// Name of the entry that counts those that did not fit; the last place is kept for it.
+  /// Name of the entry that counts the dropped entries; the last place is reserved for it.
   static constexpr std::string_view kDroppedName = "health/dropped";
 
-  std::int64_t stamp_ns = 0;
+  std::int64_t stamp_ns = 0;  ///< robot clock
+  /// Robot clock minus CLOCK_MONOTONIC, constant while isobard runs. CLOCK_MONOTONIC is common to all
+  /// processes of the machine, so a reader gets the current robot time by adding this offset to its own
+  /// reading.
+  std::int64_t robot_clock_offset_ns = 0;
   std::uint32_t entry_count = 0;     ///< entries[0 … entry_count-1] are valid
   HealthEntry entries[kMaxEntries];  // NOLINT(modernize-avoid-c-arrays): payload in shared memory
 
-  HealthReport() {}  // NOLINT: user-written, so that loaning a chunk does not zero it all
+  HealthReport() {}  // NOLINT: user-provided, so that a loan does not zero the entries
 
-  /// Appends an entry; texts that are too long are cut.
+  /// Appends an entry; texts longer than their field are truncated.
   /// @return false when the report is full: the entry is dropped, and the last entry, a warning named
-  /// kDroppedName,
-  ///         counts the dropped entries
+  ///         kDroppedName, counts the dropped entries
   [[nodiscard]] bool add(std::string_view name, HealthLevel level, std::string_view message,
                          double value) noexcept {
     constexpr std::uint32_t kLast = kMaxEntries - 1;
@@ -85,14 +88,14 @@ struct HealthReport {
   }
 };
 
-/// A topic: one row of the table below. Any number read it; isobard writes it, samples also come from
-/// isobar-dds.
+/// A topic: one row of the table below. isobard publishes it; isobar-dds publishes samples, too. Any number
+/// of subscribers.
 template <class Payload>
 struct Topic {
   static_assert(std::is_trivially_destructible_v<Payload>);
   const char* name;       ///< at most 100 characters
-  std::uint32_t depth;    ///< messages that wait for a reader at most, 1 … 256
-  std::uint32_t history;  ///< messages that a late reader still gets, 0 … 16
+  std::uint32_t depth;    ///< length of a subscriber's queue [messages], 1 … 256
+  std::uint32_t history;  ///< messages kept for late subscribers, 0 … 16
 };
 
 namespace topics {
@@ -110,13 +113,13 @@ inline constexpr Topic<HealthReport> kHealth{"health", 4, 1};
 
 }  // namespace topics
 
-/// One size of chunk in shared memory. A message takes the smallest that fits it.
+/// Pool of equal chunks in shared memory. A message takes a chunk of the smallest size that fits.
 struct ChunkPool {
   std::uint32_t chunk_bytes;
   std::uint32_t chunk_count;
 };
 
-/// Sized so that every queue of the table can be full for three readers at once, with what they hold.
+/// Sized for three subscribers per topic with full queues, including the messages they hold.
 inline constexpr ChunkPool kChunkPools[] = {
     // NOLINT(modernize-avoid-c-arrays)
     {256, 4096},        // samples

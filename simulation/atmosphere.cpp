@@ -13,9 +13,10 @@ namespace isobar::simulation {
 
 namespace {
 
-constexpr double kDryAirGasJKgK = 287.05;
+constexpr double kDryAirGasJKgK = 287.05;  // specific gas constant
 
-/// Door pulses: a half wave of suction, then a weaker one back, 0.5 to 2 s in all.
+/// Pulse of a door: half a sine wave, then one of opposite sign and half the amplitude. `duration_s`: of
+/// both.
 void add_pulse(std::vector<double>& pressure, double start_s, double duration_s, double peak_pa) {
   const auto first = static_cast<std::size_t>(std::max(0.0, start_s / SplineGrid::kStepS));
   for (std::size_t i = first; i < pressure.size(); ++i) {
@@ -27,7 +28,7 @@ void add_pulse(std::vector<double>& pressure, double start_s, double duration_s,
   }
 }
 
-/// Of the wind of driving: half the density of air times the speed squared.
+/// Dynamic pressure of driving: half the density of air times the speed squared.
 double dynamic_pressure_pa(const std::vector<RawPose>& raw, std::size_t i) {
   constexpr double kAirKgM3 = 1.2;
   if (i == 0) return 0.0;
@@ -36,7 +37,8 @@ double dynamic_pressure_pa(const std::vector<RawPose>& raw, std::size_t i) {
   return 0.5 * kAirKgM3 * speed * speed;
 }
 
-/// A step at every change of zone, washed out over the second or two in which air follows a door.
+/// A pressure step at every change of zone, smoothed by a low-pass of 1.5 s, since air takes a second or two
+/// to follow a door.
 void add_zones(std::vector<double>& pressure, const std::vector<int>& zones, double sigma_pa,
                Random& random) {
   if (zones.empty() || sigma_pa <= 0.0) return;
@@ -55,11 +57,11 @@ void add_zones(std::vector<double>& pressure, const std::vector<int>& zones, dou
 
 AirErrors AirErrors::draw(Random random) {
   AirErrors errors;
-  // Fronts move several hPa in three hours: 1 to 4 hPa here, up or down.
+  // Weather fronts change the pressure by several hPa in three hours: here by 1 to 4 hPa, up or down.
   errors.ramp_pa_s = random.sign() * random.uniform(100.0, 400.0) / 10'800.0;
-  errors.walk_pa_rts = random.uniform(0.05, 0.2);
+  errors.walk_pa_sqrt_s = random.uniform(0.05, 0.2);
   errors.turbulence_pa = random.uniform(0.3, 1.0);
-  // Indoors, a few metres apart; what the paper's static pair of sensors leaves after filtering (0.7 cm).
+  // Indoors, a few metres apart: the residual of the paper's static pair of sensors after filtering (0.7 cm).
   errors.local_turbulence_pa = random.uniform(0.08, 0.16);
   errors.zone_sigma_pa = random.uniform(0.3, 1.0);
   errors.pulse_pa = random.uniform(3.0, 15.0);
@@ -77,7 +79,7 @@ Atmosphere::Atmosphere(const Scenario& scenario, const AirErrors& errors, Random
   GaussMarkov at_base(errors.local_turbulence_pa, 4.0, Random(random.next()));
   double walk = 0.0;
   for (std::size_t i = 0; i < samples; ++i) {
-    walk += random.normal(errors.walk_pa_rts * std::sqrt(SplineGrid::kStepS));
+    walk += random.normal(errors.walk_pa_sqrt_s * std::sqrt(SplineGrid::kStepS));
     common[i] = scenario.start_pressure_pa + errors.ramp_pa_s * SplineGrid::kStepS * static_cast<double>(i) +
                 walk + turbulence.step(SplineGrid::kStepS);
     robot[i] = at_robot.step(SplineGrid::kStepS);
@@ -95,7 +97,8 @@ Atmosphere::Atmosphere(const Scenario& scenario, const AirErrors& errors, Random
       const double peak = random.sign() * errors.pulse_pa * random.uniform(0.4, 1.6);
       const double duration_s = random.uniform(0.5, 2.0);
       add_pulse(robot, t, duration_s, peak);
-      add_pulse(base, t + 0.05, duration_s, peak * random.uniform(0.0, 0.6));  // the base is further away
+      add_pulse(base, t + 0.05, duration_s,
+                peak * random.uniform(0.0, 0.6));  // later and weaker: farther away
     }
   }
   common_pa_ = Channel(std::move(common));
@@ -103,7 +106,7 @@ Atmosphere::Atmosphere(const Scenario& scenario, const AirErrors& errors, Random
   base_pa_ = Channel(std::move(base));
 }
 
-// The paper's hypsometric equation with a constant temperature of the column, solved for p1.
+// The paper's hypsometric equation for an isothermal column of air, solved for p1.
 double Atmosphere::column(double pressure_pa, double height_m) const {
   return pressure_pa * std::exp(-kGravity * height_m / (kDryAirGasJKgK * air_temperature_k_));
 }

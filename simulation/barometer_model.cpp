@@ -16,7 +16,7 @@ BarometerErrors BarometerErrors::draw(Random random, bool base_station) {
   errors.flicker_pa = random.uniform(0.03, 0.10);
   errors.drift_pa_k = std::clamp(random.normal(0.25), -0.5, 0.5);
   errors.drift_pa_k2 = random.normal(0.01);
-  // Self-heating beside other electronics: some kelvins within minutes; a ventilated base station less.
+  // Self-heating next to other electronics: some kelvins within minutes; less in a ventilated base station.
   errors.warm_up_k = base_station ? random.uniform(0.3, 1.2) : random.uniform(1.5, 4.0);
   errors.warm_up_tau_s = random.uniform(180.0, 420.0);
   errors.powered_for_s = base_station ? random.uniform(300.0, 2400.0) : random.uniform(60.0, 600.0);

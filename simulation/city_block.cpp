@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Edge of a ground patch. The hills bend by less than 1/1000 m: the patch is off by a millimetre at most.
+/// Edge of a ground patch. The curvature of the hills is below 1/1000 m: a flat patch is off by 2 mm at most.
 constexpr double kPatchM = 4.0;
 
 int patches(double length_m) { return std::max(1, static_cast<int>(std::ceil(length_m / kPatchM))); }
@@ -34,7 +34,7 @@ void add_ground(Mesh& mesh, const CityTerrain& terrain, const Rect& rect, double
   }
 }
 
-/// One side of a block, seen from its street.
+/// One side of a block, with the street along it.
 struct Side {
   CityFrame kerb;
   double length_m;
@@ -67,8 +67,8 @@ void add_kerb(Mesh& mesh, const CityTerrain& terrain, const Side& side) {
   }
 }
 
-/// Houses shoulder to shoulder with different fronts, here and there an alley between them. They begin and
-/// end at the building lines of the streets across.
+/// A row of houses with different fronts and a few alleys between them, from one cross street's building line
+/// to the other's.
 void add_row_of_houses(Mesh& mesh, const CityTerrain& terrain, const Side& side, double from_m, double to_m,
                        Random& random) {
   double u = from_m;
@@ -128,7 +128,7 @@ void add_block(Mesh& mesh, const CityGrid& grid, const CityTerrain& terrain, con
     add_kerb(mesh, terrain, side);
     add_kerbside(mesh, side.kerb, side.length_m, *side.street, terrain, random);
     if (square) continue;
-    const std::size_t across = i < 2 ? 2 : 0;  // the sides that this one ends at
+    const std::size_t across = i < 2 ? 2 : 0;  // the two sides at the ends of this one
     add_row_of_houses(mesh, terrain, side, around[across].street->pavement_m,
                       side.length_m - around[across + 1].street->pavement_m, random);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Blocks of a city with the streets around them.
+// Blocks of a city, with the adjacent halves of the streets around them.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace isobar::simulation {
 
-/// Adds one block from axis to axis of the streets around it: ground, kerbs, houses or an open square, and
-/// what stands before them. The same (seed, block) always looks the same, whatever else is built.
+/// Adds one block, bounded by the axes of the streets around it: ground, kerbs, street furniture, and houses
+/// or an open square. The block depends on (seed, block) only, not on what else is built.
 void add_block(Mesh& mesh, const CityGrid& grid, const CityTerrain& terrain, const Crossing& block,
                std::uint64_t seed);
 

@@ -7,11 +7,11 @@ namespace isobar::simulation {
 
 namespace {
 
-constexpr double kFootM = -4.0;    // walls go down into the hill
-constexpr double kDetailM = 13.0;  // what is higher is out of the lidar's sight, but far away
-constexpr Surface kGlass = Surface::kIce;
+constexpr double kFootM = -4.0;    // walls extend into the ground, since it slopes along the house
+constexpr double kDetailM = 13.0;  // no windows above this height: the lidar sees it only from far away
+constexpr Surface kGlass = Surface::kIce;  // the most similar surface
 
-/// An opening in a wall and how deep its pane or door lies behind the wall.
+/// Opening in a wall [m]; `depth_m`: distance of the pane or door behind the wall.
 struct Opening {
   double u0, u1;
   double z0, z1;
@@ -57,7 +57,7 @@ void add_bay(Mesh& mesh, const CityFrame& frame, double u0, double u1, double z0
   for (const double z : {hole.z0, hole.z1}) frame.slab(mesh, hole.u0, hole.u1, -hole.depth_m, 0.0, z, wall);
 }
 
-/// On the street: doors, shop windows, garages, or the windows of a flat.
+/// Opening on the ground floor: door, shop window, garage, or window of a flat.
 Opening draw_street_opening(Random& random, double u0, double bay_m, double height_m) {
   const double middle = u0 + bay_m * random.uniform(0.45, 0.55);
   const double kind = random.uniform();
@@ -138,7 +138,7 @@ void add_building(Mesh& mesh, const CityFrame& frame, double width_m, double dep
   for (const double u : {0.0, width_m}) frame.flank(mesh, u, -depth_m, 0.0, kFootM, top, style.wall);
   frame.panel(mesh, 0.0, width_m, -depth_m, kFootM, top, style.wall);
   frame.slab(mesh, 0.0, width_m, -depth_m, 0.0, top, Surface::kConcrete);
-  if (random.chance(0.5)) {  // a step before the door or a shop's display
+  if (random.chance(0.5)) {  // a doorstep or a shop's display
     const double u0 = random.uniform(0.0, std::max(0.1, width_m - 2.0));
     frame.box(mesh, u0, std::min(width_m, u0 + 1.4), 0.0, random.uniform(0.3, 0.6), -1.0,
               random.uniform(0.2, 0.5), Surface::kConcrete);

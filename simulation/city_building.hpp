@@ -7,8 +7,9 @@
 
 namespace isobar::simulation {
 
-/// A house from u = 0 to width_m whose front is at d = 0 and looks along +d: shops and doors on the street,
-/// windows above, now and then bay windows, balconies and a cornice. z = 0 is the pavement before its middle.
+/// Adds a house from u = 0 to width_m with its front at d = 0, facing +d: doors and shops on the ground
+/// floor, windows above, random bay windows, balconies and a cornice. z = 0 is the pavement at the middle of
+/// the front.
 void add_building(Mesh& mesh, const CityFrame& frame, double width_m, double depth_m, Random& random);
 
 }  // namespace isobar::simulation

@@ -10,10 +10,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Nothing stands nearer to a corner, where people cross and cars turn.
+/// Distance kept free at corners, where people cross and cars turn.
 constexpr double kCornerM = 4.5;
 
-/// A frame at (u, d) of another on the terrain, upright.
+/// Level frame at (u, d) of another frame, `above_m` above the terrain.
 CityFrame standing(const CityFrame& frame, double u, double d, const CityTerrain& terrain, double above_m) {
   CityFrame at = frame;
   at.origin_m.head<2>() = frame.plan(u, d);
@@ -27,7 +27,7 @@ void add_lamp(Mesh& mesh, const CityFrame& foot, Random& random) {
   foot.box(mesh, -0.1, 0.1, 0.0, 1.2, height - 0.15, height, Surface::kMetal);
 }
 
-/// One of the small things of a pavement.
+/// A random small object of a pavement.
 void add_small(Mesh& mesh, const CityFrame& foot, Random& random) {
   switch (random.integer(0, 4)) {
     case 0:  // post with a sign
@@ -63,7 +63,7 @@ void add_car(Mesh& mesh, const CityFrame& frame, Random& random) {
   for (const double u : {-0.65 * half, 0.65 * half}) {
     frame.box(mesh, u - 0.3, u + 0.3, -wide + 0.02, wide - 0.02, 0.0, 0.6, Surface::kCloth);
   }
-  // The cabin: sloping screens before and behind, leaning sides.
+  // The cabin: inclined front and rear screens and side windows.
   const double front0 = van ? 0.9 * half : 0.45 * half;
   const double front1 = front0 - (van ? 0.3 : 0.7);
   const double rear0 = van ? -half : -0.85 * half;
@@ -120,7 +120,10 @@ void add_kerbside(Mesh& mesh, const CityFrame& kerb, double length_m, const Stre
     if (random.chance(0.35)) continue;
     CityFrame car = standing(kerb, u, random.uniform(1.0, 1.15), terrain, 0.0);
     car.rise = terrain.slope(car.origin_m.head<2>()).dot(car.along);
-    if (random.chance(0.1)) car.along = -car.along, car.rise = -car.rise;
+    if (random.chance(0.1)) {  // parked in the opposite direction
+      car.along = -car.along;
+      car.rise = -car.rise;
+    }
     add_car(mesh, car, random);
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What stands on pavements and along kerbs.
+// Street furniture: lamps, trees, parked cars and small objects on pavements.
 #pragma once
 
 #include "simulation/city_frame.hpp"
@@ -14,12 +14,12 @@ inline constexpr double kCarLengthM = 4.3;
 /// Height of a pavement above the carriageway.
 inline constexpr double kKerbM = 0.12;
 
-/// A car whose middle is at u = 0, d = 0 and that stands on z = 0.
+/// Adds a car with its centre at u = 0, d = 0 and its wheels on z = 0.
 void add_car(Mesh& mesh, const CityFrame& frame, Random& random);
-/// A trunk with a crown of leaves.
+/// Adds a trunk with a crown of leaves; `foot`: [m].
 void add_tree(Mesh& mesh, const Eigen::Vector3d& foot, Random& random);
-/// Lamps, trees, parked cars, posts, bins, benches along one side of a block: u = 0 … length_m along the
-/// kerb, d > 0 on the carriageway; z = 0 of `kerb` is height 0 of the terrain.
+/// Adds lamps, trees, parked cars, posts, bins and benches along one side of a block. `kerb`: u = 0 …
+/// length_m along the kerb, d > 0 on the carriageway, z = 0 at height 0 of the terrain.
 void add_kerbside(Mesh& mesh, const CityFrame& kerb, double length_m, const Street& street,
                   const CityTerrain& terrain, Random& random);
 

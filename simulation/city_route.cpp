@@ -12,12 +12,12 @@ using Eigen::Vector2d;
 namespace {
 
 constexpr double kAccelerationMS2 = 1.2;
-constexpr double kBrakingMS2 = 1.5 * kAccelerationMS2;  // as Route brakes
+constexpr double kBrakingMS2 = 1.5 * kAccelerationMS2;  // the same factor as in Route::drive()
 constexpr double kCornerRadiusM = 4.0;
 constexpr double kTurnRateRadS = 0.6;
 constexpr double kCornerSpeedMS = kTurnRateRadS * kCornerRadiusM;
 
-/// A small electric vehicle: gentle on its passengers, turns within a crossing.
+/// A small electric vehicle with comfortable accelerations and a turning circle that fits into a crossing.
 PlatformLimits vehicle_limits() {
   PlatformLimits limits;
   limits.acceleration_m_s2 = kAccelerationMS2;
@@ -27,12 +27,13 @@ PlatformLimits vehicle_limits() {
   return limits;
 }
 
-/// Before the point where two lanes meet, where a vehicle begins to brake for the arc between them.
+/// Distance from the intersection of two lanes at which a vehicle begins to brake for the arc between them.
 double braking_m(double speed_m_s) {
   const double way_m = (speed_m_s * speed_m_s - kCornerSpeedMS * kCornerSpeedMS) / (2.0 * kBrakingMS2);
   return std::max(0.0, way_m) + kCornerRadiusM + 0.5;
 }
 
+/// Plans a way as a list of crossings.
 class Planner {
  public:
   Planner(const CityGrid& grid, Random& random) : grid_(grid), random_(random) {}
@@ -71,7 +72,8 @@ class Planner {
     way_.crossings.push_back(next);
   }
 
-  /// Down across the rows of before, then along them where it can; never straight back.
+  /// Way back: for the first half down across the rows, then preferably along streets driven once. Never
+  /// turns round.
   void come_back(double until_m, int columns) {
     const double down_m = length_m_ + 0.5 * (until_m - length_m_);
     while (length_m_ < until_m) {
@@ -81,8 +83,9 @@ class Planner {
       double best_score = -1.0;
       for (const auto& [dx, dy] : {std::pair{0, -1}, {-1, 0}, {1, 0}, {0, 1}}) {
         const Crossing next{at.x + dx, at.y + dy};
-        if (next == before || next.x < 1 || next.x > columns || next.y < 1 || next.y > grid_.rows() - 2)
+        if (next == before || next.x < 1 || next.x > columns || next.y < 1 || next.y > grid_.rows() - 2) {
           continue;
+        }
         const bool down = dy < 0 && length_m_ < down_m;
         const double score =
             (down ? 10.0 : 0.0) + (times_driven(way_, at, next) == 1 ? 3.0 : 0.0) + random_.uniform();
@@ -101,7 +104,7 @@ class Planner {
   double length_m_ = 0.0;
 };
 
-/// Waypoints of one street after the other.
+/// Turns the list of crossings into a route, street by street.
 class Driver {
  public:
   Driver(const CityGrid& grid, const CityWay& way, Random& random)
@@ -116,12 +119,12 @@ class Driver {
   }
 
  private:
-  static constexpr double kStartM = 14.0;  ///< past the first crossing
+  static constexpr double kStartM = 14.0;  ///< distance of the start from the first crossing
 
   [[nodiscard]] Vector2d heading(std::size_t i) const {
     return (grid_.at(way_.crossings[i + 1]) - grid_.at(way_.crossings[i])).normalized();
   }
-  /// To the right of the way.
+  /// Unit vector to the right of the direction of travel.
   [[nodiscard]] Vector2d right(std::size_t i) const { return {heading(i).y(), -heading(i).x()}; }
   [[nodiscard]] bool turns_after(std::size_t i) const {
     return i + 2 < way_.crossings.size() && std::abs(heading(i).dot(heading(i + 1))) < 0.5;
@@ -132,7 +135,7 @@ class Driver {
     return {at, 0.0, std::atan2(heading(0).y(), heading(0).x()), vehicle_limits()};
   }
 
-  /// From behind crossing i to the turn in crossing i + 1, or to before it.
+  /// Adds the waypoints from crossing i to crossing i + 1, including the turn there if the way turns.
   void drive_street(std::size_t i) {
     const Vector2d from = grid_.at(way_.crossings[i]);
     const double length_m = (grid_.at(way_.crossings[i + 1]) - from).norm();
@@ -144,13 +147,13 @@ class Driver {
     };
     double first_m = i == 0 ? kStartM + 12.0 : 14.0;
     if (turned) add(9.0, 0.0, kCornerSpeedMS);
-    // The corner lies where the lanes meet: before the axis of the other street if it turns right, past it
-    // if it turns left.
+    // The corner is the intersection of the lanes: before the axis of the other street for a right turn,
+    // behind it for a left turn.
     const bool turns = turns_after(i);
     const double corner_m = length_m + (turns ? CityGrid::kLaneM * heading(i).dot(right(i + 1)) : 0.0);
     const double last_m = turns ? corner_m - braking_m(speed_m_s_) : length_m - (last ? 15.0 : 12.0);
     const bool stops = !last && random_.chance(0.12);
-    // A driver wanders by some decimetres; before a stop it keeps straight.
+    // The vehicle wanders by some decimetres, but drives straight before a stop.
     for (; first_m < last_m - 10.0; first_m += random_.uniform(16.0, 26.0)) {
       add(first_m, stops ? 0.0 : random_.uniform(-0.2, 0.2), speed_m_s_);
     }
@@ -174,7 +177,7 @@ class Driver {
 }  // namespace
 
 int rows_for(const CityWayWish& wish) {
-  // A pair of rows takes at least its own length; streets are at least 62 m apart; one more on every side.
+  // Every two rows give at least (columns + 1) streets of at least 62 m; plus a margin on both sides.
   const double pair_m = 62.0 * (wish.columns + 1);
   return 2 * static_cast<int>(std::ceil(wish.new_m / pair_m)) + 5;
 }

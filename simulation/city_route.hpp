@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a vehicle drives in a city.
+// Route of a vehicle through a city.
 #pragma once
 
 #include <vector>
@@ -11,32 +11,32 @@
 
 namespace isobar::simulation {
 
-/// Crossing after crossing, neighbours in the grid.
+/// Sequence of adjacent crossings.
 struct CityWay {
   std::vector<Crossing> crossings;
-  std::size_t first_old = 0;  ///< from this crossing on the way comes back through streets of before
+  std::size_t first_old = 0;  ///< index of the crossing from which the way returns to streets driven before
 };
 
-/// What a way should be like.
+/// Requirements on a way.
 struct CityWayWish {
-  int columns = 6;          ///< it stays within columns 1 … columns
-  double new_m = 1'800.0;   ///< through streets that it has never been in
-  double return_m = 200.0;  ///< then back to streets of before
+  int columns = 6;          ///< the way stays within columns 1 … columns
+  double new_m = 1'800.0;   ///< length through streets not driven before
+  double return_m = 200.0;  ///< length of the return to streets driven before
 };
 
-/// Winds from end to end of the city, two rows at a time, changing between them at random; rows from 1 on.
+/// Plans a way in a zigzag across the city: two rows at a time, with random changes between the two.
 [[nodiscard]] CityWay plan_city_way(const CityGrid& grid, const CityWayWish& wish, Random& random);
 
-/// How often a way leads through the street between two neighbours, either way.
+/// Number of times that a way uses the street between two adjacent crossings, in either direction.
 [[nodiscard]] long times_driven(const CityWay& way, const Crossing& a, const Crossing& b);
 
-/// Rows that a way of this kind may need.
+/// Number of rows that is sufficient for a way.
 [[nodiscard]] int rows_for(const CityWayWish& wish);
 
-/// Drives the way in its lane, slowly round corners, with a stop now and then; in plan, at height 0.
+/// Route along the way, in its lane, slow in corners and with random stops. In plan: height 0.
 [[nodiscard]] Route drive_city_way(const CityGrid& grid, const CityWay& way, Random& random);
 
-/// Puts poses of a plan on the ground: height, pitch and roll of the terrain.
+/// Sets height, pitch and roll of poses in plan to those of the terrain.
 void drape(std::vector<RawPose>& poses, const CityTerrain& terrain);
 
 }  // namespace isobar::simulation

@@ -9,7 +9,8 @@ namespace isobar::simulation {
 using Eigen::Vector2d;
 
 CityTerrain::CityTerrain(Random random) {
-  // Length of each wave and its share of the steepest slope: the amplitudes of the slopes add up to it.
+  // Range of each wavelength, and share of the wave in the maximum slope: the slope amplitudes add up to
+  // kSteepest.
   struct Kind {
     double shortest_m;
     double longest_m;

@@ -15,20 +15,20 @@ using Eigen::Vector2d;
 namespace {
 
 constexpr double kStepS = SplineGrid::kStepS;
-/// Further away nobody sees what comes and goes: the lidar reaches 100 m.
+/// Distance beyond which objects may appear and disappear: beyond the lidar's range of 100 m.
 constexpr double kSightM = 104.0;
-constexpr double kCarMarginM = 16.0;    ///< cars keep this far from the middle of a crossing
-constexpr double kPersonMarginM = 9.0;  ///< people keep off the carriageways across
+constexpr double kCarMarginM = 16.0;    ///< distance that cars keep from the centre of a crossing
+constexpr double kPersonMarginM = 9.0;  ///< the same for people: they stay off the cross streets
 
-/// A street between two crossings while the robot is near: its line, and when.
+/// A street between two crossings, and the time for which the robot can see it.
 struct Visit {
   Vector2d from;
   Vector2d along;
   double length_m;
   const Street* street;
-  std::size_t first;    ///< raw sample
-  std::size_t nearest;  ///< raw sample at which the robot is in its middle
-  std::size_t count;
+  std::size_t first;    ///< first raw sample with the street in sight
+  std::size_t nearest;  ///< raw sample with the robot nearest to the middle of the street
+  std::size_t count;    ///< number of raw samples with the street in sight
 
   [[nodiscard]] Vector2d at(double s, double right_m) const {
     return from + s * along + right_m * Vector2d(along.y(), -along.x());
@@ -56,7 +56,7 @@ Visit find_visit(const CityGrid& grid, const Crossing& a, const Crossing& b,
   return visit;
 }
 
-/// A body that follows the ground at the given distances along a street.
+/// A body on the ground; `s`: its distance along the street per sample [m].
 MovingBody follow(const Mesh& shape, const Visit& visit, const CityTerrain& terrain, double right_m,
                   double above_m, const std::vector<double>& s) {
   std::vector<double> x;
@@ -71,7 +71,7 @@ MovingBody follow(const Mesh& shape, const Visit& visit, const CityTerrain& terr
   return {RayCaster(shape), Channel(std::move(x)), Channel(std::move(y)), Channel(std::move(z)), visit.first};
 }
 
-/// Walks along a pavement, turns round at its ends.
+/// A person who walks to and fro along a pavement.
 MovingBody make_pedestrian(const Visit& visit, const CityTerrain& terrain, Random& random) {
   const double end_m = visit.length_m - kPersonMarginM;
   const double side = random.sign();
@@ -89,7 +89,7 @@ MovingBody make_pedestrian(const Visit& visit, const CityTerrain& terrain, Rando
   return follow(make_person(random), visit, terrain, right_m, kKerbM, s);
 }
 
-/// Waits at the street's far end, meets the robot on its way and waits again at the near end.
+/// A car that waits at the far end of the street, drives past the robot and waits again at the near end.
 MovingBody make_oncoming_car(const Visit& visit, const CityTerrain& terrain, Random& random) {
   const double start_m = visit.length_m - kCarMarginM;
   const double way_m = start_m - kCarMarginM;
@@ -121,8 +121,8 @@ std::vector<MovingBody> make_traffic(const CityGrid& grid, const CityTerrain& te
     const Crossing& b = way.crossings[i + 1];
     if (times_driven(way, a, b) != 1) continue;
     const Visit visit = find_visit(grid, a, b, poses);
-    constexpr std::size_t kLeast = 8;  // control points of a spline
-    if (visit.count < kLeast) continue;
+    constexpr std::size_t kMinSamples = 8;  // a quintic spline needs at least six control points
+    if (visit.count < kMinSamples) continue;
     const int people = random.integer(1, 4);
     for (int p = 0; p < people; ++p) bodies.push_back(make_pedestrian(visit, terrain, random));
     if (random.chance(0.6)) bodies.push_back(make_oncoming_car(visit, terrain, random));

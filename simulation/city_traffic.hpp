@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cars and people that move in the streets that a robot drives through.
+// Moving cars and people in the streets that a robot drives through.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace isobar::simulation {
 
-/// People on the pavements and oncoming cars in every street that the way leads through just once; they are
-/// there while the robot can see the street. `poses` is the robot's drive along `way`.
+/// Pedestrians and oncoming cars in every street that the way uses exactly once. They exist while the robot
+/// can see the street. `poses`: the robot's motion along `way`, every SplineGrid::kStepS.
 [[nodiscard]] std::vector<MovingBody> make_traffic(const CityGrid& grid, const CityTerrain& terrain,
                                                    const CityWay& way, const std::vector<RawPose>& poses,
                                                    Random& random);

@@ -12,9 +12,9 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kDoorHeightM = 2.05;
-constexpr double kWallM = 0.2;
+constexpr double kWallM = 0.2;  // thickness
 
-/// One leg with its own coordinates: s along it, l to its left.
+/// One leg of a corridor with its own coordinates [m]: s along it, l to its left.
 class Leg {
  public:
   Leg(const Corridor& corridor, std::size_t index, double z_m)
@@ -60,7 +60,7 @@ bool is_free(const Storey& storey, const Rect& rect) {
                       [&](const Rect& taken) { return taken.overlaps(rect); });
 }
 
-/// A frame of 6 cm around a door in the corridor's wall.
+/// A door frame, 6 cm wide, on the corridor's wall.
 void add_frame(const Leg& leg, double s0, double s1, double side, Mesh& mesh) {
   const double inner = side * leg.half_m();
   const double outer = side * (leg.half_m() - 0.03);
@@ -87,7 +87,8 @@ void add_furniture(const Leg& leg, double s0, double s1, double l0, double l1, M
   }
 }
 
-/// An open door with a room behind it and a window in its far wall. Returns false where there is no space.
+/// An open door with a furnished room behind it, perhaps with a window in the far wall. Returns false if
+/// there is no space.
 bool add_room(const Leg& leg, double door_s, double door_width, double side, double ceiling_m, Storey& storey,
               Mesh& mesh, Random& random) {
   const double before = random.uniform(0.4, 2.0);
@@ -101,7 +102,7 @@ bool add_room(const Leg& leg, double door_s, double door_width, double side, dou
   storey.taken.push_back(leg.rect(s0 - 0.1, s1 + 0.1, side * (leg.half_m() + 0.01), far_l + side * 0.4));
   storey.plan.cut({leg.rect(door_s, door_s + door_width, side * leg.half_m(), near_l), 0.0, kDoorHeightM});
   storey.plan.cut({leg.rect(s0, s1, near_l, far_l), 0.0, ceiling_m});
-  if (random.chance(0.6)) {  // a window without glass: rays leave and nothing comes back
+  if (random.chance(0.6)) {  // an open window: rays leave the building without a return
     const double width = std::min(1.4, s1 - s0 - 0.4);
     const double s = random.uniform(s0 + 0.2, s1 - 0.2 - width);
     storey.plan.cut({leg.rect(s, s + width, far_l, far_l + side * 0.25), 0.9, 2.1});
@@ -112,7 +113,7 @@ bool add_room(const Leg& leg, double door_s, double door_width, double side, dou
   return true;
 }
 
-/// What stands or hangs in the gap between two doors.
+/// An object on the wall between two doors.
 void add_clutter(const Leg& leg, double s0, double s1, double side, Mesh& mesh, Random& random) {
   const double length = random.uniform(0.25, std::min(1.6, s1 - s0));
   const double s = random.uniform(s0, s1 - length);
@@ -143,7 +144,7 @@ void add_side(const Leg& leg, double side, double ceiling_m, Storey& storey, Mes
     if (leg.bare(door_s - 2.0, s + 2.0)) continue;
     const bool room =
         random.chance(0.35) && add_room(leg, door_s, width, side, ceiling_m - 0.1, storey, mesh, random);
-    if (!room) {  // a closed door, set back in the wall
+    if (!room) {  // a closed door in a niche of the wall
       const Rect niche =
           leg.rect(door_s, s, side * leg.half_m(), side * (leg.half_m() + random.uniform(0.06, 0.19)));
       if (!is_free(storey, niche)) continue;
@@ -167,7 +168,7 @@ void add_ceiling(const Leg& leg, double ceiling_m, Mesh& mesh, Random& random) {
   }
 }
 
-/// A fire door's frame across the corridor, its leaves held open against the walls.
+/// The frame of a fire door across the corridor, with its leaves open along the walls.
 void add_fire_door(const Leg& leg, double s, double ceiling_m, Mesh& mesh) {
   for (const double side : {-1.0, 1.0}) {
     leg.box(mesh, s, s + 0.15, side * leg.half_m(), side * (leg.half_m() - 0.10), 0.0, ceiling_m,
@@ -188,7 +189,8 @@ double Corridor::length_m() const {
 
 Rect Corridor::leg_rect(std::size_t leg) const {
   Rect rect = Rect::around(corners_m[leg], corners_m[leg + 1], 0.5 * width_m);
-  // The free ends meet a stairwell or an end wall: no overhang there. The first and last legs lie along x.
+  // No margin at the two ends of the corridor, at a stairwell or an end wall. The first and last legs lie
+  // along x.
   if (leg == 0) rect.x0 = corners_m.front().x();
   if (leg + 1 == legs()) rect.x1 = corners_m.back().x();
   return rect;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Corridors of a storey with what lies along them: doors, rooms, windows, furniture, beams, lamps.
+// Corridors of a storey, with doors, rooms, windows, furniture, beams and lamps along them.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,12 +10,12 @@
 
 namespace isobar::simulation {
 
-/// A line of corridor legs, all along an axis, joined at right angles.
+/// A chain of straight, axis-parallel legs joined at right angles.
 struct Corridor {
   std::vector<Eigen::Vector2d> corners_m;
   double width_m = 2.2;
   double ceiling_m = 2.9;
-  int bare_leg = -1;  ///< leg with a stretch without any feature, -1 for none
+  int bare_leg = -1;  ///< leg with a featureless stretch (bare_start_m … bare_end_m along it); -1: none
   double bare_start_m = 0.0;
   double bare_end_m = 0.0;
 
@@ -27,14 +27,15 @@ struct Corridor {
 /// One storey under construction.
 struct Storey {
   FloorPlan plan;
-  std::vector<Rect> taken;  ///< where no room may come: corridors, wells, other rooms
+  std::vector<Rect> taken;  ///< areas that no room may overlap: corridors, stairwells, other rooms
   double z_m = 0.0;
 };
 
-/// A corridor of `legs` legs (odd; first and last along +x) of `length_m` in all, from the origin.
+/// Random corridor from the origin with `legs` legs (odd; first and last along +x) and a total length of
+/// `length_m`.
 [[nodiscard]] Corridor draw_corridor(Random& random, int legs, double length_m);
 
-/// Cuts the corridor and everything along it; adds furniture to `mesh`.
+/// Cuts the corridor and its rooms out of the storey's plan, and adds furniture to `mesh`.
 void add_corridor(const Corridor& corridor, Storey& storey, Mesh& mesh, Random& random);
 
 }  // namespace isobar::simulation

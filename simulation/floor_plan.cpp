@@ -14,7 +14,8 @@ namespace {
 
 using Interval = std::pair<double, double>;
 
-/// Faces on the border between two cells: what one has and the other has not.
+/// Wall faces on the border between two cells: the height intervals that are open in `mine` and solid in
+/// `other`.
 void add_difference(const Space* mine, const Space* other, std::vector<Interval>& faces) {
   if (mine == nullptr || mine->outdoors || mine == other) return;
   const double low = mine->floor_m;
@@ -45,7 +46,7 @@ bool Rect::overlaps(const Rect& other) const {
   return x0 < other.x1 && other.x0 < x1 && y0 < other.y1 && other.y0 < y1;
 }
 
-/// All rectangle edges as grid lines, and the space of every cell.
+/// Grid whose lines are the edges of all rectangles, with the space of each cell.
 struct FloorPlan::Grid {
   std::vector<double> lines[2];  // NOLINT(modernize-avoid-c-arrays): x and y
   std::vector<const Space*> cells;
@@ -104,7 +105,8 @@ void FloorPlan::add_levels(Mesh& mesh, const Grid& grid, double z_m) const {
 }
 
 void FloorPlan::add_walls(Mesh& mesh, const Grid& grid, double z_m, int axis) const {
-  // Walls across `axis`: on every grid line of that axis, faces are merged along the other axis.
+  // Walls perpendicular to `axis`: on each grid line of that axis, equal faces of consecutive cells are
+  // merged along the other axis.
   const int along = 1 - axis;
   const auto cell = [&](std::size_t line, std::size_t other) {
     return axis == 0 ? grid.cell(line, other) : grid.cell(other, line);

@@ -25,24 +25,25 @@ struct Rect {
   }
 };
 
-/// An empty space over a rectangle, heights relative to the storey's floor.
+/// Empty space above a rectangle; heights are relative to the storey's floor.
 struct Space {
   Rect rect;
   double floor_m = 0.0;
   double ceiling_m = 3.0;
   bool has_floor = true;    ///< false: open to the storey below
   bool has_ceiling = true;  ///< false: open to the storey above
-  bool outdoors = false;    ///< no surfaces at all, not even walls towards it
+  bool outdoors =
+      false;  ///< no surfaces: rays that enter it find nothing; neighbours have no wall towards it
 };
 
-/// Spaces in the order they were cut: where two overlap, the later one holds. Walls, floors and ceilings
-/// follow from the borders, so that a plan can have no gap.
+/// Plan of a storey: spaces cut out of a solid, where a later one replaces earlier ones that it overlaps.
+/// Walls, floors and ceilings are derived from the borders of the spaces, so that there are no gaps.
 class FloorPlan {
  public:
   void cut(const Space& space) { spaces_.push_back(space); }
-  /// The space at a point, or nullptr inside the solid.
+  /// Space at a point [m]; null inside the solid.
   [[nodiscard]] const Space* at(double x, double y) const;
-  /// Adds all surfaces to `mesh`, the storey's floor at height z_m.
+  /// Adds all surfaces to `mesh`; `z_m`: height of the storey's floor.
   void build(Mesh& mesh, double z_m) const;
 
  private:

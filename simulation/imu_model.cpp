@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kWanderTauS = 200.0;  // flicker noise looks like this over some minutes
+constexpr double kWanderTauS = 200.0;  // a Gauss-Markov process approximates flicker noise over some minutes
 
 Vector3d draw_vector(Random& random, double sigma) {
   const double x = random.normal(sigma);
@@ -22,7 +22,7 @@ Vector3d draw_vector(Random& random, double sigma) {
   return {x, y, z};
 }
 
-/// Identity with scale errors on the diagonal and small angles between the axes.
+/// Identity plus scale errors on the diagonal and misalignment angles off the diagonal.
 Matrix3d draw_scale(Random& random, double scale_sigma, double angle_sigma_rad) {
   Matrix3d scale = Matrix3d::Identity();
   for (int i = 0; i < 3; ++i) {
@@ -62,7 +62,7 @@ ImuErrors ImuErrors::draw(Random random, bool tracked) {
   errors.gyro_scale = draw_scale(random, 5e-4, 0.05 * kRadPerDeg);
   errors.accel_scale = draw_scale(random, 5e-4, 0.05 * kRadPerDeg);
   if (tracked) {
-    // Tracks on hard floor: some tenths of a m/s^2 and about a degree a second in a 100 Hz band.
+    // Tracks on hard floor: some 0.1 m/s^2 and about 1 deg/s in a band of 100 Hz.
     errors.vibration_m_s2 = random.uniform(0.3, 0.6);
     errors.vibration_rad_s = random.uniform(0.01, 0.02);
   }
@@ -90,7 +90,7 @@ ImuSample ImuModel::sample(double time_s) {
   const MotionState state = trajectory_.at(time_s);
   const Matrix3d R_world_base = state.q_world_base.toRotationMatrix();
   const Vector3d lever = T_base_imu_.translation();
-  // Acceleration of a point of a rigid body: a + w' x r + w x (w x r).
+  // Acceleration of a point r of a rigid body: a + w' x r + w x (w x r).
   const Vector3d a_base = R_world_base.transpose() * (state.a_world + Vector3d(0.0, 0.0, kGravity)) +
                           state.wdot_base.cross(lever) + state.w_base.cross(state.w_base.cross(lever));
   const Matrix3d R_imu_base = T_base_imu_.rotation().transpose();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An inertial measurement unit on a shaking robot.
+// Model of an inertial measurement unit on a vibrating robot.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,28 +11,28 @@
 
 namespace isobar::simulation {
 
-/// Errors of one unit. Defaults are none, for tests; draw() gives a real one.
+/// Errors of one unit. The defaults are zero, for tests.
 struct ImuErrors {
   std::string model = "ideal";
   double gyro_density_rad_s_rthz = 0.0;
   double accel_density_m_s2_rthz = 0.0;
-  Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();  ///< turn-on
-  Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();
-  double gyro_instability_rad_s = 0.0;  ///< in-run wander
-  double accel_instability_m_s2 = 0.0;
-  Eigen::Matrix3d gyro_scale = Eigen::Matrix3d::Identity();  ///< scale and misalignment
-  Eigen::Matrix3d accel_scale = Eigen::Matrix3d::Identity();
-  double vibration_m_s2 = 0.0;  ///< rms an axis at 0.6 m/s on flat floor
-  double vibration_rad_s = 0.0;
-  bool has_attitude = false;  ///< the unit computes its own attitude
-  double attitude_sigma_rad = 0.0;
+  Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();  ///< turn-on bias
+  Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();  ///< turn-on bias
+  double gyro_instability_rad_s = 0.0;                        ///< in-run bias instability, rms
+  double accel_instability_m_s2 = 0.0;                        ///< in-run bias instability, rms
+  Eigen::Matrix3d gyro_scale = Eigen::Matrix3d::Identity();   ///< scale and misalignment
+  Eigen::Matrix3d accel_scale = Eigen::Matrix3d::Identity();  ///< scale and misalignment
+  double vibration_m_s2 = 0.0;                                ///< rms per axis at 0.6 m/s on a flat floor
+  double vibration_rad_s = 0.0;                               ///< rms per axis at 0.6 m/s on a flat floor
+  bool has_attitude = false;                                  ///< the unit outputs its own attitude estimate
+  double attitude_sigma_rad = 0.0;                            ///< rms error of that per axis
 
-  /// A unit with the data sheet figures of the paper's MTi-10 or VN-100, see imu_model.cpp. `tracked`: rides
-  /// on tracks, which shake it.
+  /// Random errors with the data-sheet figures of the paper's MTi-10 or VN-100; sources in imu_model.cpp.
+  /// `tracked`: the robot has tracks, which vibrate.
   [[nodiscard]] static ImuErrors draw(Random random, bool tracked);
 };
 
-/// Samples must be taken in time order.
+/// One unit. Samples must be taken in time order.
 class ImuModel {
  public:
   static constexpr double kRateHz = 200.0;
@@ -40,7 +40,7 @@ class ImuModel {
   ImuModel(const Trajectory& trajectory, const Eigen::Isometry3d& T_base_imu, const ImuErrors& errors,
            Random random);
 
-  /// The sample of time_s; its stamp is left to the caller.
+  /// Sample at `time_s`. The caller sets stamp_ns.
   [[nodiscard]] ImuSample sample(double time_s);
 
  private:

@@ -14,9 +14,9 @@ namespace {
 constexpr double kCycleS = 1e-9 * static_cast<double>(velodyne::kVlp16.firing_cycle_ns);
 constexpr double kFiringStepS = 1e-9 * static_cast<double>(velodyne::kVlp16.firing_step_ns);
 constexpr double kPi = std::numbers::pi;
-constexpr double kMinRangeM = 0.4;  // the manual: no returns nearer than about 0.4 m are reported well
+constexpr double kMinRangeM = 0.4;  // user manual: returns from less than about 0.4 m are unreliable
 
-/// Diffuse reflectivity (0 … 1) at 903 nm, of the size of published spectra.
+/// Diffuse reflectivity (0 … 1) at 903 nm, the order of magnitude of published spectra.
 double reflectivity(Surface surface) {
   switch (surface) {
     case Surface::kPlaster:
@@ -40,15 +40,15 @@ double reflectivity(Surface surface) {
 LidarErrors LidarErrors::draw(Random random) {
   LidarErrors errors;
   // VLP-16 data sheet 63-9229: "range accuracy up to +-3 cm (typical)". Glennie, Kusari, Facchin 2016,
-  // "Calibration and stability analysis of the VLP-16": noise of 1 to 1.5 cm, a centimetre of bias a laser.
+  // "Calibration and stability analysis of the VLP-16": noise of 1 to 1.5 cm, bias of about 1 cm per laser.
   errors.range_sigma_m = random.uniform(0.010, 0.014);
   for (double& bias : errors.range_bias_m) bias = random.normal(0.006);
-  // Motor: the manual allows +-3 rpm of 600 around the set speed; packets show a slow hunting besides.
+  // Motor: the manual allows +-3 rpm around the set speed of 600 rpm; packets also show a slow oscillation.
   errors.azimuth_offset_rad = random.uniform(0.0, 2.0 * kPi);
   errors.spin_rate_rad_s = 2.0 * kPi * (10.0 + random.normal(0.01));
   errors.spin_wobble_rad = random.uniform(0.0002, 0.001);
   errors.spin_wobble_hz = random.uniform(0.3, 1.5);
-  // Without GPS the sensor's clock starts anywhere; crystals are good for some tens of ppm.
+  // Without GPS the sensor's clock starts at an arbitrary time; crystals have errors of some tens of ppm.
   errors.clock_offset_s = random.uniform(0.0, 3600.0);
   errors.clock_drift = random.normal(15e-6);
   // A direct Ethernet link into a Linux receive queue.
@@ -82,17 +82,19 @@ LaserReturn LidarModel::measure(const Hit& hit, std::size_t laser, Random& rando
   if (!hit.found || static_cast<double>(hit.distance_m) < kMinRangeM) return measured;
   const double range_m = hit.distance_m;
   const double cosine = hit.cos_incidence;
-  // Lambert: echo power falls with the square of the range and with the cosine of incidence.
+  // Lambertian surface: echo power is proportional to the cosine of incidence and falls with the square of
+  // the range.
   const double albedo = reflectivity(hit.surface);
   const double echo =
       albedo * std::max(cosine, 0.02) * std::pow(errors_.reach_m / std::max(range_m, 1.0), 2.0);
   if (errors_.fades) {
-    // A wall of 75 % at right angle carries to reach_m; below, the chance of an echo drops smoothly.
+    // A wall of 75 % reflectivity at normal incidence is detected up to reach_m; weaker echoes are detected
+    // with a probability proportional to their power.
     constexpr double kThreshold = 0.75;
     if (random.uniform() > std::min(1.0, echo / kThreshold) || cosine < 0.01) return measured;
   }
   double sigma_m = errors_.range_sigma_m;
-  // At grazing incidence the spot (3 mrad) smears in depth over range * 3 mrad * tan(incidence).
+  // At oblique incidence the spot of the beam (3 mrad) extends in depth over range * 3 mrad * tan(incidence).
   constexpr double kBeamRad = 0.003;
   if (sigma_m > 0.0) {
     const double smear =
@@ -119,7 +121,8 @@ void LidarModel::fire_cycle(double time_s, std::array<LaserReturn, 16>& returns,
   const double azimuth = azimuth_rad(time_s);
   const double azimuth_step = azimuth_rad(time_s + kFiringStepS) - azimuth;
   for (std::size_t laser = 0; laser < 16; ++laser) {
-    // Pose of this laser's own firing. Second order terms in 35 us are below a nanometre.
+    // Pose at the firing time of this laser, to first order: second-order terms over 35 us are below a
+    // nanometre.
     const double later_s = kFiringStepS * static_cast<double>(laser);
     const double a = azimuth + azimuth_step * static_cast<double>(laser);
     const Vector3d beam(cos_elevation_[laser] * std::cos(a), -cos_elevation_[laser] * std::sin(a),

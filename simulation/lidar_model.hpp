@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A VLP-16 that turns while its robot moves: every laser is fired at its own time from its own pose.
+// Model of a VLP-16 on a moving robot: each laser fires at its own time and from its own pose.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -13,32 +13,32 @@
 
 namespace isobar::simulation {
 
-/// Errors of one sensor. Defaults are none, for tests; draw() gives a real one.
+/// Errors of one sensor. The defaults are zero, for tests.
 struct LidarErrors {
-  double range_sigma_m = 0.0;                        ///< white
-  std::array<double, 16> range_bias_m{};             ///< a laser
-  double azimuth_offset_rad = 0.0;                   ///< where the motor is at time 0
+  double range_sigma_m = 0.0;                        ///< white noise
+  std::array<double, 16> range_bias_m{};             ///< per laser
+  double azimuth_offset_rad = 0.0;                   ///< azimuth at time 0
   double spin_rate_rad_s = 20.0 * 3.14159265358979;  ///< 600 rpm
-  double spin_wobble_rad = 0.0;                      ///< amplitude of a slow hunting of the speed control
-  double spin_wobble_hz = 0.0;
-  double clock_offset_s = 0.0;    ///< sensor clock at time 0, past the hour
-  double clock_drift = 0.0;       ///< sensor seconds a second, minus 1
-  double latency_s = 0.0;         ///< last firing to the host's receive stamp, least
-  double latency_jitter_s = 0.0;  ///< mean of the exponential part
-  double reach_m = 100.0;         ///< at full reflectivity and right angle
-  bool fades = false;             ///< weak and grazing returns are lost
+  double spin_wobble_rad = 0.0;                      ///< amplitude of a slow oscillation of the speed control
+  double spin_wobble_hz = 0.0;                       ///< its frequency
+  double clock_offset_s = 0.0;                       ///< sensor clock at time 0, past the hour
+  double clock_drift = 0.0;                          ///< rate of the sensor clock minus 1
+  double latency_s = 0.0;         ///< minimum time from the last firing to the host's receive stamp
+  double latency_jitter_s = 0.0;  ///< mean of the exponentially distributed additional latency
+  double reach_m = 100.0;         ///< range limit, and range up to which a bright wall is always detected
+  bool fades = false;             ///< weak and grazing echoes are lost
 
-  /// Sizes from the data sheet and from published tests, see lidar_model.cpp.
+  /// Random errors of the size given by data sheet and published tests; sources in lidar_model.cpp.
   [[nodiscard]] static LidarErrors draw(Random random);
 };
 
-/// One packet as it arrives.
+/// One packet as received by the host.
 struct ReceivedPacket {
-  double receive_time_s = 0.0;  ///< true time; the host stamps it with its own clock
+  double receive_time_s = 0.0;  ///< true time of arrival; the host stamps it with its own clock
   Vlp16Bytes bytes{};
 };
 
-/// Immutable; packet() may be called from several threads, in any order.
+/// One sensor. Immutable: packet() may be called from several threads, in any order.
 class LidarModel {
  public:
   LidarModel(const World& world, const Trajectory& trajectory, const Eigen::Isometry3d& T_base_lidar,
@@ -46,6 +46,7 @@ class LidarModel {
 
   /// True time of the first firing of packet n [s].
   [[nodiscard]] static double packet_time_s(std::uint64_t n);
+  /// Packet n = 0, 1, ….
   [[nodiscard]] ReceivedPacket packet(std::uint64_t n) const;
 
  private:

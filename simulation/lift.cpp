@@ -10,13 +10,13 @@ namespace isobar::simulation {
 
 namespace {
 
-constexpr double kDoorTimeS = 2.5;
-constexpr double kSillM = 0.12;  // between the shaft's wall and the inside of the cabin
-// Passenger elevators: 1 m/s, up to 1 m/s^2.
-constexpr double kSpeed = 1.0;
-constexpr double kAcceleration = 0.8;
+constexpr double kDoorTimeS = 2.5;  // time that a door takes to open or close
+constexpr double kSillM = 0.12;     // from the shaft's wall to the inside of the cabin
+// Typical of passenger elevators: 1 m/s, up to 1 m/s^2.
+constexpr double kLiftSpeedMS = 1.0;
+constexpr double kLiftAccelerationMS2 = 0.8;
 
-/// The cabin's inner walls, floor and ceiling, open at x = 0 towards -x; inside is 0 < x < depth.
+/// Inner walls, floor and ceiling of the cabin; it extends along +x and is open at x = 0.
 Mesh make_cabin() {
   Mesh mesh;
   const double half = 0.5 * LiftSizes::kCabinWidthM;
@@ -41,7 +41,8 @@ Mesh make_cabin() {
   return mesh;
 }
 
-/// One leaf of a sliding door; side -1 or +1, shut at its origin, overlapping the other by 2 cm.
+/// One leaf of a sliding door, `side` -1 or +1. At its origin it is closed and overlaps the other leaf by 2
+/// cm.
 Mesh make_leaf(double side) {
   Mesh mesh;
   mesh.box({-0.02, std::min(-side * 0.01, side * 0.5 * LiftSizes::kDoorWidthM), 0.0},
@@ -50,7 +51,7 @@ Mesh make_leaf(double side) {
   return mesh;
 }
 
-/// A leaf of each side of a door at (x, y), sliding along y.
+/// Both leaves of a door at (x, y) that slides along y. `open`: 0 closed … 1 open, per sample.
 void add_doors(std::vector<MovingBody>& bodies, double x, double y, const std::vector<double>& open,
                const std::vector<double>& z) {
   for (const double side : {-1.0, 1.0}) {
@@ -93,14 +94,14 @@ void LiftDrive::take_lift() {
   const double before_m = route_.pose().z_m;
   const double cabin_m = cabin_z_m_.back();
   const std::size_t first = route_.samples().size();
-  route_.ride(top ? -site_.height_m : site_.height_m, kSpeed, kAcceleration);
+  route_.ride(top ? -site_.height_m : site_.height_m, kLiftSpeedMS, kLiftAccelerationMS2);
   for (std::size_t i = first; i < route_.samples().size(); ++i) {
     push(cabin_m + route_.samples()[i].z_m - before_m);
   }
   doors(!top, 1.0);
 }
 
-/// The lift stands still while the robot moved.
+/// Extends the lift's samples to the robot's: the lift stood still during the last motion.
 void LiftDrive::follow() {
   while (cabin_z_m_.size() < route_.samples().size()) push(cabin_z_m_.back());
 }
@@ -112,7 +113,7 @@ void LiftDrive::push(double cabin_z_m) {
   ground_open_.push_back(ground_door_);
 }
 
-/// Opens (1) or shuts (0) the doors of the cabin and of one storey while the robot waits.
+/// Opens (1) or closes (0) the doors of the cabin and of one storey while the robot waits.
 void LiftDrive::doors(bool top, double target) {
   const double from = cabin_door_;
   for (double t = SplineGrid::kStepS; t <= kDoorTimeS; t += SplineGrid::kStepS) {
@@ -124,10 +125,10 @@ void LiftDrive::doors(bool top, double target) {
   wait(random_.uniform(0.8, 1.5));
 }
 
-/// The empty cabin comes, unseen behind shut doors.
+/// Moves the empty cabin to another storey behind closed doors while the robot waits.
 void LiftDrive::move_cabin_to(double target_m) {
   const double from_m = cabin_z_m_.back();
-  const double seconds = std::abs(target_m - from_m) / kSpeed;
+  const double seconds = std::abs(target_m - from_m) / kLiftSpeedMS;
   const auto steps = static_cast<int>(seconds / SplineGrid::kStepS);
   if (steps == 0) return;
   route_.wait(seconds + SplineGrid::kStepS);

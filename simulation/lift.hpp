@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An elevator: cabin, doors, and a robot that is carried by it.
+// An elevator with cabin and doors, and the motion of a robot that uses it.
 #pragma once
 
 #include <vector>
@@ -16,30 +16,31 @@ struct LiftSizes {
   static constexpr double kCabinDepthM = 2.1;
   static constexpr double kDoorWidthM = 1.1;
   static constexpr double kDoorHeightM = 2.1;
-  static constexpr double kShaftWallM = 0.25;  ///< between corridor and shaft
+  static constexpr double kShaftWallM = 0.25;  ///< thickness of the wall between corridor and shaft
 };
 
-/// The corridors of both storeys end at x = front_m, y = 0; the shaft lies beyond.
+/// Position of the elevator: the corridors of both storeys end at x = front_m, y = 0, with the shaft behind.
 struct LiftSite {
   double front_m = 0.0;
-  double height_m = 0.0;  ///< of the upper storey above the lower one's 0
+  double height_m = 0.0;  ///< height of the upper storey; the lower one is at 0
 };
 
-/// Drives the robot and the lift together, on one time grid.
+/// Motion of robot and elevator on the common time grid.
 class LiftDrive {
  public:
-  /// The robot stands at x = start_m on the upper storey and faces the lift, whose cabin waits below.
+  /// The robot starts at x = start_m on the upper storey, facing the elevator; the cabin is on the lower
+  /// storey.
   LiftDrive(const LiftSite& site, double start_m, Random& random);
 
   void drive(const std::vector<Waypoint>& way);
   void wait(double seconds);
   void turn_round();
-  /// From before the door: waits for the cabin, drives in, turns round, is carried to the other storey; the
-  /// doors are open at the end.
+  /// Starts in front of the door: waits for the cabin, drives in, turns round and rides to the other storey,
+  /// where the doors are open at the end.
   void take_lift();
 
   [[nodiscard]] const Route& route() const { return route_; }
-  /// Cabin and doors as the lidar sees them.
+  /// Cabin and doors.
   [[nodiscard]] std::vector<MovingBody> bodies() const;
 
  private:
@@ -52,7 +53,7 @@ class LiftDrive {
   Route route_;
   Random& random_;
   std::vector<double> cabin_z_m_{0.0};
-  std::vector<double> cabin_open_{0.0};  ///< doors: 0 shut … 1 open
+  std::vector<double> cabin_open_{0.0};  ///< doors per sample: 0 closed … 1 open
   std::vector<double> top_open_{0.0};
   std::vector<double> ground_open_{0.0};
   double cabin_door_ = 0.0;

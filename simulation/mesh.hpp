@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Surfaces of a world as triangles.
+// Triangle mesh of a world.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,7 +8,7 @@
 
 namespace isobar::simulation {
 
-/// What a surface is made of; decides intensity and how far it returns at grazing incidence.
+/// Material of a surface: determines its reflectivity.
 enum class Surface : std::uint8_t { kPlaster, kConcrete, kWood, kMetal, kCloth, kIce };
 
 struct Triangle {
@@ -18,15 +18,16 @@ struct Triangle {
   Surface surface = Surface::kPlaster;
 };
 
-/// A bag of triangles with builders for the usual shapes. Metres; both sides of a triangle are visible.
+/// Unordered triangles, with builders for simple shapes. Coordinates in metres; triangles are visible from
+/// both sides.
 class Mesh {
  public:
   void triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                 Surface surface);
-  /// Planar quadrilateral a, b, c, d in order around its edge.
+  /// Planar quadrilateral with consecutive corners a, b, c, d.
   void quad(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
             const Eigen::Vector3d& d, Surface surface);
-  /// Axis-aligned box between two corners.
+  /// Axis-aligned box between two opposite corners.
   void box(const Eigen::Vector3d& low, const Eigen::Vector3d& high, Surface surface);
   /// Vertical prism over a regular polygon, with both caps.
   void prism(const Eigen::Vector3d& base_centre, double radius_m, double height_m, int sides,

@@ -34,7 +34,7 @@ PathGeometry::PathGeometry(const std::vector<Waypoint>& waypoints, double start_
       const Vector2d next = waypoints[i + 1].xy_m - target;
       turn = wrap(std::atan2(next.y(), next.x()) - yaw);
     }
-    // Slight bends are driven in wide arcs, without slowing down.
+    // Slight bends have a wide arc, which needs no lower speed.
     const double radius = std::abs(turn) < 0.3 ? limits.bend_radius_m : limits.corner_radius_m;
     const double tangent = radius * std::tan(0.5 * std::abs(turn));
     const double straight = way.norm() - tangent;
@@ -96,7 +96,7 @@ RawPose PathGeometry::pose(double s) const {
   pose.x_m = xy.x();
   pose.y_m = xy.y();
 
-  // Piecewise linear height plus a parabola across every knot that is near.
+  // Piecewise linear height, plus a parabola across each knot within its blending length.
   std::size_t knot = 0;
   while (knot + 2 < heights_.size() && s > heights_[knot + 1].x()) ++knot;
   double slope = slope_after(knot);

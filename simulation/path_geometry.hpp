@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The line through a list of waypoints as a function of travelled distance.
+// Path through a list of waypoints as a function of the distance s along it.
 #pragma once
 
 #include <string>
@@ -9,20 +9,21 @@
 
 namespace isobar::simulation {
 
-/// Straight lines joined by arcs in plan; straight slopes joined by parabolas in elevation.
+/// In plan, straight lines joined by arcs; in elevation, straight slopes joined by parabolas.
 class PathGeometry {
  public:
+  /// @throws std::logic_error when two waypoints are too close for the arc between them
   PathGeometry(const std::vector<Waypoint>& waypoints, double start_yaw_rad, const PlatformLimits& limits);
 
   [[nodiscard]] double length_m() const { return pieces_.back().end_s; }
-  /// Position, heading (unwrapped from the start's) and pitch after s metres in plan.
+  /// Position, heading (unwrapped, continuous from the start) and pitch at `s`, measured in plan [m].
   [[nodiscard]] RawPose pose(double s) const;
-  /// Wanted speed at s: the slowest of the next half metre.
+  /// Target speed at `s`: the minimum over the next half metre.
   [[nodiscard]] double speed_m_s(double s) const;
   [[nodiscard]] const std::string& label(double s) const;
 
  private:
-  /// A line (curvature 0) or an arc.
+  /// A straight line (curvature 0) or an arc.
   struct Piece {
     double start_s = 0.0;
     double end_s = 0.0;

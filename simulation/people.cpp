@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Least distance from the corners, where the robot turns.
+/// Distance that people keep from the corners, where the robot turns.
 double margin_m(const Corridor& corridor) { return 0.5 * corridor.width_m + 1.0; }
 
 double span_m(const Corridor& corridor, std::size_t leg) {

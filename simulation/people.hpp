@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// People who walk up and down a corridor.
+// People walking in corridors.
 #pragma once
 
 #include "simulation/corridor.hpp"
@@ -8,13 +8,14 @@
 
 namespace isobar::simulation {
 
-/// Whether a leg is long enough that a walker and a robot that turns at its ends do not meet.
+/// True if a leg is long enough for a person who keeps clear of the robot's turns at its ends.
 [[nodiscard]] bool can_walk(const Corridor& corridor, std::size_t leg);
 
-/// Shape of someone who stands at the origin; bodies do not turn, so it looks about the same from all sides.
+/// Shape of a person standing at the origin, nearly rotationally symmetric, since moving bodies do not
+/// rotate.
 [[nodiscard]] Mesh make_person(Random& random);
 
-/// Someone who walks to and fro along one leg, near one wall, for `samples` steps of the time grid.
+/// A person who walks to and fro along one leg, near one wall, for `samples` samples of the time grid.
 [[nodiscard]] MovingBody make_walker(const Corridor& corridor, std::size_t leg, double floor_z_m,
                                      std::size_t samples, Random& random);
 

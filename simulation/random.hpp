@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random numbers that depend on the seed alone: the generator and the distributions are written out here,
-// because the standard leaves its distributions to the library and results would differ between libraries.
+// Reproducible random numbers. The distributions are implemented here, because those of the standard library
+// are implementation-defined: the same seed would give other numbers with another library.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ class Random {
     for (auto& word : state_) word = split_mix(seed);
   }
 
-  /// An independent stream: the same (seed, name, index) always gives the same numbers, whatever is drawn
-  /// from other streams. Lets sensors be simulated in any order and on any thread.
+  /// Independent stream: its numbers depend on (seed, name, index) only, not on what other streams have
+  /// drawn. Sensors can therefore be simulated in any order and on any thread.
   Random(std::uint64_t seed, std::string_view name, std::uint64_t index = 0)
       : Random(mix(mix(seed, hash(name)), index)) {}
 
@@ -46,7 +46,7 @@ class Random {
   /// -1 or +1.
   [[nodiscard]] double sign() { return chance(0.5) ? 1.0 : -1.0; }
 
-  /// Standard normal by Box and Muller (1958), times sigma.
+  /// Normal with mean 0 and standard deviation `sigma`, by the method of Box and Muller (1958).
   [[nodiscard]] double normal(double sigma = 1.0) {
     if (has_spare_) {
       has_spare_ = false;
@@ -88,14 +88,14 @@ class Random {
   bool has_spare_ = false;
 };
 
-/// First-order Gauss-Markov process: exponentially correlated noise of given standard deviation and time
-/// constant, sampled exactly (the discrete form of the Ornstein-Uhlenbeck process).
+/// First-order Gauss-Markov process: exponentially correlated noise with standard deviation `sigma` and time
+/// constant `tau_s`, discretised exactly (Ornstein-Uhlenbeck process).
 class GaussMarkov {
  public:
   GaussMarkov(double sigma, double tau_s, Random random)
       : sigma_(sigma), tau_s_(tau_s), random_(random), value_(random_.normal(sigma)) {}
 
-  /// Moves on by dt_s (>= 0) and returns the new value.
+  /// Advances by `dt_s` (>= 0) and returns the new value.
   double step(double dt_s) {
     const double keep = std::exp(-dt_s / tau_s_);
     value_ = keep * value_ + random_.normal(sigma_ * std::sqrt(1.0 - keep * keep));

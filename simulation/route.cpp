@@ -13,7 +13,8 @@ using Eigen::Vector2d;
 
 namespace {
 
-/// Rides of elevators have a symmetric speed profile with smooth jerk: v = V (1 - cos)/2 ramps.
+/// Height of an elevator ride at `time_s`: symmetric speed profile with ramps v = V (1 - cos(pi t / ramp)) /
+/// 2, whose jerk is finite.
 double ride_height(double time_s, double ramp_s, double cruise_s, double speed_m_s) {
   const auto ramp = [&](double t) {  // integral of the ramp from 0 to t
     const double w = std::numbers::pi / ramp_s;
@@ -49,7 +50,7 @@ void Route::wait(double seconds) {
 
 void Route::turn(double angle_rad) {
   const RawPose start = pose();
-  // Half a cosine of turn rate: peak at the limit.
+  // Angle along half a cosine, so that the peak of the turn rate is the limit.
   const double duration_s = std::abs(angle_rad) * std::numbers::pi / (2.0 * limits_.turn_rate_rad_s);
   for (double t = SplineGrid::kStepS; t < duration_s + SplineGrid::kStepS; t += SplineGrid::kStepS) {
     RawPose next = start;
@@ -61,7 +62,7 @@ void Route::turn(double angle_rad) {
 void Route::ride(double height_m, double speed_m_s, double acceleration_m_s2) {
   const RawPose start = pose();
   const double distance = std::abs(height_m);
-  // Peak acceleration of the cosine ramp is pi V / (2 ramp).
+  // The peak acceleration of the cosine ramp is pi V / (2 ramp).
   double speed = speed_m_s;
   double ramp_s = std::numbers::pi * speed / (2.0 * acceleration_m_s2);
   if (speed * ramp_s > distance) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a tracked robot drives and how fast: turns a list of waypoints into raw poses.
+// Motion of a robot: turns waypoints, turns and rides into raw poses.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,43 +11,47 @@
 
 namespace isobar::simulation {
 
-/// A point to pass. Heights may differ only between waypoints of one straight line (a flight or a ramp).
+/// A point of a route. Heights may differ only between waypoints on one straight line (a flight of stairs or
+/// a ramp).
 struct Waypoint {
   Eigen::Vector2d xy_m;
   double z_m = 0.0;
-  double speed_m_s = 0.6;      ///< wanted speed on the way to this point
-  std::string label = "flat";  ///< segment label of the way to this point
+  double speed_m_s = 0.6;      ///< target speed from the previous waypoint to this one
+  std::string label = "flat";  ///< segment label from the previous waypoint to this one
 };
 
-/// A stretch of time with one label.
+/// Time span with one label.
 struct LabelledSpan {
   double start_s = 0.0;
   double end_s = 0.0;
   std::string label;
 };
 
-/// Limits of the platform. A tracked robot of the paper's size (Clearpath Husky-like, 0.9 m long).
+/// Motion limits of the platform. Defaults: a tracked robot of the paper's size (like a Clearpath Husky, 0.9
+/// m long).
 struct PlatformLimits {
   double acceleration_m_s2 = 0.5;
   double turn_rate_rad_s = 0.6;
   double corner_radius_m = 0.65;
-  double bend_radius_m = 6.0;     ///< of bends too slight to slow down for
-  double convex_blend_m = 0.20;   ///< half length over which it tips over an upper edge
-  double concave_blend_m = 0.45;  ///< half length over which it rides out of a lower edge: half the tracks
+  double bend_radius_m = 6.0;    ///< radius of bends below 0.3 rad, driven at full speed
+  double convex_blend_m = 0.20;  ///< half length of the pitch change where the slope decreases (upper edge)
+  double concave_blend_m =
+      0.45;  ///< the same where the slope increases (lower edge): half of the tracks' length
 };
 
-/// Appends motion after motion; every one begins where the last ended.
+/// Sequence of motions, each of which begins where the last one ended.
 class Route {
  public:
   Route(const Eigen::Vector2d& xy_m, double z_m, double yaw_rad, PlatformLimits limits = {});
 
   void wait(double seconds);
-  /// Turns towards the first waypoint if need be and drives through all of them, rounding corners; comes to
-  /// rest at the last.
+  /// Turns towards the first waypoint if necessary, drives through all of them with rounded corners, and
+  /// stops at the last.
+  /// @throws std::logic_error when two waypoints are too close for the arc between them
   void drive(const std::vector<Waypoint>& waypoints);
   /// Turns on the spot.
   void turn(double angle_rad);
-  /// Is carried vertically by height_m: jerk-limited, at most speed_m_s.
+  /// Vertical motion in an elevator by `height_m`: jerk-limited, at most `speed_m_s`.
   void ride(double height_m, double speed_m_s, double acceleration_m_s2);
 
   [[nodiscard]] double time_s() const;
@@ -63,7 +67,7 @@ class Route {
   std::vector<LabelledSpan> labels_;
 };
 
-/// Rms of the small motions at full strength, from 0.4 m/s on. Defaults: tracks on hard floor.
+/// Rms of the vibrations at 0.4 m/s and above. Defaults: tracks on a hard floor.
 struct ShakeSizes {
   double roll_deg = 0.15;
   double pitch_deg = 0.15;
@@ -71,8 +75,8 @@ struct ShakeSizes {
   double heave_m = 0.001;
 };
 
-/// The small motions of tracks on a floor and of tracks rattling over step edges: adds band-limited roll,
-/// pitch, yaw and height to the raw poses, growing with speed and larger on stairs.
+/// Adds band-limited vibrations of roll, pitch, yaw and height to raw poses: growing with speed, and larger
+/// on stairs, where tracks roll over the edges of the steps.
 void add_shaking(std::vector<RawPose>& samples, const std::vector<LabelledSpan>& labels, Random random,
                  const ShakeSizes& on_flat = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Everything that a scenario decides; the sensors are simulated from this alone.
+// A scenario: world, motion, air and sensor mounts. The sensors are simulated from this alone.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,21 +14,23 @@
 
 namespace isobar::simulation {
 
-/// Where the sensors sit; the defaults are the tracked robot's. base_link is on the ground under its middle.
+/// Sensor mounts; the defaults are those of the tracked robot. base_link is on the ground below the robot's
+/// centre.
 struct SensorMounts {
   Mount lidar{{0.10, 0.0, 0.55}, {0.0, 0.0, 0.0}};
   Mount imu{{0.0, 0.0, 0.20}, {0.0, 0.0, 0.0}};
   Eigen::Vector3d pressure_port_m{-0.15, 0.05, 0.35};
 };
 
-/// Air between doors: which ventilated zone the robot is in, on the time grid.
+/// Sources of local pressure disturbances.
 struct AirZones {
-  std::vector<int> zone;          ///< a raw sample
-  double door_pulses_1_s = 0.0;   ///< mean rate of doors moving somewhere near
-  double piston_pa_s_m = 0.0;     ///< pressure in an elevator's cabin a m/s of climb
-  double port_coefficient = 0.0;  ///< share of the dynamic pressure of driving that the port feels
+  std::vector<int> zone;          ///< ventilated zone that the robot is in, per raw sample
+  double door_pulses_1_s = 0.0;   ///< mean rate of door movements nearby
+  double piston_pa_s_m = 0.0;     ///< piston effect of an elevator: pressure in the cabin per m/s of climb
+  double port_coefficient = 0.0;  ///< share of the dynamic pressure of driving that acts on the port
 };
 
+/// Input of the sensor models.
 struct Scenario {
   std::string description;
   World world;
@@ -38,7 +40,7 @@ struct Scenario {
   AirZones air;
   SensorMounts mounts;
   bool has_wheels = true;
-  bool tracked = true;                   ///< its wheels are tracks, with their slip
+  bool tracked = true;                   ///< the wheels are tracks, which slip
   double air_temperature_c = 20.0;       ///< of the column of air between base station and robot
   double base_height_m = 1.0;            ///< of the base station's port in the world frame
   double start_pressure_pa = 101'325.0;  ///< at height 0 and time 0

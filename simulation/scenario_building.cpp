@@ -16,8 +16,8 @@ using Eigen::Vector2d;
 
 namespace {
 
-/// Storeys with the same corridor, wells at its two ends in turn: the well at its beginning joins storeys 0
-/// and 1, the one at its end storeys 1 and 2.
+/// Storeys with the same corridor. The stairwell at its beginning joins storeys 0 and 1, the one at its end
+/// joins storeys 1 and 2.
 class Building {
  public:
   Building(Random& random, int storeys, int legs, double corridor_m, int steps_low, int steps_high)
@@ -25,8 +25,9 @@ class Building {
     const StairSizes sizes = StairSizes::draw(random, steps_low, steps_high);
     corridor_.ceiling_m = std::min(corridor_.ceiling_m, sizes.storey_m() - 0.4);
     wells_.emplace_back(corridor_.corners_m.front(), Vector2d(-1.0, 0.0), random.sign(), sizes);
-    if (storeys > 2)
+    if (storeys > 2) {
       wells_.emplace_back(corridor_.corners_m.back(), Vector2d(1.0, 0.0), random.sign(), sizes);
+    }
     for (int i = 0; i < storeys; ++i) add_storey(i, random);
   }
 
@@ -35,7 +36,8 @@ class Building {
   [[nodiscard]] const Stairwell& well(int storey) const { return wells_[static_cast<std::size_t>(storey)]; }
   [[nodiscard]] double floor_m(int storey) const { return storey * wells_.front().sizes().storey_m(); }
 
-  /// Waypoints along the corridor of a storey, from one distance along it to another, not quite straight.
+  /// Appends waypoints along the corridor of a storey, with small random lateral offsets. `skip_first_m`,
+  /// `skip_last_m`: distances left out at the ends.
   void walk(std::vector<Waypoint>& way, int storey, bool forwards, double skip_first_m, double skip_last_m,
             Random& random) const;
 
@@ -74,7 +76,7 @@ void Building::walk(std::vector<Waypoint>& way, int storey, bool forwards, doubl
     const Vector2d along = (corners[i + 1] - corners[i]).normalized();
     const Vector2d left(-along.y(), along.x());
     const double length = (corners[i + 1] - corners[i]).norm();
-    // Drivers wander by some centimetres about the middle of a corridor.
+    // The robot wanders by some centimetres around the centre line of a corridor.
     for (double s = random.uniform(3.0, 5.0); s < length - 3.0; s += random.uniform(3.5, 6.0)) {
       way.push_back(
           {corners[i] + s * along + random.uniform(-0.07, 0.07) * left, floor_m(storey), speed, "flat"});
@@ -83,7 +85,8 @@ void Building::walk(std::vector<Waypoint>& way, int storey, bool forwards, doubl
   }
 }
 
-/// Index after the first waypoint from `from` on where one can stop: on the flat and nearly straight.
+/// Index after the first waypoint from `from` on that is suitable for a stop: on a flat and nearly straight
+/// stretch.
 std::ptrdiff_t find_stop(const std::vector<Waypoint>& way, std::size_t from) {
   for (std::size_t i = from; i + 1 < way.size(); ++i) {
     const Vector2d before = (way[i].xy_m - way[i - 1].xy_m).normalized();
@@ -95,14 +98,15 @@ std::ptrdiff_t find_stop(const std::vector<Waypoint>& way, std::size_t from) {
   return static_cast<std::ptrdiff_t>(way.size());
 }
 
-/// Zones of the ventilation: two halves of every storey, and every staircase.
+/// Ventilated zones: the two halves of each storey, and each staircase.
 std::vector<int> zones_of(const std::vector<RawPose>& raw, const std::vector<LabelledSpan>& labels,
                           double middle_x_m) {
   std::vector<int> zones;
   std::size_t span = 0;
   for (std::size_t i = 0; i < raw.size(); ++i) {
-    while (span + 1 < labels.size() && SplineGrid::kStepS * static_cast<double>(i) > labels[span].end_s)
+    while (span + 1 < labels.size() && SplineGrid::kStepS * static_cast<double>(i) > labels[span].end_s) {
       ++span;
+    }
     const int half = raw[i].x_m > middle_x_m ? 1 : 0;
     zones.push_back(3 * static_cast<int>(span) + (labels[span].label == "flat" ? half : 2));
   }
@@ -164,7 +168,7 @@ Scenario make_three_floors(std::uint64_t seed, bool short_form) {
   building.walk(way, 1, true, 0.0, 0.0, random);
   building.well(1).route_up(way, building.floor_m(1), stair_speed);
   building.walk(way, 2, false, 0.0, 2.0, random);
-  // Two stops on the way, as people with a robot make them.
+  // Two short stops on the way, as an operator makes them.
   const auto first_stop = way.begin() + find_stop(way, way.size() / 4);
   const auto second_stop = way.begin() + find_stop(way, 3 * way.size() / 4);
   route.drive({way.begin(), first_stop});

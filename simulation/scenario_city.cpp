@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scenarios in the streets of a city: `city`, 2 km, `city-10km`, a map that has to grow without end, and
-// `city-hour`, as long as a battery lasts.
+// Scenarios in the streets of a city: `city` (2 km), `city-10km` (a map much larger than the memory radius)
+// and `city-hour` (20 km, for runs in real time).
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -17,7 +17,8 @@ using Eigen::Vector2d;
 
 namespace {
 
-/// Builds what stands within the lidar's reach of the drive, nothing else: memory grows with the way driven.
+/// Builds only the blocks within the lidar's range of the drive, so that memory grows with its length, not
+/// with the area of the city.
 Mesh build_blocks(const CityGrid& grid, const CityTerrain& terrain, const std::vector<RawPose>& poses,
                   std::uint64_t seed) {
   constexpr double kReachM = 105.0;
@@ -51,14 +52,14 @@ Scenario make(const char* name, std::uint64_t seed, const CityWayWish& wish) {
   scenario.labels = {{0.0, end_s, "outdoor"}};
   std::vector<MovingBody> traffic = make_traffic(grid, terrain, way, scenario.raw, random);
   scenario.world = World(build_blocks(grid, terrain, scenario.raw, random.next()), std::move(traffic));
-  // A sprung vehicle on asphalt: it rolls and pitches a little more than tracks, but steers smoothly.
+  // A sprung vehicle on asphalt: slightly more roll and pitch than tracks, much less yaw.
   add_shaking(scenario.raw, scenario.labels, Random(random.next()), {0.20, 0.20, 0.08, 0.003});
   scenario.trajectory = Trajectory(scenario.raw);
   scenario.tracked = false;
   scenario.mounts.lidar = {{0.35, 0.0, 1.75}, {0.0, 0.0, 0.0}};
   scenario.mounts.imu = {{0.0, 0.0, 0.50}, {0.0, 0.0, 0.0}};
   scenario.mounts.pressure_port_m = {-0.40, 0.10, 1.20};
-  // A port on a body feels a per cent or two of the dynamic pressure, in either direction.
+  // One or two per cent of the dynamic pressure act on a port on the body, with either sign.
   scenario.air.port_coefficient = random.sign() * random.uniform(0.005, 0.025);
   scenario.air_temperature_c = random.uniform(2.0, 26.0);
   scenario.base_height_m = random.uniform(0.5, 6.0);

@@ -17,12 +17,13 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Corridor from the origin along +x; the elevator lies beyond its end.
+/// Dimensions of the building: a corridor from the origin along +x, with the elevator at its end.
 struct Site {
   Corridor corridor;
   double end_x_m = 0.0;
-  double height_m = 0.0;      ///< of the upper storey
-  double ramp_start_m = 0.0;  ///< ground floor: going away from the elevator the floor rises here
+  double height_m = 0.0;  ///< of the upper storey
+  double ramp_start_m =
+      0.0;  ///< distance from the elevator to the ramp on the ground floor, which rises away from it
   double ramp_m = 0.0;
   double ramp_rise_m = 0.0;
 };
@@ -39,7 +40,7 @@ Site draw_site(Random& random, bool short_form) {
   return site;
 }
 
-/// Cuts the door's opening and, on the way, the shaft.
+/// Cuts the opening of the door and the shaft behind it.
 void cut_elevator(FloorPlan& plan, const Site& site, double storey_m) {
   const double half = 0.5 * LiftSizes::kDoorWidthM;
   const double x = site.end_x_m;
@@ -51,7 +52,8 @@ void cut_elevator(FloorPlan& plan, const Site& site, double storey_m) {
             false});
 }
 
-/// The ground floor beyond the ramp lies higher: the floor of the plan is cut there and closed by the ramp.
+/// Ground floor: the part behind the ramp is a plan of its own at the height of the ramp's end; the ramp
+/// replaces the floor between the two plans.
 void build_ground(Mesh& mesh, const Site& site, Random& random) {
   Storey storey;
   const double x = site.end_x_m;
@@ -67,7 +69,7 @@ void build_ground(Mesh& mesh, const Site& site, Random& random) {
   const double x1 = near.corners_m.front().x();
   const double rise = site.ramp_rise_m;
   storey.plan.cut({{x0, -half, x1, half}, 0.0, near.ceiling_m + rise, false, true});
-  // Opens the ramp towards the far part, which closes itself by its own plan.
+  // No wall between the ramp and the far part, which has its own plan.
   storey.plan.cut({{x0 - 1.0, -half, x0, half}, 0.0, near.ceiling_m, false, false, true});
   cut_elevator(storey.plan, site, site.height_m);
   storey.plan.build(mesh, 0.0);
@@ -144,7 +146,7 @@ Scenario make_elevator(std::uint64_t seed, bool short_form) {
   }
   scenario.world = World(mesh, std::move(bodies));
   scenario.air.door_pulses_1_s = 1.0 / random.uniform(40.0, 90.0);
-  // A cabin is a loose piston: Pa a m/s, and it pushes the air of the shaft before it.
+  // Piston effect: the cabin is a loose piston in the shaft, with some Pa per m/s.
   scenario.air.piston_pa_s_m = random.uniform(0.3, 1.5);
   for (const RawPose& pose : scenario.raw) {
     const bool top = pose.z_m > 0.5 * site.height_m;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Wall of the shaft as a sum of waves around and along it.
+/// Wall of the shaft: its radius is a sum of waves around and along the axis, and the axis itself is curved.
 class Shaft {
  public:
   Shaft(Random& random, double depth_m) : depth_m_(depth_m), radius_m_(random.uniform(2.2, 4.5)) {
@@ -26,7 +26,7 @@ class Shaft {
       wave.around = static_cast<double>(random.integer(0, 7));
       wave.along_1_m = 2.0 * kPi / random.uniform(1.2, 12.0) * random.sign();
       wave.phase = random.uniform(0.0, 2.0 * kPi);
-      // Flutes and scallops: the finer, the lower.
+      // Flutes and scallops: the finer the wave, the lower its amplitude.
       wave.height_m = random.uniform(0.03, 0.12) * radius_m_ / (1.0 + 0.6 * wave.around);
     }
     for (Lean& lean : leans_) {
@@ -37,13 +37,13 @@ class Shaft {
 
   [[nodiscard]] double depth_m() const { return depth_m_; }
 
-  /// Point of the wall at depth `below_m` under the surface and angle around the axis.
+  /// Point of the wall at depth `below_m` below the surface and angle `angle_rad` around the axis.
   [[nodiscard]] Vector3d wall(double below_m, double angle_rad) const {
     double radius = radius_m_;
     for (const Wave& wave : waves_) {
       radius += wave.height_m * std::sin(wave.around * angle_rad + wave.along_1_m * below_m + wave.phase);
     }
-    if (below_m < 2.0) radius += 1.5 * (1.0 - below_m / 2.0);  // the mouth opens
+    if (below_m < 2.0) radius += 1.5 * (1.0 - below_m / 2.0);  // the mouth is wider
     radius = std::max(radius, 1.4);
     return {lean(0, below_m) + radius * std::cos(angle_rad), lean(1, below_m) + radius * std::sin(angle_rad),
             -below_m};
@@ -100,7 +100,8 @@ class Shaft {
   std::array<Lean, 2> leans_;
 };
 
-/// Depth of the sphere: still, down, a rest, part of the way up again, with hands on a rope.
+/// Depth of the sphere per sample: at rest, lowered, at rest, pulled up part of the way; unevenly, as by
+/// hand.
 std::vector<double> draw_depths(Random& random, double start_m, double end_m, double back_m,
                                 double speed_m_s) {
   std::vector<double> depths;
@@ -128,9 +129,9 @@ std::vector<double> draw_depths(Random& random, double start_m, double end_m, do
   return depths;
 }
 
-/// A pendulum of the rope's length with two planes of swing, and a slow spin.
+/// Pendulum of the rope's length that swings in two planes and spins slowly.
 std::vector<RawPose> swing(Random& random, const Shaft& shaft, const std::vector<double>& depths) {
-  constexpr double kPulleyM = 1.5;  // above the ice
+  constexpr double kPulleyM = 1.5;  // height above the ice
   const std::array<double, 2> amplitude_m{random.uniform(0.05, 0.25), random.uniform(0.05, 0.25)};
   std::array<double, 2> phase{random.uniform(0.0, 2.0 * kPi), random.uniform(0.0, 2.0 * kPi)};
   const double spin_mean = random.sign() * random.uniform(2.0, 6.0) * kPi / 180.0;
@@ -142,7 +143,7 @@ std::vector<RawPose> swing(Random& random, const Shaft& shaft, const std::vector
   for (std::size_t i = 0; i < depths.size(); ++i) {
     const double t = SplineGrid::kStepS * static_cast<double>(i);
     const double rope_m = depths[i] + kPulleyM;
-    // The first seconds are held by hand: the swing and the spin grow when it hangs free.
+    // Held by hand for the first seconds: swing and spin begin when the sphere hangs free.
     const double free = std::clamp((t - 3.0) / 8.0, 0.0, 1.0);
     const double grown = free * free * (3.0 - 2.0 * free);
     std::array<double, 2> offset{};
@@ -152,7 +153,7 @@ std::vector<RawPose> swing(Random& random, const Shaft& shaft, const std::vector
     }
     yaw +=
         grown * (spin_mean + spin_size * std::sin(2.0 * kPi * spin_hz * t + spin_phase)) * SplineGrid::kStepS;
-    // The sphere's z axis follows the rope, as the force on a pendulum does.
+    // The sphere's z axis points along the rope, like the force on a pendulum.
     const Vector3d up = Vector3d(-offset[0], -offset[1], rope_m).normalized();
     const double along = std::cos(yaw) * up.x() + std::sin(yaw) * up.y();
     const double across = -std::sin(yaw) * up.x() + std::cos(yaw) * up.y();
@@ -191,7 +192,7 @@ Scenario make_moulin(std::uint64_t seed, bool short_form) {
   scenario.mounts.pressure_port_m = {0.08, 0.0, 0.0};
   scenario.air_temperature_c = random.uniform(-1.0, 3.0);  // of the glacier
   scenario.base_height_m = random.uniform(0.5, 1.5);
-  scenario.start_pressure_pa = 80'000.0 + random.normal(3'000.0);  // a glacier at some 2000 m
+  scenario.start_pressure_pa = 80'000.0 + random.normal(3'000.0);  // a glacier at about 2000 m
   return scenario;
 }
 

@@ -48,10 +48,10 @@ const Entry& find_entry(const std::string& name) {
   if (found != kEntries.end()) return *found;
   std::string names;
   for (const Entry& entry : kEntries) names += (names.empty() ? "" : ", ") + std::string(entry.name);
-  throw UsageError("unknown scenario '" + name + "'; there are: " + names);
+  throw UsageError("unknown scenario '" + name + "'; known scenarios: " + names);
 }
 
-/// Seconds of the run to stamps of one clock.
+/// Clock of a machine: converts the time of the run to stamps.
 struct Clock {
   std::int64_t start_ns = 0;
   double offset_s = 0.0;
@@ -62,7 +62,7 @@ struct Clock {
   }
 };
 
-/// What stays the same for all sensors of one run.
+/// Data common to all sensors of a run.
 struct Run {
   const Scenario& scenario;
   std::uint64_t seed;
@@ -73,11 +73,12 @@ struct Run {
   [[nodiscard]] Random random(std::string_view name) const { return Random(seed, name); }
 };
 
-/// Stamps wobble by the scheduling of the machine that takes them.
+/// Delay of a stamp by the scheduling of the machine that takes it.
 double stamp_jitter_s(Random& random) { return std::min(random.exponential(60e-6), 2e-3); }
 
-/// Sensors are bolted on by hand and measured with a ruler: the truth differs from the manifest.
-Eigen::Isometry3d bolted(const Mount& mount, Random random, double angle_sigma_deg) {
+/// True mount of a sensor: differs from the manifest, since sensors are mounted by hand and measured with a
+/// ruler.
+Eigen::Isometry3d true_mount(const Mount& mount, Random random, double angle_sigma_deg) {
   Mount real = mount;
   for (int axis = 0; axis < 3; ++axis) real.rpy_deg[axis] += random.normal(angle_sigma_deg);
   for (int axis = 0; axis < 3; ++axis) real.xyz_m[axis] += random.normal(0.002);
@@ -86,7 +87,7 @@ Eigen::Isometry3d bolted(const Mount& mount, Random random, double angle_sigma_d
 
 void write_imu(const Run& run) {
   const bool tracked = run.scenario.has_wheels;
-  ImuModel imu(run.scenario.trajectory, bolted(run.scenario.mounts.imu, run.random("imu mount"), 0.1),
+  ImuModel imu(run.scenario.trajectory, true_mount(run.scenario.mounts.imu, run.random("imu mount"), 0.1),
                ImuErrors::draw(run.random("imu errors"), tracked), run.random("imu noise"));
   Random jitter = run.random("imu stamps");
   for (double t = 0.0; t <= run.duration_s; t += 1.0 / ImuModel::kRateHz) {
@@ -115,7 +116,8 @@ void write_pressure(const Run& run) {
                        run.random("barometer noise"));
   BarometerModel base(BarometerErrors::draw(run.random("base errors"), true), run.random("base noise"));
   Random random = run.random("pressure stamps");
-  // The base station keeps its own time, by NTP at best: some milliseconds to a second off, tens of ppm.
+  // The base station has its own clock, at best set by NTP: an offset of milliseconds to a second, a drift of
+  // tens of ppm.
   Clock base_clock = run.robot;
   base_clock.offset_s = random.sign() * std::pow(10.0, random.uniform(-2.3, 0.0));
   base_clock.drift = random.normal(20e-6);
@@ -153,7 +155,7 @@ void write_truth(const Run& run) {
 /// Packets in batches, each split among all cores; a packet depends on its number alone.
 void write_lidar(const Run& run, const std::function<void(double)>& progress) {
   const LidarModel lidar(run.scenario.world, run.scenario.trajectory,
-                         bolted(run.scenario.mounts.lidar, run.random("lidar mount"), 0.05),
+                         true_mount(run.scenario.mounts.lidar, run.random("lidar mount"), 0.05),
                          LidarErrors::draw(run.random("lidar errors")), run.seed);
   const auto total = static_cast<std::uint64_t>(run.duration_s / LidarModel::packet_time_s(1));
   const std::uint64_t workers = std::clamp(std::thread::hardware_concurrency(), 1U, 16U);

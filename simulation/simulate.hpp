@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The simulator: a scenario and a seed become a recording folder, as a real robot would have written it.
+// Simulator: turns a scenario and a seed into a recording folder like that of a real robot.
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,30 @@
 
 namespace isobar::simulation {
 
-/// What to simulate.
+/// Arguments of simulate().
 struct ScenarioRequest {
   std::string name;         ///< one of scenarios()
-  std::uint64_t seed = 1;   ///< draws the world, the path and every sensor's errors
-  bool short_form = false;  ///< 30 to 60 s instead of the whole run
-  double stop_after_s = std::numeric_limits<double>::infinity();  ///< cuts the run short
+  std::uint64_t seed = 1;   ///< of the world, the path and the errors of every sensor
+  bool short_form = false;  ///< a reduced run of 30 to 60 s
+  double stop_after_s = std::numeric_limits<double>::infinity();  ///< ends the recording at this time
 };
 
-/// A scenario that simulate() knows.
+/// Name and description of a scenario.
 struct ScenarioInfo {
   std::string name;
   std::string description;
 };
 
-/// Every scenario, in the order of the paper's experiments.
+/// All scenarios, those of the paper's experiments first.
 [[nodiscard]] std::vector<ScenarioInfo> scenarios();
 
 /// Writes a complete recording (recording.toml, lidar.pcap, CSV files, reference.tum, segments.csv) to
-/// `out_dir`, which is created if missing. The same request gives byte-identical files on the same machine,
-/// whatever the number of cores. `progress` is called with 0 … 1 from the calling thread; it may be empty.
-/// Throws UsageError for an unknown scenario and DataError or ServiceError if a file cannot be written.
+/// `out_dir`, which is created if missing. On one machine, the same request gives byte-identical files,
+/// independent of the number of cores. `progress` is called with 0 … 1 from the calling thread; it may be
+/// empty.
+/// @throws UsageError when the scenario is unknown
+/// @throws DataError when the folder cannot take a recording
+/// @throws ServiceError when a file cannot be written
 void simulate(const ScenarioRequest& request, const std::filesystem::path& out_dir,
               const std::function<void(double)>& progress);
 

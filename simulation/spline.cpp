@@ -16,7 +16,7 @@ constexpr double kBasis[6][6] = {  // NOLINT(modernize-avoid-c-arrays): a table
 }  // namespace
 
 SplineWeights SplineGrid::weights(double time_s, std::size_t samples) {
-  // The six control points that act between grid points i and i+1 are i-2 … i+3.
+  // Between grid points i and i + 1 the spline depends on the six control points i - 2 … i + 3.
   const double position = std::clamp(time_s / kStepS, 2.0, static_cast<double>(samples) - 4.0);
   const double whole = std::floor(position);
   const double u = position - whole;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Smooth functions of time from evenly spaced raw samples.
+// Smooth functions of time from equidistant raw samples.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,7 +8,8 @@
 
 namespace isobar::simulation {
 
-/// Weights of the six samples that a quintic uniform B-spline sees at one time, with two derivatives.
+/// Weights of the six samples that define a uniform quintic B-spline at one time, and of its first two
+/// derivatives.
 struct SplineWeights {
   std::size_t first = 0;  ///< index of the first of the six samples
   std::array<double, 6> value{};
@@ -16,19 +17,19 @@ struct SplineWeights {
   std::array<double, 6> curve{};  ///< 1/s^2
 };
 
-/// Time grid shared by all channels of a scenario. The raw samples are the control points of a uniform
-/// quintic B-spline (de Boor, "A Practical Guide to Splines"), so every channel is four times continuously
-/// differentiable and its derivatives are exact. A linear relation between channels survives.
+/// Time grid common to all channels of a scenario. The raw samples are the control points of a uniform
+/// quintic B-spline (de Boor, "A Practical Guide to Splines"): every channel is four times continuously
+/// differentiable with exact derivatives, and linear relations between channels are preserved.
 class SplineGrid {
  public:
-  /// Spacing of the raw samples. 50 ms lets motion up to some 5 Hz through and rounds corners over 0.2 s.
+  /// Spacing of the raw samples: passes motion up to about 5 Hz and rounds corners over 0.2 s.
   static constexpr double kStepS = 0.05;
 
-  /// Weights at time_s since the first sample, held inside the grid of `samples` samples.
+  /// Weights at `time_s` since the first sample, clamped to the grid of `samples` samples.
   [[nodiscard]] static SplineWeights weights(double time_s, std::size_t samples);
 };
 
-/// One scalar function of time [any unit], sampled on the grid.
+/// Scalar function of time on the grid, in any unit.
 class Channel {
  public:
   Channel() = default;

@@ -34,27 +34,29 @@ Vector3d Stairwell::point(double u, double v, double z) const {
 }
 
 Rect Stairwell::rect() const {
-  return Rect::around(plan(0.0, -kHalfLane), plan(kLanding + run_m() + kHalfLanding, kLaneGap + kHalfLane));
+  return Rect::around(plan(0.0, -kHalfLaneM),
+                      plan(kLandingM + run_m() + kHalfLandingM, kLaneGapM + kHalfLaneM));
 }
 
 void Stairwell::cut_lower(FloorPlan& storey) const {
-  const double end = kLanding + run_m() + kHalfLanding;
+  const double end = kLandingM + run_m() + kHalfLandingM;
   const double top = sizes_.storey_m();
-  storey.cut({Rect::around(plan(0.0, -kHalfLane), plan(kLanding, kLaneGap + kHalfLane)), 0.0, top - kSlabM});
   storey.cut(
-      {Rect::around(plan(kLanding, -kHalfLane), plan(end, kLaneGap + kHalfLane)), 0.0, top, true, false});
+      {Rect::around(plan(0.0, -kHalfLaneM), plan(kLandingM, kLaneGapM + kHalfLaneM)), 0.0, top - kSlabM});
+  storey.cut(
+      {Rect::around(plan(kLandingM, -kHalfLaneM), plan(end, kLaneGapM + kHalfLaneM)), 0.0, top, true, false});
 }
 
 void Stairwell::cut_upper(FloorPlan& storey, double ceiling_m) const {
-  const double end = kLanding + run_m() + kHalfLanding;
-  storey.cut({Rect::around(plan(0.0, -kHalfLane), plan(kLanding, kLaneGap + kHalfLane)), 0.0, ceiling_m});
-  storey.cut({Rect::around(plan(kLanding, -kHalfLane), plan(end, kLaneGap + kHalfLane)), 0.0, ceiling_m,
+  const double end = kLandingM + run_m() + kHalfLandingM;
+  storey.cut({Rect::around(plan(0.0, -kHalfLaneM), plan(kLandingM, kLaneGapM + kHalfLaneM)), 0.0, ceiling_m});
+  storey.cut({Rect::around(plan(kLandingM, -kHalfLaneM), plan(end, kLaneGapM + kHalfLaneM)), 0.0, ceiling_m,
               false, true});
 }
 
 void Stairwell::add_flight(Mesh& mesh, double start_u, double direction, double v, double z_m) const {
-  const double low = v - kHalfLane;
-  const double high = v + kHalfLane;
+  const double low = v - kHalfLaneM;
+  const double high = v + kHalfLaneM;
   for (int k = 0; k < sizes_.steps; ++k) {
     const double u = start_u + direction * k * sizes_.going_m;
     const double next_u = u + direction * sizes_.going_m;
@@ -80,51 +82,53 @@ void Stairwell::add_parapet(Mesh& mesh, double start_u, double direction, double
 }
 
 void Stairwell::build(Mesh& mesh, double z_m) const {
-  const double far_u = kLanding + run_m();
+  const double far_u = kLandingM + run_m();
   const double half_z = z_m + sizes_.flight_m();
-  add_flight(mesh, kLanding, 1.0, 0.0, z_m);
-  add_flight(mesh, far_u, -1.0, kLaneGap, half_z);
-  add_parapet(mesh, kLanding, 1.0, kHalfLane, z_m);
-  add_parapet(mesh, far_u, -1.0, kLaneGap - kHalfLane, half_z);
+  add_flight(mesh, kLandingM, 1.0, 0.0, z_m);
+  add_flight(mesh, far_u, -1.0, kLaneGapM, half_z);
+  add_parapet(mesh, kLandingM, 1.0, kHalfLaneM, z_m);
+  add_parapet(mesh, far_u, -1.0, kLaneGapM - kHalfLaneM, half_z);
   const auto slab = [&](double z) {
-    mesh.quad(point(far_u, -kHalfLane, z), point(far_u + kHalfLanding, -kHalfLane, z),
-              point(far_u + kHalfLanding, kLaneGap + kHalfLane, z), point(far_u, kLaneGap + kHalfLane, z),
-              kStone);
+    mesh.quad(point(far_u, -kHalfLaneM, z), point(far_u + kHalfLandingM, -kHalfLaneM, z),
+              point(far_u + kHalfLandingM, kLaneGapM + kHalfLaneM, z),
+              point(far_u, kLaneGapM + kHalfLaneM, z), kStone);
   };
   slab(half_z);
   slab(half_z - 0.2);
-  mesh.quad(point(far_u, -kHalfLane, half_z - 0.2), point(far_u, kLaneGap + kHalfLane, half_z - 0.2),
-            point(far_u, kLaneGap + kHalfLane, half_z), point(far_u, -kHalfLane, half_z), kStone);
-  // The balustrade of the upper landing beside the upper flight.
+  mesh.quad(point(far_u, -kHalfLaneM, half_z - 0.2), point(far_u, kLaneGapM + kHalfLaneM, half_z - 0.2),
+            point(far_u, kLaneGapM + kHalfLaneM, half_z), point(far_u, -kHalfLaneM, half_z), kStone);
+  // Balustrade of the upper landing, beside the upper flight.
   const double top_z = z_m + sizes_.storey_m();
-  mesh.quad(point(kLanding, -kHalfLane, top_z), point(kLanding, kLaneGap - kHalfLane, top_z),
-            point(kLanding, kLaneGap - kHalfLane, top_z + 1.0), point(kLanding, -kHalfLane, top_z + 1.0),
+  mesh.quad(point(kLandingM, -kHalfLaneM, top_z), point(kLandingM, kLaneGapM - kHalfLaneM, top_z),
+            point(kLandingM, kLaneGapM - kHalfLaneM, top_z + 1.0), point(kLandingM, -kHalfLaneM, top_z + 1.0),
             Surface::kMetal);
 }
 
 void Stairwell::route_up(std::vector<Waypoint>& way, double z_m, double speed_m_s) const {
-  // Tracks touch the edges of the steps: the line through the edges begins one going before the first riser.
-  const double far_u = kLanding + run_m();
+  // Tracks roll on the edges of the steps: the line through the edges starts one going before the first
+  // riser.
+  const double far_u = kLandingM + run_m();
   const double half_z = z_m + sizes_.flight_m();
   const double top_z = z_m + sizes_.storey_m();
   const double turn_u = far_u + 1.05;
-  way.push_back({plan(kLanding - sizes_.going_m - 0.5, 0.0), z_m, 0.6, "flat"});
-  way.push_back({plan(kLanding - sizes_.going_m, 0.0), z_m, speed_m_s, "stairs"});
+  way.push_back({plan(kLandingM - sizes_.going_m - 0.5, 0.0), z_m, 0.6, "flat"});
+  way.push_back({plan(kLandingM - sizes_.going_m, 0.0), z_m, speed_m_s, "stairs"});
   way.push_back({plan(far_u, 0.0), half_z, speed_m_s, "stairs"});
   way.push_back({plan(turn_u, 0.0), half_z, speed_m_s, "stairs"});
-  way.push_back({plan(turn_u, kLaneGap), half_z, speed_m_s, "stairs"});
-  way.push_back({plan(far_u + sizes_.going_m, kLaneGap), half_z, speed_m_s, "stairs"});
-  way.push_back({plan(kLanding, kLaneGap), top_z, speed_m_s, "stairs"});
-  way.push_back({plan(kLanding - 0.5, kLaneGap), top_z, speed_m_s, "stairs"});
-  way.push_back({plan(kLanding - 1.3, kLaneGap), top_z, 0.5, "flat"});
-  way.push_back({plan(kLanding - 1.3, 0.0), top_z, 0.5, "flat"});
+  way.push_back({plan(turn_u, kLaneGapM), half_z, speed_m_s, "stairs"});
+  way.push_back({plan(far_u + sizes_.going_m, kLaneGapM), half_z, speed_m_s, "stairs"});
+  way.push_back({plan(kLandingM, kLaneGapM), top_z, speed_m_s, "stairs"});
+  way.push_back({plan(kLandingM - 0.5, kLaneGapM), top_z, speed_m_s, "stairs"});
+  way.push_back({plan(kLandingM - 1.3, kLaneGapM), top_z, 0.5, "flat"});
+  way.push_back({plan(kLandingM - 1.3, 0.0), top_z, 0.5, "flat"});
   way.push_back({plan(0.0, 0.0), top_z, 0.5, "flat"});
 }
 
 void Stairwell::route_down(std::vector<Waypoint>& way, double z_m, double speed_m_s) const {
   std::vector<Waypoint> up;
   route_up(up, z_m, speed_m_s);
-  // A waypoint carries the speed and label of the way towards it: reversed, they belong to the one before.
+  // Speed and label of a waypoint are those of the way towards it: in the reverse direction they move to the
+  // next one.
   for (std::size_t i = up.size(); i-- > 0;) {
     Waypoint reversed = up[i];
     if (i + 1 < up.size()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A staircase of two flights with a landing half way up, in a well of its own.
+// Staircase of two flights with a half landing, in a stairwell.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,9 +11,9 @@
 
 namespace isobar::simulation {
 
-/// Sizes of the steps; usual stairs have 2 * rise + going of about 0.63 m.
+/// Dimensions of the stairs. Usual stairs have 2 * rise + going = 0.63 m.
 struct StairSizes {
-  int steps = 17;  ///< of one flight
+  int steps = 17;  ///< per flight
   double rise_m = 0.17;
   double going_m = 0.29;
   [[nodiscard]] double flight_m() const { return steps * rise_m; }
@@ -21,32 +21,34 @@ struct StairSizes {
   static StairSizes draw(Random& random, int steps_low, int steps_high);
 };
 
-/// In its own frame u leads away from the corridor's end and v to the side of the upper flight. The lower
-/// flight goes up along +u at v = 0, the upper one comes back along -u at v = kLaneGap.
+/// Own coordinates [m]: u away from the corridor's end, v towards the side of the upper flight. The lower
+/// flight ascends along +u at v = 0, the upper one along -u at v = kLaneGapM.
 class Stairwell {
  public:
-  /// entrance_m: middle of the corridor's end; away: unit vector along an axis; side: +1 puts the upper
-  /// flight to the left of `away`, -1 to the right.
+  /// `entrance_m`: centre of the corridor's end; `away`: unit vector of u, along a world axis; `side`: +1:
+  /// upper flight to the left of `away`, -1: to the right.
   Stairwell(const Eigen::Vector2d& entrance_m, const Eigen::Vector2d& away, double side,
             const StairSizes& sizes);
 
   [[nodiscard]] Rect rect() const;
   [[nodiscard]] const StairSizes& sizes() const { return sizes_; }
-  /// Cuts the well out of the storey below and the storey above.
+  /// Cuts the stairwell out of the plan of the lower storey.
   void cut_lower(FloorPlan& plan) const;
+  /// Cuts the stairwell out of the plan of the upper storey, whose ceiling is at `ceiling_m`.
   void cut_upper(FloorPlan& plan, double ceiling_m) const;
-  /// Steps, landing, parapets; z_m is the floor of the lower storey.
+  /// Adds steps, landings and parapets. `z_m`: floor of the lower storey.
   void build(Mesh& mesh, double z_m) const;
-  /// From the corridor's end up to the corridor's end one storey higher.
+  /// Appends the way from the corridor's end on the lower storey to that on the upper one. `z_m`: as in
+  /// build().
   void route_up(std::vector<Waypoint>& way, double z_m, double speed_m_s) const;
-  /// The reverse, z_m is still the floor of the lower storey.
+  /// Appends the reverse way. `z_m`: as in build().
   void route_down(std::vector<Waypoint>& way, double z_m, double speed_m_s) const;
 
  private:
-  static constexpr double kLaneGap = 1.5;      // between the middles of the flights
-  static constexpr double kHalfLane = 0.68;    // half the width of a flight
-  static constexpr double kLanding = 2.5;      // depth of the landings of the storeys
-  static constexpr double kHalfLanding = 2.0;  // depth of the landing half way
+  static constexpr double kLaneGapM = 1.5;      // between the centre lines of the two flights
+  static constexpr double kHalfLaneM = 0.68;    // half of the width of a flight
+  static constexpr double kLandingM = 2.5;      // depth of the landings on the storeys
+  static constexpr double kHalfLandingM = 2.0;  // depth of the landing between the flights
 
   [[nodiscard]] Eigen::Vector2d plan(double u, double v) const;
   [[nodiscard]] Eigen::Vector3d point(double u, double v, double z) const;

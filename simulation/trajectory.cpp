@@ -17,7 +17,7 @@ Channel channel(const std::vector<RawPose>& raw, Get get) {
   return Channel(std::move(samples));
 }
 
-/// Fills attitude, body rates and their derivative from roll, pitch, yaw (rotation z-y-x) and two
+/// Sets attitude, body rates and their derivative from roll, pitch, yaw (rotation z-y-x) and their first two
 /// derivatives. Body rates from Euler rates: Diebel, "Representing Attitude" (2006), eq. 60.
 void set_attitude(MotionState& state, const Vector3d& rpy, const Vector3d& rate, const Vector3d& curve) {
   state.q_world_base = Eigen::AngleAxisd(rpy.z(), Vector3d::UnitZ()) *

@@ -12,8 +12,8 @@ WheelErrors WheelErrors::draw(Random random, bool tracked) {
   // per cent of slip. Tracks that climb steps lose up to a tenth of their motion.
   WheelErrors errors;
   if (!tracked) {
-    // Tyres: Borenstein and Feng 1996, "Measurement and correction of systematic odometry errors": fractions
-    // of a per cent to a per cent, wheelbase and steering known a little worse, hardly any slip on asphalt.
+    // Tyres: Borenstein and Feng 1996, "Measurement and correction of systematic odometry errors": scale
+    // errors of up to a per cent, slightly larger ones of wheelbase and steering, hardly any slip on asphalt.
     errors.scale = random.normal(0.005);
     errors.turn_scale = random.normal(0.015);
     errors.slip_sigma = random.uniform(0.002, 0.005);
@@ -46,10 +46,10 @@ WheelSample WheelModel::sample(double time_s) {
   const double tilt = std::asin(std::clamp(forward.z(), -1.0, 1.0));
   const double dt_s = 1.0 / kRateHz;
   double slip = slip_.step(dt_s);
-  // Climbing, the tracks turn further than the robot moves; descending, less. A cabin moves nobody's tracks.
+  // On stairs, the tracks run farther than the robot moves when it climbs, and less far when it descends.
   constexpr double kStairTiltRad = 0.15;
   if (std::abs(tilt) > kStairTiltRad) slip += std::copysign(errors_.stair_slip, tilt * v);
-  // The encoders of a robot that stands still are still.
+  // The encoders of a robot at rest read exactly zero, also while an elevator moves it.
   const Eigen::Vector2d flat_velocity = state.v_world.head<2>();
   const bool moves = flat_velocity.norm() > 0.002 || std::abs(state.w_base.z()) > 0.01;
   WheelSample sample;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the lidar sees: triangles that stand still and bodies that move.
+// World as seen by the lidar: a static mesh and moving bodies.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,43 +10,43 @@
 
 namespace isobar::simulation {
 
-/// A rigid body that moves without turning: a walking person, an elevator's cabin, a sliding door.
+/// Rigid body that translates without rotating: a walking person, the cabin of an elevator, a sliding door.
 struct MovingBody {
   RayCaster shape;  ///< in the body's own frame
-  Channel x_m;      ///< where its frame is, on the time grid of the scenario
+  Channel x_m;      ///< position of that frame in the world, on the time grid of the scenario
   Channel y_m;
   Channel z_m;
-  std::size_t first = 0;  ///< raw sample of the scenario that its channels begin with: it is there from then
-                          ///< until they end
+  std::size_t first = 0;  ///< raw sample of the scenario at which the channels start; the body exists only
+                          ///< from there to their end
 };
 
-/// Immutable; any number of threads may cast at any times.
+/// Immutable: any number of threads may cast rays at any times.
 class World {
  public:
   World() = default;
   World(const Mesh& standing, std::vector<MovingBody> moving);
 
-  /// Where the bodies are at one time.
+  /// Positions of the bodies at one time.
   struct Moment {
     struct Body {
       Eigen::Vector3d origin;
-      Eigen::Vector3f centre;  ///< of a sphere around it
-      float radius_m;
+      Eigen::Vector3f centre;  ///< of the bounding sphere
+      float radius_m;          ///< of the bounding sphere
       const RayCaster* shape;
     };
     std::vector<Body> bodies;
   };
 
-  /// Positions of the bodies at time_s that may be within range_m of `eye`. Reuses the memory of `moment`.
+  /// Sets `moment` to the bodies that may be within `range_m` of `eye` at `time_s`; reuses its memory.
   void look(double time_s, const Eigen::Vector3d& eye, double range_m, Moment& moment) const;
-  /// Nearest hit among the standing triangles and the bodies of `moment`.
+  /// Nearest hit of the static mesh and the bodies of `moment`.
   [[nodiscard]] Hit cast(const Moment& moment, const Eigen::Vector3d& origin,
                          const Eigen::Vector3d& direction, double limit_m) const;
 
  private:
   RayCaster standing_;
   std::vector<MovingBody> moving_;
-  std::size_t samples_ = 0;  ///< of the scenario, as far as bodies are there
+  std::size_t samples_ = 0;  ///< raw samples up to the end of the last body
 };
 
 }  // namespace isobar::simulation

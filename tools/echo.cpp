@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `isobar echo`: what a DDS subscriber receives, one readable line a message.
+// `isobar echo`: prints received DDS messages, one readable line each.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -43,7 +43,7 @@ double yaw_deg(const geometry_msgs_msg_dds__Quaternion_& q) {
   return std::atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z)) / kRadPerDeg;
 }
 
-// What a pointer of a received message shows if the sender left it empty.
+/// A text of a received message; empty when the sender left it null.
 const char* shown(const char* value) { return value != nullptr ? value : ""; }
 
 void print(const char* topic, const dds::PoseMessage& message) {
@@ -74,7 +74,7 @@ void print(const char* topic, const dds::TfMessage& message) {
   }
 }
 
-/// Only what is not well; a line that all is, otherwise.
+/// Prints the statuses that are not ok, or one line when all are.
 void print(const char* topic, const dds::DiagnosticsMessage& message) {
   constexpr std::array<const char*, 4> kLevels{"ok", "warning", "error", "stale"};
   std::uint32_t bad = 0;
@@ -93,7 +93,7 @@ void print(const char* topic, const dds::DiagnosticsMessage& message) {
   }
 }
 
-/// A topic that is listened to.
+/// Subscriber of one topic that prints its messages.
 class Echo {
  public:
   virtual ~Echo() = default;
@@ -105,7 +105,7 @@ class Echo {
     int received = 0;
     int printed = 0;
   };
-  /// Takes all that waits, prints what the rate allows.
+  /// Takes all waiting messages and prints as many as the rate allows.
   virtual Taken take(Clock::time_point now) = 0;
 };
 
@@ -165,7 +165,7 @@ std::vector<std::unique_ptr<Echo>> make_echoes(dds_entity_t participant, const E
 void run(const EchoOptions& options) {
   const dds::Participant participant({options.domain, options.network_interface});
   const std::vector<std::unique_ptr<Echo>> echoes = make_echoes(participant.get(), options);
-  const dds::Entity waitset = dds::checked(dds_create_waitset(participant.get()), "no wait set");
+  const dds::Entity waitset = dds::checked(dds_create_waitset(participant.get()), "wait set");
   for (const std::unique_ptr<Echo>& echo : echoes) {
     dds_set_status_mask(echo->reader(), DDS_DATA_AVAILABLE_STATUS);
     dds_waitset_attach(waitset.get(), echo->reader(), 0);
@@ -175,7 +175,7 @@ void run(const EchoOptions& options) {
   const auto patience = std::chrono::duration<double>(options.timeout_s);
   Clock::time_point last = Clock::now();
   for (long printed = 0; g_stop == 0 && (options.count == 0 || printed < options.count);) {
-    // A signal does not wake the wait, hence its limit.
+    // With a timeout, because a signal does not end the wait.
     dds_waitset_wait(waitset.get(), nullptr, 0, DDS_MSECS(100));
     const Clock::time_point now = Clock::now();
     for (const std::unique_ptr<Echo>& echo : echoes) {
@@ -184,7 +184,7 @@ void run(const EchoOptions& options) {
       printed += taken.printed;
     }
     if (options.timeout_s > 0.0 && now - last > patience) {
-      throw ServiceError("nothing arrived for " + std::to_string(std::lround(options.timeout_s)) +
+      throw ServiceError("no message for " + std::to_string(std::lround(options.timeout_s)) +
                          " s on DDS domain " + std::to_string(options.domain) + "; is isobar-dds running?");
     }
   }
@@ -194,26 +194,29 @@ void run(const EchoOptions& options) {
 
 void add_echo_command(CLI::App& app) {
   auto options = std::make_shared<EchoOptions>();
-  CLI::App* command = app.add_subcommand("echo", "Print what a DDS subscriber receives, one line a message");
+  CLI::App* command = app.add_subcommand("echo", "Print received DDS messages, one line each");
   command
-      ->add_option("TOPIC", options->topics,
-                   "pose, odom, altitude, tf, tf_static, diagnostics; several may be given")
+      ->add_option("TOPIC", options->topics, "pose, odom, altitude, tf, tf_static, diagnostics; one or more")
       ->check(CLI::IsMember({"pose", "odom", "altitude", "tf", "tf_static", "diagnostics"}))
       ->capture_default_str();
   command->add_option("--domain", options->domain, "DDS domain, as ROS_DOMAIN_ID")
       ->check(CLI::Range(0, 232))
       ->capture_default_str();
-  command->add_option("--interface", options->network_interface, "network interface; chosen if not given")
+  command
+      ->add_option("--interface", options->network_interface,
+                   "network interface, by name or address; default: chosen automatically")
       ->type_name("NAME");
-  command->add_option("--namespace", options->ros_namespace, "the robot's namespace, as dds.ros_namespace")
+  command
+      ->add_option("--namespace", options->ros_namespace,
+                   "namespace of the robot, dds.ros_namespace of its configuration")
       ->type_name("NAME");
-  command->add_option("--rate", options->rate_hz, "lines a second and topic at most [Hz]")
+  command->add_option("--rate", options->rate_hz, "highest rate of lines per topic [Hz]")
       ->check(CLI::Range(1e-3, 1e6))
       ->capture_default_str();
-  command->add_option("--count", options->count, "end after so many lines; 0: never")
+  command->add_option("--count", options->count, "stop after this number of lines; 0: never")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("--timeout", options->timeout_s, "fail when nothing comes for so long [s]; 0: never")
+  command->add_option("--timeout", options->timeout_s, "fail after this time without a message [s]; 0: never")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
   command->callback([options] { run(*options); });

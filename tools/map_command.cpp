@@ -90,7 +90,7 @@ TileCheck check_tiles(FileTileStore& store, const std::filesystem::path& directo
     if (!store.take(key, bytes)) {
       std::printf("%s\n", store.last_damage().c_str());
       ++result.unreadable;
-    } else if (!append_tile_points(bytes, points)) {
+    } else if (!MapTile::append_stored_points(bytes, points)) {
       std::printf("%s: %s: cannot be decoded as a tile\n", directory.c_str(), files::tile_name(key).c_str());
       ++result.unreadable;
     }

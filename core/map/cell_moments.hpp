@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Moments of the points of one cell in whole numbers: exact, whatever the order, in 32 bytes.
+// Moments of the points of one cell in fixed point, 32 bytes: integer sums are exact in any order of points.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,38 +13,39 @@ namespace isobar {
 
 struct CellMoments;
 
-/// A register of the processor, with GCC's and clang's arithmetic on it: four sums in one instruction.
+/// SIMD vectors (GCC and clang extension): one instruction adds four sums.
 using FourInts [[gnu::vector_size(16)]] = std::int32_t;
 using FourShorts [[gnu::vector_size(8)]] = std::int16_t;
 
-/// Sum of the moments of cells around one, about its centre, in the units of CellMoments.
+/// Moments of neighbouring cells about the centre of one of them, in the units of CellMoments.
 class MomentSum {
  public:
-  /// `offset`: of the cell that `moments` belongs to, in cells, at most 4 along each axis. Of 128 such cells
-  /// the sums cannot overflow.
+  /// `offset`: from the reference cell to the cell of `moments`, in cells, |offset| <= 4 per axis. Up to 128
+  /// cells cannot overflow the sums.
   void add(const CellMoments& moments, const Eigen::Vector3i& offset);
+  /// Moments about the centre of the reference cell [m, m^2].
   [[nodiscard]] Moments in_metres(float cell_m) const;
 
  private:
-  FourInts first_outer_{};  // xx, yy, zz, xy, each about its own cell's centre
-  FourInts last_outer_{};   // zz, xy, xz, yz
-  FourInts sum_{};          // x, y, z and the number of points
-  FourInts shifted_x_{};    // d_x (s + n d / 2) and n d_x; see add()
+  FourInts first_outer_{};  // xx, yy, zz, xy; each cell's about its own centre
+  FourInts last_outer_{};   // zz, xy, xz, yz; the same
+  FourInts sum_{};          // x, y, z, number of points; the same
+  FourInts shifted_x_{};    // d_x t_x, d_x t_y, d_x t_z, d_x n, with t as in add()
   FourInts shifted_y_{};
   FourInts shifted_z_{};
 };
 
-/// Sums over points relative to the cell's centre, in units of 1/512 of the cell's edge (0.5 mm at 0.25 m).
+/// Sums over points about the cell's centre, in units of 1/512 of the cell's edge (0.5 mm at 0.25 m).
 struct CellMoments {
-  /// Units along the edge: a point is at -256 … 256.
+  /// Units per edge: coordinates are -256 … 256.
   static constexpr int kUnits = 512;
-  /// Points at most: beyond it the sums could overflow.
+  /// Capacity: 127 * 256 is the last sum of coordinates that fits into 16 bits.
   static constexpr int kMostPoints = 127;
 
   std::array<std::int32_t, 6> outer{};  ///< xx, yy, zz, xy, xz, yz
-  std::array<std::int16_t, 4> sum{};    ///< x, y, z, and the number of points
+  std::array<std::int16_t, 4> sum{};    ///< x, y, z, number of points
 
-  /// `fraction`: place in the cell, 0 … 1 along each axis. Nothing happens beyond kMostPoints.
+  /// Adds a point. `fraction`: position in the cell, 0 … 1 per axis. Ignored at kMostPoints.
   void add(const Eigen::Vector3f& fraction) {
     if (count() >= kMostPoints) {
       return;
@@ -65,25 +66,25 @@ struct CellMoments {
   }
   [[nodiscard]] int count() const { return sum[3]; }
 
-  /// In metres, about the cell's centre.
+  /// Moments about the cell's centre [m, m^2].
   [[nodiscard]] Moments in_metres(float cell_m) const;
 
-  /// Mean of the points relative to the cell's centre [m]; count() must not be 0.
+  /// Mean of the points from the cell's centre [m]; count() must not be 0.
   [[nodiscard]] Eigen::Vector3f mean_m(float cell_m) const {
     return Eigen::Vector3f(sum[0], sum[1], sum[2]) * (cell_m / (static_cast<float>(count()) * kUnits));
   }
 
  private:
   [[nodiscard]] static std::int32_t to_units(float fraction) {
-    // Never negative, and lround would cost a call a point.
+    // Adding 0.5 and truncating rounds, since `fraction` >= 0; std::lround would be a library call per point.
     const auto units = static_cast<std::int32_t>(fraction * kUnits + 0.5F);  // NOLINT
     return units - kUnits / 2;
   }
 };
 static_assert(sizeof(CellMoments) == 32);
 
-// sum (p + d)(p + d)^T = sum p p^T + d t^T + t d^T with t = s + n d / 2, where s sums the points p and d is
-// the offset.
+// Moments about a centre that is shifted by d: with n points p and their sum s,
+// sum (p + d)(p + d)^T = sum p p^T + d t^T + t d^T, where t = s + n d / 2.
 inline void MomentSum::add(const CellMoments& moments, const Eigen::Vector3i& offset) {
   FourInts first_outer;
   FourInts last_outer;

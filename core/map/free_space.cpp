@@ -10,15 +10,18 @@ namespace isobar {
 
 namespace {
 constexpr float kPixelRad = 2.0F * std::numbers::pi_v<float> / FreeSpace::kColumns;
-// Below this cosine of the angle of incidence a surface is grazed.
-constexpr float kLeastCosine = 0.2F;
-// What has no normal must be passed by more, since it may be grazed.
-constexpr float kMarginWithoutNormal = 2.0F;
-constexpr float kNearestM = 0.3F;
+// Cosine of the angle between ray and normal below which the ray counts as grazing: beyond 78 degrees of
+// incidence, small errors of attitude or height carry the ray across the surface.
+constexpr float kMinIncidenceCosine = 0.2F;
+// Factor on the margin of a point without a normal: its surface may be grazed, so the rays must pass it by
+// more.
+constexpr float kMarginFactorWithoutNormal = 2.0F;
+// Nothing nearer to the lidar than this counts as seen through [m]: so close, one cell covers many pixels.
+constexpr float kMinRangeM = 0.3F;
 constexpr float kHalfPi = std::numbers::pi_v<float> / 2;
 
-// Arc tangent of y / x for x, y >= 0, right to 1e-5 rad: a polynomial of Abramowitz and Stegun (4.4.49). A
-// pixel is 3500 times wider, and a call of libm for each cell of the map was 13 % of a replay.
+// atan(y / x) for x, y >= 0 to 1e-5 rad: polynomial 4.4.49 of Abramowitz and Stegun. A pixel is 3500 times
+// wider. std::atan2 for each cell of the map took 13 % of a replay.
 inline float angle_in_quadrant(float y, float x) {
   const float ratio = std::min(x, y) / std::max(std::max(x, y), std::numeric_limits<float>::min());
   const float r2 = ratio * ratio;
@@ -32,7 +35,7 @@ std::size_t index_of(int column, int row) {
 }
 }  // namespace
 
-// Written without branches and calls: four points at once.
+// Without branches and calls, so that the compiler vectorises it: four points at once.
 void FreeSpace::pixels_of(const Points& p, std::size_t count, Pixels& pixels) {
   for (std::size_t i = 0; i < count; ++i) {
     const float x = p.x_m[i];
@@ -49,16 +52,16 @@ void FreeSpace::pixels_of(const Points& p, std::size_t count, Pixels& pixels) {
   }
 }
 
-void FreeSpace::shortest_around(const Points& p_lidar, std::size_t count, Ranges& shortest_m) const {
+void FreeSpace::min_ranges(const Points& p_lidar, std::size_t count, Ranges& min_range_m) const {
   Pixels pixels;
   pixels_of(p_lidar, count, pixels);
   for (std::size_t i = 0; i < count; ++i) {
-    shortest_m[i] = around_m_[static_cast<std::size_t>(pixels[i])];
+    min_range_m[i] = neighbourhood_m_[static_cast<std::size_t>(pixels[i])];
   }
 }
 
 void FreeSpace::set_scan(const RegisteredScan& scan, const Eigen::Isometry3d& T_lidar_base) {
-  shortest_m_.fill(std::numeric_limits<float>::infinity());
+  pixel_m_.fill(std::numeric_limits<float>::infinity());
   const Eigen::Isometry3f T = T_lidar_base.cast<float>();
   Points batch;
   Pixels pixels;
@@ -70,20 +73,21 @@ void FreeSpace::set_scan(const RegisteredScan& scan, const Eigen::Isometry3d& T_
     }
     pixels_of(batch, count, pixels);
     for (std::size_t i = 0; i < count; ++i) {
-      float& shortest = shortest_m_[static_cast<std::size_t>(pixels[i])];
+      float& shortest = pixel_m_[static_cast<std::size_t>(pixels[i])];
       shortest = std::min(shortest, batch.at(i).norm());
     }
   }
-  spread_to_neighbours();
+  take_minimum_of_neighbours();
 }
 
-void FreeSpace::spread_to_neighbours() {
-  Image beside;  // shortest of each pixel and the ones left and right of it; columns go round
+// Minimum over 3 x 3 pixels, separable: first along the rows, then along the columns.
+void FreeSpace::take_minimum_of_neighbours() {
+  Image of_row;  // minimum of a pixel and its left and right neighbours; azimuth wraps around
   for (int row = 0; row < kRows; ++row) {
     for (int column = 0; column < kColumns; ++column) {
-      const float left = shortest_m_[index_of(column > 0 ? column - 1 : kColumns - 1, row)];
-      const float right = shortest_m_[index_of(column < kColumns - 1 ? column + 1 : 0, row)];
-      beside[index_of(column, row)] = std::min({left, shortest_m_[index_of(column, row)], right});
+      const float left = pixel_m_[index_of(column > 0 ? column - 1 : kColumns - 1, row)];
+      const float right = pixel_m_[index_of(column < kColumns - 1 ? column + 1 : 0, row)];
+      of_row[index_of(column, row)] = std::min({left, pixel_m_[index_of(column, row)], right});
     }
   }
   for (int row = 0; row < kRows; ++row) {
@@ -92,27 +96,27 @@ void FreeSpace::spread_to_neighbours() {
     for (int column = 0; column < kColumns; ++column) {
       const std::size_t at = index_of(column, row);
       const float shortest =
-          std::min({beside[index_of(column, below)], beside[at], beside[index_of(column, above)]});
-      around_m_[at] = std::isinf(shortest_m_[at]) ? 0.0F : shortest;
+          std::min({of_row[index_of(column, below)], of_row[at], of_row[index_of(column, above)]});
+      neighbourhood_m_[at] = std::isinf(pixel_m_[at]) ? 0.0F : shortest;
     }
   }
 }
 
 bool FreeSpace::passes_through(const Eigen::Vector3f& p_lidar, const Eigen::Vector3f& normal_lidar,
-                               float shortest_m, float margin_m) {
-  const float range = p_lidar.norm();
-  if (range < kNearestM) {
+                               float min_range_m, float margin_m) {
+  const float range_m = p_lidar.norm();
+  if (range_m < kMinRangeM) {
     return false;
   }
-  float needed = range + kMarginWithoutNormal * margin_m;
+  float required_m = range_m + kMarginFactorWithoutNormal * margin_m;
   if (!normal_lidar.isZero()) {
-    const float cosine = std::abs(normal_lidar.dot(p_lidar)) / range;
-    if (cosine < kLeastCosine) {
+    const float cosine = std::abs(normal_lidar.dot(p_lidar)) / range_m;
+    if (cosine < kMinIncidenceCosine) {
       return false;
     }
-    needed = range + margin_m / cosine;
+    required_m = range_m + margin_m / cosine;
   }
-  return shortest_m >= needed;
+  return min_range_m >= required_m;
 }
 
 }  // namespace isobar

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which space a scan proved to be empty: a range image of the scan in the lidar's frame.
+// Free space of a scan: a range image in the lidar frame, through which points of the map are tested.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,13 +11,13 @@
 
 namespace isobar {
 
-/// Shortest range in and around each direction of one scan, 2 degrees a pixel.
+/// Range image of one scan, 2 degrees per pixel: the minimum range over each pixel and its eight neighbours.
 class FreeSpace {
  public:
-  static constexpr int kColumns = 180;
-  static constexpr int kRows = 90;
+  static constexpr int kColumns = 180;  ///< azimuth, 360 degrees
+  static constexpr int kRows = 90;      ///< elevation, 180 degrees
 
-  /// Up to so many points in the lidar's frame, by coordinate, so that the processor takes four at once [m].
+  /// Up to kMost points in the lidar frame [m], one array per coordinate for SIMD.
   struct Points {
     static constexpr std::size_t kMost = 64;
     std::array<float, kMost> x_m{};
@@ -33,18 +33,18 @@ class FreeSpace {
   };
   using Ranges = std::array<float, Points::kMost>;
 
-  /// Takes the points of a scan. `T_lidar_base`: base_link in the lidar's frame.
+  /// Builds the range image of a scan. `T_lidar_base`: pose of base_link in the lidar frame.
   void set_scan(const RegisteredScan& scan, const Eigen::Isometry3d& T_lidar_base);
 
-  /// Shortest range in and around the directions of the first `count` points [m]; 0 where no ray went.
-  void shortest_around(const Points& p_lidar, std::size_t count, Ranges& shortest_m) const;
+  /// Minimum range [m] of the pixels around each of the first `count` points; 0 where no ray went.
+  void min_ranges(const Points& p_lidar, std::size_t count, Ranges& min_range_m) const;
 
-  /// True if rays around the direction of `p_lidar`, the shortest of which has `shortest_m`, went farther
-  /// than it: by at least `margin_m` measured across its surface. `normal_lidar`: unit normal there, or zero
-  /// if unknown. A surface seen at a grazing angle is never called passed, since small errors of attitude or
-  /// height would do that to a floor.
+  /// True if the rays around `p_lidar` ended at least `margin_m` behind its surface, measured along the
+  /// surface's normal. `min_range_m`: the shortest of these rays, from min_ranges(). `normal_lidar`: unit
+  /// normal of the surface, or zero if unknown. False for a surface at a grazing angle: small errors of
+  /// attitude or height would make rays pass through a floor.
   [[nodiscard]] static bool passes_through(const Eigen::Vector3f& p_lidar,
-                                           const Eigen::Vector3f& normal_lidar, float shortest_m,
+                                           const Eigen::Vector3f& normal_lidar, float min_range_m,
                                            float margin_m);
 
  private:
@@ -52,10 +52,10 @@ class FreeSpace {
   using Image = std::array<float, static_cast<std::size_t>(kColumns) * kRows>;
 
   static void pixels_of(const Points& p_lidar, std::size_t count, Pixels& pixels);
-  void spread_to_neighbours();
+  void take_minimum_of_neighbours();
 
-  Image shortest_m_{};  // infinite where no ray went
-  Image around_m_{};    // shortest of the pixel and its eight neighbours; 0 where no ray went
+  Image pixel_m_{};          // minimum range of each pixel; infinite where no ray went
+  Image neighbourhood_m_{};  // minimum range of the pixel and its eight neighbours; 0 where no ray went
 };
 
 }  // namespace isobar

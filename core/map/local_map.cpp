@@ -9,20 +9,21 @@
 
 #include "core/geometry.hpp"
 #include "core/map/plane_hash.hpp"
-#include "core/map/scan_parts.hpp"
+#include "core/map/scan_decimation.hpp"
 #include "core/stamp.hpp"
 
 namespace isobar {
 
 namespace {
 
-// Points of scans less than this apart lie nearly where those of the scan before lay [s]: of 10 Hz each scan
-// gives half of its points. Over 24 recordings the poses are as good as with all of them.
-constexpr double kIntervalS = 0.2;
-// Where less of a scan than this found the map the place is new, and all of its points are wanted.
+// Interval over which scans share the insertion of points [s]: scans so close together hit nearly the same
+// places. At 10 Hz each scan inserts every second point; over 24 recordings the poses are as good as with
+// all.
+constexpr double kInsertIntervalS = 0.2;
+// Overlap (share of matched points) below which the place is new and all points of the scan are inserted.
 constexpr double kNewPlaceOverlap = 0.5;
 
-// True if a plane is known in the cube of 4 x 4 x 4 cells around `place`.
+// True if the cube of 4 x 4 x 4 cells that contains `place` has a plane.
 bool plane_in_cube(const MapBlock& block, int place) {
   bool any = false;
   if (block.planes() != nullptr) {
@@ -33,11 +34,11 @@ bool plane_in_cube(const MapBlock& block, int place) {
 
 }  // namespace
 
-LocalMap::LocalMap(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, TileShelf* shelf)
+LocalMap::LocalMap(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, TileStorage* storage)
     : config_(config),
       cell_m_(static_cast<float>(config.cell_m)),
       T_base_lidar_(T_base_lidar),
-      shelf_(shelf),
+      storage_(storage),
       fitter_(config, [this](const TileKey& key) { return find_tile(key); }),
       seen_through_(config, T_base_lidar) {}
 
@@ -53,9 +54,9 @@ bool LocalMap::wants(const PoseEstimate& pose) const {
 }
 
 bool LocalMap::update(const RegisteredScan& scan) {
-  constexpr double kFarthestM = 1e8;  // beyond it a cell's number would not fit, nor would any robot
+  constexpr double kMaxCoordinateM = 1e8;  // a cell index must fit into 32 bits; no robot drives that far
   const auto& pose = scan.pose.T_map_base.matrix();
-  if (scan.point_count == 0 || !pose.allFinite() || pose.cwiseAbs().maxCoeff() > kFarthestM ||
+  if (scan.point_count == 0 || !pose.allFinite() || pose.cwiseAbs().maxCoeff() > kMaxCoordinateM ||
       !wants(scan.pose)) {
     return false;
   }
@@ -86,7 +87,7 @@ const MapTile* LocalMap::find_tile(const TileKey& key) const {
 
 void LocalMap::insert(const RegisteredScan& scan, double elapsed_s) {
   const bool known_place = scan.pose.mode == PoseMode::kRegistered && scan.pose.overlap >= kNewPlaceOverlap;
-  const std::size_t parts = known_place ? parts_at(elapsed_s, kIntervalS) : 1;
+  const std::size_t step = known_place ? decimation_factor(elapsed_s, kInsertIntervalS) : 1;
   const LocalFrame frame(scan.pose.T_map_base.translation(), cell_m_);
   Eigen::Isometry3f T_local_base = scan.pose.T_map_base.cast<float>();
   T_local_base.translation() = frame.to_local(scan.pose.T_map_base.translation());
@@ -94,7 +95,7 @@ void LocalMap::insert(const RegisteredScan& scan, double elapsed_s) {
   const auto radius = static_cast<float>(config_.radius_m);
   recent_.fill(nullptr);
   std::size_t count = 0;
-  for (std::size_t i = ++insert_count_ % parts; i < scan.point_count; i += parts) {
+  for (std::size_t i = ++insert_count_ % step; i < scan.point_count; i += step) {
     const ScanPoint& point = scan.points[i];
     const Eigen::Vector3f p_local = T_local_base * Eigen::Vector3f(point.x_m, point.y_m, point.z_m);
     const Eigen::Vector3f ray = p_local_lidar - p_local;
@@ -107,20 +108,21 @@ void LocalMap::insert(const RegisteredScan& scan, double elapsed_s) {
     if (tile == nullptr) {
       continue;
     }
-    Landing& landing = landings_[count++];
-    landing = {tile, block_of(cell), place_of(cell), nullptr, {}};
-    landing.block = &tile->cells.block_or_add(landing.block_index);
-    landing.observation = {(p_local - frame.corner_local(cell)) / cell_m_, ray / range, point.intensity,
+    PendingPoint& pending = pending_points_[count++];
+    pending = {tile, block_of(cell), place_of(cell), nullptr, {}};
+    pending.block = &tile->cells.block_or_add(pending.block_index);
+    pending.observation = {(p_local - frame.corner_local(cell)) / cell_m_, ray / range, point.intensity,
                            config_.freeze_observations};
-    landing.block->prefetch_mask(landing.place);
-    if (count == landings_.size()) {
-      observe_landings(std::exchange(count, 0), scan.pose.mode);
+    pending.block->prefetch_mask(pending.place);
+    if (count == pending_points_.size()) {
+      observe_pending(std::exchange(count, 0), scan.pose.mode);
     }
   }
-  observe_landings(count, scan.pose.mode);
+  observe_pending(count, scan.pose.mode);
 }
 
-// Neighbours in a scan lie in few tiles, in turns: a ring each.
+// tile_for_points() with a direct-mapped cache: consecutive points come from different rings, which alternate
+// between a few tiles.
 LocalMap::Tile* LocalMap::recent_tile(const TileKey& key) {
   Tile*& last = recent_[key.hash() % recent_.size()];
   if (last == nullptr || last->cells.key() != key) {
@@ -129,15 +131,15 @@ LocalMap::Tile* LocalMap::recent_tile(const TileKey& key) {
   return last;
 }
 
-void LocalMap::observe_landings(std::size_t count, PoseMode mode) {
-  const std::span landings = std::span(landings_).first(count);
-  for (const Landing& landing : landings) landing.block->prefetch_cell(landing.place);
-  for (const Landing& landing : landings) {
-    if (mode == PoseMode::kPriorOnly && plane_in_cube(*landing.block, landing.place)) {
+void LocalMap::observe_pending(std::size_t count, PoseMode mode) {
+  const std::span points = std::span(pending_points_).first(count);
+  for (const PendingPoint& point : points) point.block->prefetch_cell(point.place);
+  for (const PendingPoint& point : points) {
+    if (mode == PoseMode::kPriorOnly && plane_in_cube(*point.block, point.place)) {
       continue;
     }
-    const int slot = landing.block->observe(landing.place, landing.observation);
-    if (slot != MapBlock::kNoSlot) waiting_in(*landing.tile, landing.block_index).insert(slot);
+    const int slot = point.block->observe(point.place, point.observation);
+    if (slot != MapBlock::kNoSlot) waiting_in(*point.tile, point.block_index).insert(slot);
   }
 }
 
@@ -157,7 +159,7 @@ void LocalMap::remove_seen_through(const RegisteredScan& scan, double elapsed_s)
   }
 }
 
-// Lists a block to be refitted.
+// Slots of a block that wait for a refit. Adds the block to stale_ if it is not there.
 SlotSet& LocalMap::waiting_in(Tile& tile, std::size_t block) {
   std::int32_t& index = tile.cells.block(block)->list_index;
   if (index == MapBlock::kNotListed) {
@@ -199,32 +201,10 @@ void LocalMap::publish() {
   }
 }
 
-namespace {
-
-template <typename Tiles>
-std::vector<TileKey> sorted_keys(const Tiles& tiles) {
-  std::vector<TileKey> keys;
-  keys.reserve(tiles.size());
-  for (const auto& [key, tile] : tiles) {
-    keys.push_back(key);
-  }
-  std::sort(keys.begin(), keys.end());
-  return keys;
-}
-
-}  // namespace
-
 void LocalMap::append_points(std::vector<MapPoint>& points) const {
-  for (const TileKey& key : sorted_keys(tiles_)) {
-    isobar::append_points(tiles_.at(key)->cells, cell_m_, points);
+  for (const TileKey& key : TileKey::sorted(tiles_)) {
+    tiles_.at(key)->cells.append_points(cell_m_, points);
   }
-}
-
-void LocalMap::store_all() {
-  if (shelf_ == nullptr) {
-    return;
-  }
-  for (const TileKey& key : sorted_keys(tiles_)) shelve(key);
 }
 
 std::size_t LocalMap::cell_count() const {

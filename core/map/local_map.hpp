@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The map around the robot: takes registered scans, gives immutable snapshots. Owned by one thread.
+// Local map around the robot: registered scans in, immutable snapshots out. Owned by one thread.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -17,62 +17,56 @@
 #include "core/map/nearest_plane.hpp"
 #include "core/map/plane_fitter.hpp"
 #include "core/map/seen_through.hpp"
-#include "core/map/tile_shelf.hpp"
+#include "core/map/tile_storage.hpp"
 
 namespace isobar {
 
-/// Density-controlled planes on a grid of cells, in tiles around the robot. Memory is bounded by the radius;
-/// what leaves it goes to the shelf and comes back when the robot does.
+/// Grid of cells with one plane per cell and side, in tiles around the robot. Memory is bounded by the
+/// radius: tiles beyond it move to the tile storage and return when the robot does.
 class LocalMap {
  public:
-  /// `T_base_lidar`: pose of the lidar in base_link; rays start there. `shelf` may be null: what leaves the
-  /// radius is forgotten then.
-  LocalMap(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, TileShelf* shelf = nullptr);
+  /// `T_base_lidar`: pose of the lidar in base_link; rays start there. `storage`: may be null; tiles beyond
+  /// the radius are then dropped.
+  LocalMap(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, TileStorage* storage = nullptr);
   LocalMap(const LocalMap&) = delete;
   LocalMap& operator=(const LocalMap&) = delete;
 
-  /// Takes a registered scan if the robot moved or the place is new (see MapConfig). Points of a scan with
-  /// mode kPriorOnly are taken only where nothing is known yet. Of scans less than 0.2 s apart, in a place
-  /// that is known, each gives a part of its points, in turns. Returns true where snapshot() changed.
+  /// Inserts a registered scan if the robot moved or the place is new (see MapConfig). Points of a scan with
+  /// mode kPriorOnly are inserted only where the map has no planes yet. In a known place, scans less than 0.2
+  /// s apart are decimated, in turn. Returns true if snapshot() changed.
   bool update(const RegisteredScan& scan);
 
-  /// The newest snapshot; never null. Give it to a SnapshotExchange.
+  /// Newest snapshot, never null, to be published by a SnapshotExchange.
   [[nodiscard]] const std::shared_ptr<const MapSnapshot>& snapshot() const { return snapshot_; }
 
-  /// Appends every point now in memory. Sorted, so that equal input gives equal output.
+  /// Appends every point in memory, sorted: equal input gives equal output.
   void append_points(std::vector<MapPoint>& points) const;
 
-  /// Puts a copy of every tile in memory on the shelf, for the end of a run.
+  /// Writes every tile in memory to the storage, for the end of a run.
   void store_all();
 
   [[nodiscard]] std::size_t cell_count() const;
-  [[nodiscard]] std::size_t plane_count() const { return snapshot_->plane_count(); }
   [[nodiscard]] std::size_t tile_count() const { return tiles_.size(); }
   /// Cells removed because rays passed through them, since the start.
   [[nodiscard]] std::uint64_t seen_through_count() const { return seen_through_count_; }
-  /// Tiles that the shelf could not keep or give back, since the start.
-  [[nodiscard]] std::uint64_t lost_tile_count() const { return lost_tile_count_; }
 
  private:
-  struct KeyHash {
-    std::size_t operator()(const TileKey& key) const { return key.hash(); }
-  };
   struct Tile {
     explicit Tile(const TileKey& key) : cells(key) {}
     MapTile cells;
-    std::shared_ptr<const TileTree> tree;  // of cells.planes(), where the matcher wants one
-    bool changed = true;                   // since cells.publish()
+    std::shared_ptr<const TileTree> tree;  // over cells.planes(); null unless the matcher is kNearest
+    bool changed = true;                   // since the last cells.publish()
   };
-  // A block whose planes may be out of date, and its cells that wait for a fit.
+  // A block whose planes are out of date, and the slots that wait for a refit.
   struct StaleBlock {
     Tile* tile = nullptr;
     std::size_t block = 0;
     SlotSet waiting;
   };
 
-  // A point on its way into the map. Cells lie all over the memory: for many points at once the block, then
-  // the cell is fetched before the first is needed.
-  struct Landing {
+  // A point to be inserted. Points are collected and inserted in batches, so that the prefetches of their
+  // blocks and cells, which are scattered in memory, overlap.
+  struct PendingPoint {
     Tile* tile = nullptr;
     std::size_t block_index = 0;
     int place = 0;
@@ -82,12 +76,12 @@ class LocalMap {
 
   [[nodiscard]] bool wants(const PoseEstimate& pose) const;
   void insert(const RegisteredScan& scan, double elapsed_s);
-  void observe_landings(std::size_t count, PoseMode mode);
+  void observe_pending(std::size_t count, PoseMode mode);
   [[nodiscard]] Tile* recent_tile(const TileKey& key);
   void remove_seen_through(const RegisteredScan& scan, double elapsed_s);
   SlotSet& waiting_in(Tile& tile, std::size_t block);
   void refit_stale();
-  void shelve(const TileKey& key);
+  void store(const TileKey& key);
   void evict(const Eigen::Vector3d& p_map_base);
   void look_for_stored(const Eigen::Vector3d& p_map_base);
   void bring_back_stored();
@@ -99,22 +93,21 @@ class LocalMap {
   MapConfig config_;
   float cell_m_;
   Eigen::Isometry3d T_base_lidar_;
-  TileShelf* shelf_;
+  TileStorage* storage_;
   PlaneFitter fitter_;
-  std::unordered_map<TileKey, std::unique_ptr<Tile>, KeyHash> tiles_;
+  std::unordered_map<TileKey, std::unique_ptr<Tile>, TileKey::Hash> tiles_;
   std::shared_ptr<const MapSnapshot> snapshot_ = std::make_shared<const MapSnapshot>();
-  std::array<Landing, 32> landings_;
-  std::array<Tile*, 64> recent_{};
-  std::vector<StaleBlock> stale_;  // what this update changed
-  std::vector<TileKey> stored_;    // tiles of the shelf to bring back, the nearest last
-  std::size_t restored_ = 0;       // in this update
-  std::vector<std::byte> bytes_;   // scratch
+  std::array<PendingPoint, 32> pending_points_;
+  std::array<Tile*, 64> recent_{};  // tiles of this scan, by hash of their key
+  std::vector<StaleBlock> stale_;   // blocks changed by this update
+  std::vector<TileKey> stored_;     // stored tiles to bring back, the nearest last
+  std::size_t restored_ = 0;        // number of tiles read from the storage by this update
+  std::vector<std::byte> bytes_;    // scratch
   SeenThrough seen_through_;
   PoseEstimate last_pose_;
   bool started_ = false;
   std::size_t insert_count_ = 0;
   std::uint64_t seen_through_count_ = 0;
-  std::uint64_t lost_tile_count_ = 0;
 };
 
 }  // namespace isobar

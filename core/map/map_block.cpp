@@ -9,10 +9,12 @@ namespace isobar {
 
 namespace {
 
-// A plane that turns away from the ray by more than this is the other side of a thin wall.
-constexpr float kOtherSide = -0.15F;
-// Planes are fitted again when four times as much is known. Over 24 recordings this is as accurate as after
-// an eighth more: the neighbours' points, which most planes are made of, come in with every look.
+// A point seen from behind the cell's plane belongs to the other side of a thin wall: cosine of the angle
+// between normal and direction to the lidar, below zero so that grazing rays stay on the near side.
+constexpr float kOtherSideCosine = -0.15F;
+// A plane is refitted when the number of its cell's points has grown by this factor. Over 24 recordings this
+// is as accurate as a refit after every eighth more: most planes use points of neighbouring cells, too, and
+// those are up to date at every fit.
 constexpr int kRefitFactor = 4;
 
 std::uint32_t sub_cell_bit(const Eigen::Vector3f& fraction) {
@@ -22,7 +24,7 @@ std::uint32_t sub_cell_bit(const Eigen::Vector3f& fraction) {
   return 1U << ((third(fraction.z()) * 3 + third(fraction.y())) * 3 + third(fraction.x()));
 }
 
-// Memory grows by a sixteenth: cells are most of what the map holds.
+// Grows the capacity by 1/16 instead of doubling it: cells dominate the memory of the map.
 template <typename T>
 void reserve_one_more(std::vector<T>& list) {
   if (list.size() == list.capacity()) {
@@ -53,7 +55,7 @@ MapCell& MapBlock::find_or_add(int slot) {
 int MapBlock::observe(int place, const Observation& observation) {
   const MapCell* near_side = find(place);
   const bool other_side = near_side != nullptr && near_side->has_plane != 0 &&
-                          near_side->facing_vector().dot(observation.toward) < kOtherSide;
+                          near_side->facing_vector().dot(observation.toward) < kOtherSideCosine;
   const int slot = other_side ? place + kPlacesPerBlock : place;
   MapCell& cell = find_or_add(slot);
   const int count = cell.moments.count();
@@ -68,7 +70,7 @@ int MapBlock::observe(int place, const Observation& observation) {
   cell.intensity =
       static_cast<std::uint8_t>((cell.intensity * count + observation.intensity + count / 2) / (count + 1));
   cell.moments.add(observation.fraction);
-  // A cell without a plane is tried again after as much.
+  // Applies to cells without a plane as well: after the same growth the fit is tried again.
   const bool enough = count + 1 >= cell.fitted_count * kRefitFactor || count + 1 >= observation.freeze;
   return enough ? slot : kNoSlot;
 }
@@ -93,15 +95,7 @@ void MapBlock::restore(std::vector<MapCell> cells, std::shared_ptr<const PlaneBl
     cell.has_plane = plane != nullptr ? 1 : 0;
     if (plane != nullptr) cell.set_facing(plane->unit_normal());
   }
-  mask_.count_ranks();
-}
-
-std::size_t MapBlock::memory_bytes() const {
-  std::size_t bytes = sizeof(MapBlock) + cells_.capacity() * sizeof(MapCell);
-  if (planes_) {
-    bytes += sizeof(PlaneBlock) + planes_->planes.capacity() * sizeof(PackedPlane);
-  }
-  return bytes;
+  mask_.update_ranks();
 }
 
 }  // namespace isobar

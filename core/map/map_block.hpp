@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A block of the map under construction: 8 x 8 x 8 cells with the moments of their points.
+// Mutable block of the map: up to 8 x 8 x 8 cells with the moments of their points.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,17 +17,17 @@
 
 namespace isobar {
 
-/// A cell of the grid, or one side of it. Its plane is in the block's PlaneBlock. 44 bytes.
+/// Points of one side of a cell. Its plane, if any, is in the block's PlaneBlock. 44 bytes.
 struct MapCell {
   CellMoments moments;
-  std::uint32_t occupied_sub_cells = 0;  ///< one bit each of 3 x 3 x 3, x fastest
-  std::uint16_t slot = 0;                ///< in the block, see CellMask
-  std::array<std::int8_t, 3> facing{};   ///< its plane's normal, before there is one the way to its first
-                                         ///< observer; unit, times 127
-  std::uint8_t fitted_count : 7 = 0;     ///< moments.count() when a plane was last looked for
-  std::uint8_t has_plane : 1 = 0;        ///< as of the last look
-  std::uint8_t seen_through = 0;         ///< rays that passed, less observations
-  std::uint8_t intensity = 0;            ///< mean of the points' reflectivity
+  std::uint32_t occupied_sub_cells = 0;  ///< bitmap of the 3 x 3 x 3 sub-cells with points, x fastest
+  std::uint16_t slot = 0;                ///< in the block, see SlotSet
+  std::array<std::int8_t, 3> facing{};   ///< unit vector * 127: normal of the plane; direction to the first
+                                         ///< observer as long as there is no plane
+  std::uint8_t fitted_count : 7 = 0;     ///< moments.count() at the last plane fit
+  std::uint8_t has_plane : 1 = 0;        ///< result of the last plane fit
+  std::uint8_t seen_through = 0;         ///< rays that passed through, minus observations; never below 0
+  std::uint8_t intensity = 0;            ///< mean reflectivity of the points
 
   [[nodiscard]] Eigen::Vector3f facing_vector() const {
     return Eigen::Vector3f(facing[0], facing[1], facing[2]) * (1.0F / 127.0F);
@@ -36,22 +36,22 @@ struct MapCell {
 };
 static_assert(sizeof(MapCell) == 44);
 
-/// Cells of a block in order of their slots, and their planes as last published.
+/// Cells of a block, and the immutable planes of the last refit.
 class MapBlock {
  public:
-  /// What an observation was to a cell.
+  /// A point of a scan, relative to its cell.
   struct Observation {
-    Eigen::Vector3f fraction;  ///< place in the cell, 0 … 1
-    Eigen::Vector3f toward;    ///< unit direction to the sensor
+    Eigen::Vector3f fraction;  ///< position in the cell, 0 … 1 per axis
+    Eigen::Vector3f toward;    ///< unit vector to the lidar
     std::uint8_t intensity = 0;
     int freeze = 0;  ///< see MapConfig::freeze_observations
   };
-  /// Observes a point in place `place` (0 … 511). Returns the slot whose plane should be fitted for it, or
-  /// kNoSlot.
+  /// Adds a point to the cell at `place` (0 … 511), on the side that the point was seen from. Returns the
+  /// slot if its plane is due for a refit, else kNoSlot.
   int observe(int place, const Observation& observation);
   static constexpr int kNoSlot = -1;
 
-  /// Begin to fetch from memory: what find() of a place reads first, then its cell.
+  /// Two prefetches for observe(): first the mask, then (once that is in the cache) the cell.
   void prefetch_mask(int place) const {
     mask_.prefetch(place);
     __builtin_prefetch(&cells_);
@@ -60,41 +60,42 @@ class MapBlock {
     const std::size_t at = mask_.rank(place);
     if (at >= cells_.size()) return;
     const char* bytes = reinterpret_cast<const char*>(&cells_[at]);
-    __builtin_prefetch(bytes);  // a cell lies in two lines of the cache more often than in one
+    __builtin_prefetch(bytes);  // 44 bytes straddle two cache lines more often than not
     __builtin_prefetch(bytes + sizeof(MapCell) - 1);
   }
 
+  /// Cell of a slot; null if it has no points.
   [[nodiscard]] const MapCell* find(int slot) const {
     return mask_.has(slot) ? &cells_[mask_.rank(slot)] : nullptr;
   }
+  /// Sorted by slot.
   [[nodiscard]] const std::vector<MapCell>& cells() const { return cells_; }
   [[nodiscard]] std::vector<MapCell>& cells() { return cells_; }
   [[nodiscard]] const CellMask& mask() const { return mask_; }
 
-  /// The plane of a slot as last fitted; null if it has none.
+  /// Plane of a slot as of the last refit; null if it has none.
   [[nodiscard]] const PackedPlane* plane_at(int slot) const {
     return planes_ ? planes_->find(slot) : nullptr;
   }
 
-  /// Takes out cells whose seen_through is above `limit`; returns how many.
+  /// Removes the cells whose seen_through exceeds `limit`; returns their number.
   std::size_t remove_seen_through(std::uint8_t limit);
 
-  /// Asks `fit(cell, plane)` for the planes of the cells in `waiting`, false where there is none, and makes
-  /// planes() anew if they are others than before. Returns true if so. `scratch` is overwritten.
+  /// Fits the planes of the cells in `waiting` by `bool fit(const MapCell&, PackedPlane&)`, which returns
+  /// false if a cell has no plane. Drops the planes of removed cells. Replaces planes() and returns true if
+  /// any plane changed. `scratch` is overwritten.
   template <typename Fit>
   bool refit(const SlotSet& waiting, Fit fit, std::vector<PackedPlane>& scratch);
 
-  /// Its owner's: where the block stands in a list of those to refit, kNotListed where it does not.
+  /// For the owner: index of the block in the owner's list of blocks to refit, or kNotListed.
   std::int32_t list_index = kNotListed;
   static constexpr std::int32_t kNotListed = -1;
 
-  /// Immutable; null where no cell has a plane.
+  /// Planes of the last refit, immutable; null if no cell has a plane.
   [[nodiscard]] const std::shared_ptr<const PlaneBlock>& planes() const { return planes_; }
 
-  /// Puts a block together from stored cells and planes, both in order of their slots.
+  /// Rebuilds the block from stored cells and planes, both sorted by slot.
   void restore(std::vector<MapCell> cells, std::shared_ptr<const PlaneBlock> planes);
-
-  [[nodiscard]] std::size_t memory_bytes() const;
 
  private:
   MapCell& find_or_add(int slot);
@@ -104,7 +105,8 @@ class MapBlock {
   std::shared_ptr<const PlaneBlock> planes_;
 };
 
-// Cells that do not wait keep their planes and are not even read: they would come from far away in memory.
+// Merges the old planes with the cells that wait, word by word of the masks. Only waiting cells are read,
+// since each costs a cache miss.
 template <typename Fit>
 bool MapBlock::refit(const SlotSet& waiting, Fit fit, std::vector<PackedPlane>& scratch) {
   scratch.clear();
@@ -115,7 +117,7 @@ bool MapBlock::refit(const SlotSet& waiting, Fit fit, std::vector<PackedPlane>& 
     const std::uint64_t had = planes_ ? planes_->mask.word(i) : 0;
     const std::uint64_t due = waiting.words[i] & mask_.word(i);
     std::uint64_t has = had & mask_.word(i);
-    changed = changed || has != had;  // the cell was seen through
+    changed = changed || has != had;  // a cell with a plane was removed by remove_seen_through()
     for (std::uint64_t left = had | due; left != 0; left &= left - 1) {
       const std::uint64_t bit = left & -left;
       const PackedPlane* old = (had & bit) != 0 ? next_old++ : nullptr;
@@ -136,7 +138,7 @@ bool MapBlock::refit(const SlotSet& waiting, Fit fit, std::vector<PackedPlane>& 
     mask.set_word(i, has);
   }
   if (changed) {
-    mask.count_ranks();
+    mask.update_ranks();
     planes_ = scratch.empty() ? nullptr : std::make_shared<const PlaneBlock>(mask, scratch);
   }
   return changed;

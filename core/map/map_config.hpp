@@ -8,10 +8,10 @@
 
 namespace isobar {
 
-/// How a point of the scan finds its plane of the map.
+/// Data association between a scan point and a plane of the map.
 enum class Matcher : std::uint8_t {
-  kPlaneHash,  ///< the plane of the cell that it is in; where there is none, the nearest one
-  kNearest,    ///< the plane whose point is nearest (the paper's), by k-d trees
+  kPlaneHash,  ///< plane of the cell that contains the point; nearest plane if that cell has none
+  kNearest,    ///< plane whose point is nearest, by k-d trees (the paper's method)
 };
 
 inline constexpr NameTable<Matcher, 2> kMatcherNames{{{
@@ -19,38 +19,38 @@ inline constexpr NameTable<Matcher, 2> kMatcherNames{{{
     {Matcher::kNearest, "nearest"},
 }}};
 
-/// Size and density of the local map, and when it changes.
+/// Size and density of the local map, and when it takes a scan.
 struct MapConfig {
-  /// How points are matched to planes.
   Matcher matcher = Matcher::kPlaneHash;
-  /// Edge of a plane cell [m]. Smaller follows finer indoor detail, larger needs fewer cells
-  /// outdoors. 0.275 was the most accurate of 0.25 … 0.3 over the short scenarios.
+  /// Edge of a plane cell [m]. Smaller cells follow finer indoor detail, larger ones save memory outdoors.
+  /// 0.275 was the most accurate of 0.25 … 0.3 over the short scenarios.
   double cell_m = 0.275;
-  /// Tiles whose centre is farther than this from the robot leave memory [m]. Beyond the reach of
-  /// the registration nothing is matched.
+  /// Tiles whose centre is farther than this from the robot leave memory [m]. At least the range of the
+  /// registration, beyond which nothing is matched.
   double radius_m = 70.0;
-  /// The map takes a scan when the robot moved this far since the last one it took [m].
+  /// The map takes a scan that was recorded this far from the last one it took [m].
   double update_distance_m = 0.15;
-  /// … or turned this far [deg].
+  /// The map takes a scan that is rotated by this much from the last one it took [deg].
   double update_angle_deg = 4.0;
-  /// … or this long ago [s]: things move while the robot stands.
+  /// The map takes a scan this long after the last one it took [s]: things move while the robot stands.
   double update_interval_s = 1.0;
-  /// … or when less than this share of the scan found the map: a door opened, the place is new.
+  /// The map takes a scan of which less than this share was matched (0 … 1): a door opened, or the place is
+  /// new.
   double update_overlap = 0.75;
-  /// Observations after which a cell's plane no longer changes. Enough to average the lidar's
-  /// noise; few enough that the oldest pose counts, which keeps drift out of places seen twice.
+  /// Number of observations after which a cell's plane is frozen. Enough to average the lidar's noise; few
+  /// enough that the plane keeps the pose of the first visit, so that drift does not enter on the second.
   int freeze_observations = 80;
-  /// Largest thickness (standard deviation along the normal) of a cell that counts as a plane [m]. The noise
-  /// of a VLP-16 is 0.01 … 0.03 m.
+  /// Maximum thickness (standard deviation along the normal) of a plane [m]. The noise of a VLP-16 is
+  /// 0.01 … 0.03 m.
   double max_thickness_m = 0.05;
-  /// Largest standard deviation of a normal's direction [deg]. Worse ones are not matched.
+  /// Maximum standard deviation of a normal's direction [deg]. Worse planes are not matched.
   double max_normal_deviation_deg = 4.0;
-  /// Points seen through this often leave the map. 0 keeps everything.
+  /// A cell that rays have passed through more often than this is removed. 0 keeps every cell.
   int see_through_limit = 3;
-  /// A ray must pass a point's surface by this much to count as seen through [m]: above the noise of
-  /// range and height.
+  /// A ray counts as passing through if it ends this far behind the surface [m]: above the noise of range and
+  /// height.
   double see_through_margin_m = 0.35;
-  /// Points farther than this from the robot are not tested for being seen through [m].
+  /// Cells farther than this from the lidar are not tested for being seen through [m].
   double see_through_range_m = 25.0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An immutable view of the map, as the registration sees it: the interface of the matchers.
+// Immutable snapshot of the map for the registration: the interface of the two matchers.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,32 +7,32 @@
 #include <span>
 
 #include "core/map/grid.hpp"
-#include "core/map/map_point.hpp"
-
 namespace isobar {
 
-/// Where the points are seen from and how far from the map they may be.
+/// Parameters of a match, common to all points of a call.
 struct MatchQuery {
-  LocalFrame frame;                                           ///< of the points and of the matches
-  Eigen::Vector3f viewpoint_local = Eigen::Vector3f::Zero();  ///< a plane must face it
+  LocalFrame frame;                                           ///< of points, viewpoint and matches
+  Eigen::Vector3f viewpoint_local = Eigen::Vector3f::Zero();  ///< only planes that face it are matched [m]
   float max_distance_m = 0.0F;                                ///< from a point to the plane's point
 };
 
-/// The plane of the map that a point belongs to, and what lets a matcher skip the search the next time.
+/// Result of the match of one point, and the matcher's cache for the next call with the same point.
 struct PlaneMatch {
-  Eigen::Vector3f q_local = Eigen::Vector3f::Zero();  ///< a point on the plane
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();   ///< unit normal towards the observer
+  Eigen::Vector3f q_local = Eigen::Vector3f::Zero();  ///< the plane's point [m]
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();   ///< the plane's unit normal, towards the observer
   bool found = false;
 
-  // What a matcher keeps for its next call.
-  bool in_own_cell = false;                              ///< found by the cell alone
-  bool nearest_known = false;                            ///< the plane is the nearest to p_searched
-  CellIndex cell = CellIndex::Zero();                    ///< of the point then
-  Eigen::Vector3f p_searched = Eigen::Vector3f::Zero();  ///< the point when planes around it were looked for
-  float clear_m = 0.0F;  ///< there was no other plane within this distance of p_searched
+  // Cache: written and read by the matcher only.
+  bool in_own_cell = false;            ///< the plane is that of the point's own cell
+  CellIndex cell = CellIndex::Zero();  ///< cell of the point in the last call
+  Eigen::Vector3f p_searched =
+      Eigen::Vector3f::Zero();  ///< point at the last search for the nearest plane [m]
+  bool nearest_known = false;   ///< that search found a plane
+  float clear_m = 0.0F;         ///< that search found no second plane closer than this to p_searched
 };
 
-/// A map that does not change. This class is the empty one. Any number of threads may read it at once.
+/// Base class of the snapshots, and the snapshot of an empty map. Immutable: any number of threads may read
+/// it at the same time.
 class MapSnapshot {
  public:
   MapSnapshot() = default;
@@ -40,30 +40,24 @@ class MapSnapshot {
   MapSnapshot(const MapSnapshot&) = delete;
   MapSnapshot& operator=(const MapSnapshot&) = delete;
 
-  /// Gives each of `p_local` the plane that it belongs to. `matches`, of the same length, is either new or
-  /// what the last call with this snapshot, this frame and these points (moved since) left. No allocation, no
-  /// lock.
+  /// Matches each of the N points `p_local` [m] to a plane. `matches` (N as well) is either default
+  /// constructed, or the result of the last call for the same points, which may have moved, with the same
+  /// snapshot and frame. Allocates nothing, takes no lock.
   virtual void match(const MatchQuery& query, std::span<const Eigen::Vector3f> p_local,
                      std::span<PlaneMatch> matches) const;
-
-  /// match() of one point in coordinates of the map. False, and `match` untouched, where there is no plane.
-  bool nearest(const Eigen::Vector3d& p_map, const Eigen::Vector3d& viewpoint_map, double max_distance_m,
-               MapMatch& match) const;
 
   [[nodiscard]] bool empty() const { return plane_count_ == 0; }
   /// Number of planes that can be matched.
   [[nodiscard]] std::size_t plane_count() const { return plane_count_; }
-  [[nodiscard]] std::size_t tile_count() const { return tile_count_; }
+  /// Edge of a cell [m].
   [[nodiscard]] float cell_m() const { return cell_m_; }
 
  protected:
-  MapSnapshot(float cell_m, std::size_t plane_count, std::size_t tile_count)
-      : cell_m_(cell_m), plane_count_(plane_count), tile_count_(tile_count) {}
+  MapSnapshot(float cell_m, std::size_t plane_count) : cell_m_(cell_m), plane_count_(plane_count) {}
 
  private:
   float cell_m_ = 0.25F;
   std::size_t plane_count_ = 0;
-  std::size_t tile_count_ = 0;
 };
 
 }  // namespace isobar

@@ -24,13 +24,4 @@ std::size_t MapTile::cell_count() const {
   }
   return count;
 }
-
-std::size_t MapTile::memory_bytes() const {
-  std::size_t bytes = sizeof(MapTile) + (planes_ ? sizeof(PlaneTile) : 0);
-  for (const auto& block : blocks_) {
-    bytes += block != nullptr ? block->memory_bytes() : 0;
-  }
-  return bytes;
-}
-
 }  // namespace isobar

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A tile as bytes: header, then for each block that has cells its header, its cells, its planes.
-// Little-endian, as all machines that Isobar runs on; the header's magic number tells if not.
+// Serialised tile: TileHeader, then for each block with cells its BlockHeader, MapCells, slots of the planes
+// (uint16) and PackedPlanes. Little-endian, as every machine that Isobar runs on; on another one the magic
+// number does not match.
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -29,23 +30,30 @@ struct BlockHeader {
   std::uint16_t reserved = 0;
 };
 
-template <typename T>
-void append(std::vector<std::byte>& bytes, const T* values, std::size_t count) {
-  static_assert(std::is_trivially_copyable_v<T>);
-  if (count == 0) return;
-  const auto* first = reinterpret_cast<const std::byte*>(values);
-  bytes.insert(bytes.end(), first, first + count * sizeof(T));
-}
-
-// Reads values one after the other; false when there are not enough bytes.
-class Reader {
+class ByteWriter {
  public:
-  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  explicit ByteWriter(std::vector<std::byte>& bytes) : bytes_(bytes) {}
+  template <typename T>
+  void write(const T* values, std::size_t count) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    if (count == 0) return;
+    const auto* first = reinterpret_cast<const std::byte*>(values);
+    bytes_.insert(bytes_.end(), first, first + count * sizeof(T));
+  }
+
+ private:
+  std::vector<std::byte>& bytes_;
+};
+
+class ByteReader {
+ public:
+  explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  // Returns false if fewer bytes are left than that.
   template <typename T>
   bool read(T* values, std::size_t count) {
     static_assert(std::is_trivially_copyable_v<T>);
     if (bytes_.size() / sizeof(T) < count) return false;
-    if (count == 0) return true;  // a vector without elements has no address
+    if (count == 0) return true;  // memcpy must not be given the null data() of an empty vector
     std::memcpy(values, bytes_.data(), count * sizeof(T));
     bytes_ = bytes_.subspan(count * sizeof(T));
     return true;
@@ -56,13 +64,13 @@ class Reader {
   std::span<const std::byte> bytes_;
 };
 
-bool read_header(Reader& reader, TileHeader& header) {
+bool read_header(ByteReader& reader, TileHeader& header) {
   return reader.read(&header, 1) && header.magic == kMagic && std::isfinite(header.cell_m) &&
          header.cell_m > 0.0F && header.block_count <= kBlocksPerTile;
 }
 
-// Slots ascend and are in range.
-bool in_order(const std::vector<MapCell>& cells) {
+// True if slots ascend and slots and counts are in range.
+bool are_valid(const std::vector<MapCell>& cells) {
   int last = -1;
   for (const MapCell& cell : cells) {
     if (cell.slot <= last || cell.slot >= CellMask::kSlots || cell.moments.count() <= 0 ||
@@ -74,8 +82,8 @@ bool in_order(const std::vector<MapCell>& cells) {
   return true;
 }
 
-// The planes' slots: a bit of the cells' list each.
-bool read_planes(Reader& reader, const std::vector<MapCell>& cells, std::size_t count,
+// Returns false if a plane's slot is out of order or has no cell.
+bool read_planes(ByteReader& reader, const std::vector<MapCell>& cells, std::size_t count,
                  std::shared_ptr<const PlaneBlock>& planes) {
   std::vector<std::uint16_t> slots(count);
   auto block = std::make_shared<PlaneBlock>();
@@ -88,7 +96,7 @@ bool read_planes(Reader& reader, const std::vector<MapCell>& cells, std::size_t 
     block->mask.mark(slot);
     ++cell;
   }
-  block->mask.count_ranks();
+  block->mask.update_ranks();
   planes = count > 0 ? std::move(block) : nullptr;
   return true;
 }
@@ -100,7 +108,7 @@ struct StoredBlock {
 };
 
 std::optional<std::vector<StoredBlock>> read_blocks(std::span<const std::byte> bytes, TileHeader& header) {
-  Reader reader(bytes);
+  ByteReader reader(bytes);
   if (!read_header(reader, header)) return std::nullopt;
   std::vector<StoredBlock> blocks(header.block_count);
   std::ptrdiff_t last = -1;
@@ -113,7 +121,7 @@ std::optional<std::vector<StoredBlock>> read_blocks(std::span<const std::byte> b
     last = head.index;
     block.index = head.index;
     block.cells.resize(head.cell_count);
-    if (!reader.read(block.cells.data(), block.cells.size()) || !in_order(block.cells) ||
+    if (!reader.read(block.cells.data(), block.cells.size()) || !are_valid(block.cells) ||
         !read_planes(reader, block.cells, head.plane_count, block.planes)) {
       return std::nullopt;
     }
@@ -132,7 +140,8 @@ void MapTile::store(float cell_m, std::vector<std::byte>& bytes) const {
   for (const auto& block : blocks_) {
     header.block_count += block != nullptr && !block->cells().empty() ? 1 : 0;
   }
-  append(bytes, &header, 1);
+  ByteWriter writer(bytes);
+  writer.write(&header, 1);
   for (std::size_t i = 0; i < kBlocksPerTile; ++i) {
     if (blocks_[i] == nullptr || blocks_[i]->cells().empty()) continue;
     const std::vector<MapCell>& cells = blocks_[i]->cells();
@@ -146,10 +155,10 @@ void MapTile::store(float cell_m, std::vector<std::byte>& bytes) const {
     }
     const BlockHeader head{static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(cells.size()),
                            static_cast<std::uint16_t>(planes.size()), 0};
-    append(bytes, &head, 1);
-    append(bytes, cells.data(), cells.size());
-    append(bytes, slots.data(), slots.size());
-    append(bytes, planes.data(), planes.size());
+    writer.write(&head, 1);
+    writer.write(cells.data(), cells.size());
+    writer.write(slots.data(), slots.size());
+    writer.write(planes.data(), planes.size());
   }
 }
 
@@ -166,7 +175,7 @@ bool MapTile::restore(std::span<const std::byte> bytes, float cell_m) {
   return true;
 }
 
-bool append_tile_points(std::span<const std::byte> bytes, std::vector<MapPoint>& points) {
+bool MapTile::append_stored_points(std::span<const std::byte> bytes, std::vector<MapPoint>& points) {
   TileHeader header;
   auto blocks = read_blocks(bytes, header);
   if (!blocks) {
@@ -176,7 +185,7 @@ bool append_tile_points(std::span<const std::byte> bytes, std::vector<MapPoint>&
   for (StoredBlock& stored : *blocks) {
     tile.block_or_add(stored.index).restore(std::move(stored.cells), std::move(stored.planes));
   }
-  append_points(tile, header.cell_m, points);
+  tile.append_points(header.cell_m, points);
   return true;
 }
 

@@ -8,7 +8,7 @@ namespace isobar {
 
 namespace {
 
-// The planes of a tile, as nanoflann wants to read them.
+// Adaptor that lets nanoflann read the planes of a tile.
 struct PlanePoints {
   const std::vector<TileTree::Plane>& planes;
   [[nodiscard]] std::size_t kdtree_get_point_count() const { return planes.size(); }
@@ -21,7 +21,7 @@ struct PlanePoints {
   }
 };
 
-// Keeps the nearest plane that faces the viewpoint.
+// Result set for nanoflann: keeps the nearest plane that faces the viewpoint.
 class NearestFacing {
  public:
   NearestFacing(const std::vector<TileTree::Plane>& planes, const Eigen::Vector3f& viewpoint_tile,
@@ -47,7 +47,7 @@ class NearestFacing {
   const TileTree::Plane* plane_ = nullptr;
 };
 
-constexpr std::size_t kLeafSize = 10;
+constexpr std::size_t kLeafSize = 10;  // planes per leaf of the k-d tree: nanoflann's default
 
 std::vector<TileTree::Plane> planes_of(const PlaneTile& tile, float cell_m) {
   std::vector<TileTree::Plane> planes;
@@ -99,7 +99,7 @@ const TileTree::Plane* TileTree::nearest(const Eigen::Vector3f& p_tile, const Ei
 }
 
 NearestPlane::NearestPlane(std::vector<std::shared_ptr<const TileTree>> trees, float cell_m)
-    : MapSnapshot(cell_m, count_planes(trees), trees.size()), directory_(std::move(trees)) {}
+    : MapSnapshot(cell_m, count_planes(trees)), directory_(std::move(trees)) {}
 
 bool NearestPlane::match_one(const MatchQuery& query, const Eigen::Vector3f& p_local,
                              PlaneMatch& match) const {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Matcher: the plane whose point is nearest, found in one k-d tree a tile. nearest_plane.cpp is the only file
-// that names nanoflann.
+// Matcher: nearest plane by one k-d tree per tile. nearest_plane.cpp is the only file that names nanoflann.
 #pragma once
 
 #include <memory>
@@ -13,7 +12,7 @@
 
 namespace isobar {
 
-/// Immutable search structure over the planes of one tile.
+/// Immutable k-d tree over the planes of one tile.
 class TileTree {
  public:
   TileTree(const PlaneTile& tile, float cell_m);
@@ -24,13 +23,14 @@ class TileTree {
   TileKey key;
 
   struct Plane {
-    Eigen::Vector3f q_tile;  ///< from the tile's corner [m]
-    Eigen::Vector3f normal;
+    Eigen::Vector3f q_tile;  ///< the plane's point, from the tile's corner [m]
+    Eigen::Vector3f normal;  ///< unit normal towards the observer
   };
   [[nodiscard]] std::size_t size() const { return planes_.size(); }
 
-  /// The plane nearest to `p_tile` that is closer than sqrt(squared_distance) and faces `viewpoint_tile`,
-  /// both from the tile's corner; null if there is none. Lowers `squared_distance`.
+  /// Nearest plane to `p_tile` that faces `viewpoint_tile` and is closer than sqrt(squared_distance); null if
+  /// there is none. `p_tile`, `viewpoint_tile`: from the tile's corner [m]. `squared_distance` [m^2] is
+  /// lowered to that of the plane.
   const Plane* nearest(const Eigen::Vector3f& p_tile, const Eigen::Vector3f& viewpoint_tile,
                        float& squared_distance) const;
 
@@ -40,9 +40,10 @@ class TileTree {
   std::unique_ptr<Tree> tree_;
 };
 
+/// Matches a point to the plane whose point is nearest (the paper's data association).
 class NearestPlane final : public MapSnapshot {
  public:
-  /// `trees` without null pointers.
+  /// `trees`: no null pointers.
   NearestPlane(std::vector<std::shared_ptr<const TileTree>> trees, float cell_m);
 
   void match(const MatchQuery& query, std::span<const Eigen::Vector3f> p_local,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The planes of a block and of a tile as the registration reads them: immutable, shared between snapshots.
+// Planes of a block and of a tile as the registration reads them: immutable, shared between snapshots.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,14 +16,14 @@
 
 namespace isobar {
 
-/// A plane of the map in 12 bytes: a point on it and its unit normal towards the observer.
+/// Plane in 12 bytes: a point q on it and its unit normal towards the observer, in fixed point.
 struct PackedPlane {
   std::array<std::int16_t, 3> q{};       ///< from the block's centre, in units of the block's edge / 2^15
   std::array<std::int16_t, 3> normal{};  ///< in units of 1 / 32767
 
   friend bool operator==(const PackedPlane&, const PackedPlane&) = default;
 
-  /// `q_block` [m]: from the block's centre, within its edge along each axis; `normal`: unit.
+  /// `q_block`: from the block's centre [m], at most one edge of the block away per axis.
   static PackedPlane of(const Eigen::Vector3f& q_block, const Eigen::Vector3f& unit_normal, float cell_m) {
     const auto pack = [](float value) {
       return static_cast<std::int16_t>(std::lround(std::clamp(value, -32767.0F, 32767.0F)));
@@ -37,7 +37,7 @@ struct PackedPlane {
     return plane;
   }
 
-  /// Point on the plane from the block's centre [m].
+  /// The plane's point, from the block's centre [m].
   [[nodiscard]] Eigen::Vector3f q_block(float cell_m) const {
     return Eigen::Vector3f(q[0], q[1], q[2]) * (cell_m * kBlockCells / 32768.0F);
   }
@@ -47,16 +47,16 @@ struct PackedPlane {
 };
 static_assert(sizeof(PackedPlane) == 12);
 
-/// Planes of a block, one a slot of `mask`, in order.
+/// Planes of a block.
 struct PlaneBlock {
   PlaneBlock() = default;
   PlaneBlock(const CellMask& of_planes, std::vector<PackedPlane> in_order)
       : mask(of_planes), planes(std::move(in_order)) {}
 
-  CellMask mask;
-  std::vector<PackedPlane> planes;
+  CellMask mask;                    ///< slots that have a plane
+  std::vector<PackedPlane> planes;  ///< one per slot of `mask`, in order of slots
 
-  /// Null where the slot has no plane.
+  /// Plane of a slot; null if it has none.
   [[nodiscard]] const PackedPlane* find(int slot) const {
     return mask.has(slot) ? &planes[mask.rank(slot)] : nullptr;
   }
@@ -69,7 +69,7 @@ struct PlaneTile {
   std::size_t plane_count = 0;
 };
 
-/// Centre of the block that begins at a cell.
+/// Centre of a block [m]; `first`: its first cell.
 [[nodiscard]] inline Eigen::Vector3f block_centre_local(const LocalFrame& frame, const CellIndex& first) {
   return frame.corner_local(first).array() + 0.5F * kBlockCells * frame.cell_m;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Moments of the points of a cell and the plane through them.
+// Least-squares plane through the points of a cell, from their moments.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,34 +7,31 @@
 
 namespace isobar {
 
-/// Number, sum and sum of outer products of points relative to a centre that the owner knows.
+/// Zeroth, first and second moments of points about a reference point that the owner defines.
 struct Moments {
-  float count = 0.0F;
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  Eigen::Vector3f outer_diagonal = Eigen::Vector3f::Zero();      ///< xx, yy, zz
-  Eigen::Vector3f outer_off_diagonal = Eigen::Vector3f::Zero();  ///< xy, xz, yz
-
-  void add(const Eigen::Vector3f& p_centre);
-  [[nodiscard]] Eigen::Vector3f mean() const { return sum / count; }
+  float count = 0.0F;                                            ///< number of points
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();                 ///< [m]
+  Eigen::Vector3f outer_diagonal = Eigen::Vector3f::Zero();      ///< sums of xx, yy, zz [m^2]
+  Eigen::Vector3f outer_off_diagonal = Eigen::Vector3f::Zero();  ///< sums of xy, xz, yz [m^2]
 };
 
-/// What makes a cloud of points a plane.
+/// Conditions under which points count as a plane.
 struct PlaneCriteria {
-  float max_thickness_m = 0.05F;           ///< standard deviation along the normal
-  float max_normal_deviation_rad = 0.07F;  ///< of the normal's direction, from the points' spread
+  float max_thickness_m = 0.05F;           ///< standard deviation of the points along the normal
+  float max_normal_deviation_rad = 0.07F;  ///< standard deviation of the normal, thickness / (width sqrt(n))
   float min_width_m = 0.035F;              ///< standard deviation along the narrower direction in the plane
 };
 
-/// Plane through a cloud of points.
+/// Plane through points.
 struct Plane {
-  Eigen::Vector3f mean = Eigen::Vector3f::Zero();
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
-  float thickness_m = 0.0F;
-  float normal_deviation_rad = 0.0F;
+  Eigen::Vector3f mean = Eigen::Vector3f::Zero();    ///< mean of the points, from their reference point [m]
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit normal of arbitrary sign
+  float thickness_m = 0.0F;                          ///< standard deviation of the points along the normal
 };
 
-/// Plane with the least squared distances. False where the points do not make one: too few, too thick, or on
-/// a line, as the points of a single ring are. The sign of the normal is arbitrary.
+/// Least-squares plane: its normal is the eigenvector of the smallest eigenvalue of the points' covariance.
+/// Returns false if the points are no plane: too few, too thick, or on a line as those of a single lidar
+/// ring.
 bool fit_plane(const Moments& moments, const PlaneCriteria& criteria, Plane& plane);
 
 }  // namespace isobar

@@ -19,7 +19,7 @@ PlaneCriteria criteria_of(const MapConfig& config) {
   return criteria;
 }
 
-// Seen from the same side.
+// True if both cells were seen from the same side.
 bool same_way(const MapCell& a, const MapCell& b) {
   return a.facing[0] * b.facing[0] + a.facing[1] * b.facing[1] + a.facing[2] * b.facing[2] > 0;
 }
@@ -42,7 +42,8 @@ class PlaneFitter::Surroundings {
   [[nodiscard]] const CellIndex& first() const { return first_; }
   [[nodiscard]] const MapBlock& centre() const { return centre_; }
 
-  // The block that begins at `first`, null where nothing was seen. It must touch the centre or be it.
+  // The block whose first cell is `first`; null if nothing was seen there. It must be the centre block or one
+  // of its 26 neighbours.
   const MapBlock* block_at(const CellIndex& first) {
     const CellIndex step = (first - first_) / kBlockCells;
     const int number = ((step.z() + 1) * 3 + step.y() + 1) * 3 + step.x() + 1;
@@ -71,8 +72,9 @@ bool PlaneFitter::refit(const MapTile& tile, std::size_t block_index, const Slot
   return tile.block(block_index)->refit(waiting, fit_cell, scratch_);
 }
 
+// Moments of the cell and its 26 neighbours about the cell's centre. Same side only: the other side of a thin
+// wall is another plane.
 Moments PlaneFitter::neighbourhood(Surroundings& around, const MapCell& centre) const {
-  // Same side only: a thin wall has two.
   const int side = centre.slot / kPlacesPerBlock;
   const CellIndex at = around.first() + offset_of(centre.slot % kPlacesPerBlock);
   const CellIndex first = at.array() - 1;
@@ -92,6 +94,7 @@ Moments PlaneFitter::neighbourhood(Surroundings& around, const MapCell& centre) 
   return sum.in_metres(cell_m_);
 }
 
+// Moments of the cube of 4 x 4 x 4 cells that contains the slot, about the centre of the slot's cell.
 Moments PlaneFitter::cube_around(const MapBlock& block, int slot) const {
   const CellIndex centre = offset_of(slot % kPlacesPerBlock);
   MomentSum sum;
@@ -104,14 +107,15 @@ Moments PlaneFitter::cube_around(const MapBlock& block, int slot) const {
 
 bool PlaneFitter::fit(Surroundings& around, const MapCell& cell, PackedPlane& packed) const {
   PlaneCriteria own = criteria_;
-  own.max_normal_deviation_rad *= kOwnCellShare;
+  own.max_normal_deviation_rad *= kOwnCellDeviationFactor;
   Plane plane;  // about the cell's centre
   if (!fit_plane(cell.moments.in_metres(cell_m_), own, plane) &&
       !fit_plane(neighbourhood(around, cell), criteria_, plane) &&
       !fit_plane(cube_around(around.centre(), cell.slot), criteria_, plane)) {
     return false;
   }
-  // The plane's point nearest to the cell's own mean.
+  // The stored point is the cell's own mean, projected onto the plane. A plane far from the mean is not the
+  // cell's own surface.
   const Eigen::Vector3f mean = cell.moments.mean_m(cell_m_);
   const float off_plane = plane.normal.dot(mean - plane.mean);
   if (std::abs(off_plane) > 2.0F * criteria_.max_thickness_m) {

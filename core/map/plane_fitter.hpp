@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The plane of a cell, from the smallest surface that is enough to the largest: the cell, its neighbours, a
-// cube of 4 x 4 x 4 cells. A cube of 1 m gives far walls a normal, where the rings are farther apart than the
-// cells.
+// Fits the plane of a cell to the smallest neighbourhood that has a good one: the cell alone, the cell and
+// its neighbours, or a cube of 4 x 4 x 4 cells. The cube, about 1 m wide, gives normals to far walls, where
+// lidar rings are farther apart than cells.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,24 +14,27 @@
 
 namespace isobar {
 
+/// Refits planes of the map. One thread.
 class PlaneFitter {
  public:
-  /// Gives the tile of a key, or null.
+  /// Returns the tile of a key, or null.
   using FindTile = std::function<const MapTile*(const TileKey&)>;
 
   PlaneFitter(const MapConfig& config, FindTile find_tile);
 
-  /// Fits the planes of the cells `waiting` of block `block` of `tile`. True if the block's planes changed.
-  bool refit(const MapTile& tile, std::size_t block, const SlotSet& waiting);
+  /// Refits the cells `waiting` of block `block_index` (0 … 63) of `tile`. True if a plane of the block
+  /// changed.
+  bool refit(const MapTile& tile, std::size_t block_index, const SlotSet& waiting);
 
  private:
-  // A cell's own plane must be this much better than required, else its neighbours help.
-  static constexpr float kOwnCellShare = 0.5F;
+  // Factor on the allowed deviation of the normal for a fit to the cell's own points: twice as good as
+  // required, or else the neighbours' points are used.
+  static constexpr float kOwnCellDeviationFactor = 0.5F;
 
-  // A block and those around it, each looked for when it is first asked for.
+  // A block and its 26 neighbours, looked up on first use.
   class Surroundings;
 
-  bool fit(Surroundings& around, const MapCell& cell, PackedPlane& plane) const;
+  bool fit(Surroundings& around, const MapCell& cell, PackedPlane& packed) const;
   [[nodiscard]] Moments neighbourhood(Surroundings& around, const MapCell& centre) const;
   [[nodiscard]] Moments cube_around(const MapBlock& block, int slot) const;
 
@@ -40,17 +43,5 @@ class PlaneFitter {
   FindTile find_tile_;
   std::vector<PackedPlane> scratch_;
 };
-
-/// Calls `visit(slot)` for the members of `mask`, both sides, in the cube of 4 x 4 x 4 cells, aligned to its
-/// block, that holds place `place`.
-template <typename Visit>
-void for_each_in_cube(const CellMask& mask, int place, Visit visit) {
-  const CellIndex offset = offset_of(place);
-  const CellIndex low(offset.x() & 4, offset.y() & 4, offset.z() & 4);
-  const CellIndex high = low.array() + 3;
-  for (int side = 0; side < kSides; ++side) {
-    for_each_in_window(mask, side, low, high, visit);
-  }
-}
 
 }  // namespace isobar

@@ -10,23 +10,24 @@ namespace isobar {
 
 namespace {
 
-// A point farther from its cell's plane than this [m] may belong to another one: at a corner, or while the
-// pose is off. So the nearest plane around decides. Above the noise of lidar and map, 0.01 to 0.03 m, so that
-// it is asked seldom.
+// Maximum distance from a point to the plane of its own cell [m]. A point farther away may belong to another
+// plane, at a corner or while the pose is still off, and the nearest plane is searched. Above the noise of
+// lidar and map, 0.01 … 0.03 m, so that the search is rare.
 constexpr float kOwnCellResidualM = 0.05F;
 
-// A plane around a point is looked for this near [m] first: what is found there is the nearest of all, and a
-// ball of 0.8 m, which the first iteration asks for, touches twice as many blocks.
-constexpr float kNearM = 0.35F;
+// Radius of the first search for the nearest plane [m]. A plane found within it is the nearest of all; the
+// full radius, 0.8 m in the first iteration, intersects twice as many blocks.
+constexpr float kFirstSearchRadiusM = 0.35F;
 
-bool belongs(const Eigen::Vector3f& p_local, const Eigen::Vector3f& q_local, const Eigen::Vector3f& normal) {
+bool is_close_to_plane(const Eigen::Vector3f& p_local, const Eigen::Vector3f& q_local,
+                       const Eigen::Vector3f& normal) {
   return std::abs(normal.dot(p_local - q_local)) < kOwnCellResidualM;
 }
 
-// True if what PlaneHash::Search::around() found, or did not find, from p_searched is the answer from here
-// too; `match.found` then says whether it lies within `limit_m`. By the triangle inequality all other planes
-// are farther than what was clear less the way since.
-bool still_nearest(const Eigen::Vector3f& p_local, float limit_m, PlaneMatch& match) {
+// True if the last search, made from match.p_searched, still holds for `p_local`; match.found is then updated
+// for the distance limit `limit_m`. Triangle inequality: the distance to every other plane is at least
+// match.clear_m minus the distance that the point has moved since.
+bool last_search_holds(const Eigen::Vector3f& p_local, float limit_m, PlaneMatch& match) {
   const float clear_m = match.clear_m - (p_local - match.p_searched).norm();
   if (!match.nearest_known) {
     match.found = false;
@@ -47,7 +48,7 @@ std::size_t count_planes(const std::vector<std::shared_ptr<const PlaneTile>>& ti
 
 }  // namespace
 
-// One call of match(): remembers the tile of the last point, which is most often the next one's too.
+// State of one call of match(): caches the last tile, since consecutive points are mostly in the same one.
 class PlaneHash::Search {
  public:
   Search(const TileDirectory<PlaneTile>& directory, const MatchQuery& query)
@@ -55,7 +56,8 @@ class PlaneHash::Search {
         query_(query),
         squared_limit_m2_(query.max_distance_m * query.max_distance_m) {}
 
-  // The plane of the point's own cell, if the point belongs to it.
+  // Plane of the point's own cell: the first of its sides that faces the viewpoint. False if none does or the
+  // point is too far from it.
   bool own_cell(const CellIndex& cell, const Eigen::Vector3f& p_local, PlaneMatch& match) {
     const PlaneBlock* block = find_block(cell);
     if (block == nullptr) {
@@ -69,7 +71,7 @@ class PlaneHash::Search {
       const Eigen::Vector3f q_local = centre_local + packed->q_block(query_.frame.cell_m);
       const Eigen::Vector3f normal = packed->unit_normal();
       if ((q_local - p_local).squaredNorm() < squared_limit_m2_ && faces(normal, q_local)) {
-        if (!belongs(p_local, q_local, normal)) return false;
+        if (!is_close_to_plane(p_local, q_local, normal)) return false;
         match.q_local = q_local;
         match.normal = normal;
         return true;
@@ -78,20 +80,22 @@ class PlaneHash::Search {
     return false;
   }
 
-  // The plane whose point is nearest, if within max_distance_m.
-  bool around(const Eigen::Vector3f& p_local, PlaneMatch& match) {
-    return (query_.max_distance_m > kNearM && within(kNearM, p_local, match)) ||
-           within(query_.max_distance_m, p_local, match);
+  // Nearest plane closer than max_distance_m.
+  bool nearest(const Eigen::Vector3f& p_local, PlaneMatch& match) {
+    return (query_.max_distance_m > kFirstSearchRadiusM &&
+            nearest_within(kFirstSearchRadiusM, p_local, match)) ||
+           nearest_within(query_.max_distance_m, p_local, match);
   }
 
  private:
-  // Squared distances of the nearest planes [m^2]; the limit where there is none.
+  // Squared distances of the nearest and second nearest plane [m^2]; the squared search radius if there is
+  // none.
   struct TwoNearest {
     float first_m2, second_m2;
   };
 
-  // The plane whose point is nearest, among the cells that a ball of `limit_m` touches.
-  bool within(float limit_m, const Eigen::Vector3f& p_local, PlaneMatch& match) {
+  // Nearest plane closer than `limit_m`, from the cells that the cube around that ball intersects.
+  bool nearest_within(float limit_m, const Eigen::Vector3f& p_local, PlaneMatch& match) {
     const CellIndex first = query_.frame.cell_of(p_local.array() - limit_m);
     const CellIndex last = query_.frame.cell_of(p_local.array() + limit_m);
     TwoNearest nearest{limit_m * limit_m, limit_m * limit_m};
@@ -156,7 +160,7 @@ class PlaneHash::Search {
 };
 
 PlaneHash::PlaneHash(std::vector<std::shared_ptr<const PlaneTile>> tiles, float cell_m)
-    : MapSnapshot(cell_m, count_planes(tiles), tiles.size()), directory_(std::move(tiles)) {}
+    : MapSnapshot(cell_m, count_planes(tiles)), directory_(std::move(tiles)) {}
 
 void PlaneHash::match(const MatchQuery& query, std::span<const Eigen::Vector3f> p_local,
                       std::span<PlaneMatch> matches) const {
@@ -165,10 +169,10 @@ void PlaneHash::match(const MatchQuery& query, std::span<const Eigen::Vector3f> 
   for (std::size_t i = 0; i < p_local.size(); ++i) {
     PlaneMatch& match = matches[i];
     const CellIndex cell = query.frame.cell_of(p_local[i]);
-    // A point that stays in its cell keeps its plane.
+    // A point that stayed in its cell keeps the plane of that cell.
     if (match.in_own_cell && match.cell == cell &&
         (match.q_local - p_local[i]).squaredNorm() < squared_limit_m2 &&
-        belongs(p_local[i], match.q_local, match.normal)) {
+        is_close_to_plane(p_local[i], match.q_local, match.normal)) {
       match.found = true;
       continue;
     }
@@ -178,8 +182,8 @@ void PlaneHash::match(const MatchQuery& query, std::span<const Eigen::Vector3f> 
       match.found = true;
       match.nearest_known = false;
       match.clear_m = 0.0F;
-    } else if (!still_nearest(p_local[i], query.max_distance_m, match)) {
-      match.found = search.around(p_local[i], match);
+    } else if (!last_search_holds(p_local[i], query.max_distance_m, match)) {
+      match.found = search.nearest(p_local[i], match);
     }
   }
 }

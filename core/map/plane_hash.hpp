@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Matcher: the plane of the cell that a point is in. One probe a point; only where its cell has no plane that
-// faces the robot and lies near the point, the nearest one around.
+// Matcher: plane of the cell that contains the point, found by one hash lookup. If that cell has no plane
+// that faces the robot and lies close to the point, the nearest plane of the cells around.
 #pragma once
 
 #include <memory>
@@ -13,9 +13,10 @@
 
 namespace isobar {
 
+/// Matches a point to the plane of its cell, or else to the nearest plane.
 class PlaneHash final : public MapSnapshot {
  public:
-  /// `tiles` without null pointers.
+  /// `tiles`: no null pointers.
   PlaneHash(std::vector<std::shared_ptr<const PlaneTile>> tiles, float cell_m);
 
   void match(const MatchQuery& query, std::span<const Eigen::Vector3f> p_local,

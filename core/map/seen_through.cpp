@@ -5,15 +5,15 @@
 #include <limits>
 #include <vector>
 
-#include "core/map/scan_parts.hpp"
+#include "core/map/scan_decimation.hpp"
 
 namespace isobar {
 
 namespace {
 
-// Rays of scans less than this apart say nearly the same of what they pass [s]: each scan looks through a
-// part of the map.
-constexpr double kIntervalS = 0.3;
+// Interval over which scans share the test of all blocks [s]: the rays of scans so close together pass
+// through nearly the same cells.
+constexpr double kTestIntervalS = 0.3;
 
 }  // namespace
 
@@ -25,8 +25,8 @@ SeenThrough::SeenThrough(const MapConfig& config, const Eigen::Isometry3d& T_bas
       T_lidar_base_(T_base_lidar.inverse()) {}
 
 void SeenThrough::set_scan(const RegisteredScan& scan, double elapsed_s) {
-  ++looks_;
-  parts_ = parts_at(elapsed_s, kIntervalS);
+  ++scan_count_;
+  decimation_ = decimation_factor(elapsed_s, kTestIntervalS);
   free_space_.set_scan(scan, T_lidar_base_);
   p_map_base_ = scan.pose.T_map_base.translation();
   frame_ = LocalFrame(p_map_base_, cell_m_);
@@ -40,11 +40,11 @@ bool SeenThrough::reaches(const TileKey& key) const {
 }
 
 bool SeenThrough::count(const TileKey& key, std::size_t index, MapBlock& block) const {
-  if ((key.hash() + index + looks_) % parts_ != 0) {
+  if ((key.hash() + index + scan_count_) % decimation_ != 0) {
     return false;
   }
   const Eigen::Vector3f centre_local = block_centre_local(frame_, first_cell(key, index));
-  const float block_reach_m = reach_m_ + 0.87F * kBlockCells * cell_m_;  // half a block's diagonal
+  const float block_reach_m = reach_m_ + 0.87F * kBlockCells * cell_m_;  // sqrt(3) / 2: half the diagonal
   return (centre_local - p_local_lidar_).norm() <= block_reach_m && count_cells(centre_local, block);
 }
 
@@ -62,31 +62,31 @@ bool SeenThrough::count_cells(const Eigen::Vector3f& centre_local, MapBlock& blo
           first_centre + offset.cast<float>() * cell_m_ + cell.moments.mean_m(cell_m_);
       p_lidar.set(i, T_lidar_local_ * p_local);
     }
-    any = count_up_to_64(p_lidar, first, count, block) || any;
+    any = count_batch(p_lidar, first, count, block) || any;
   }
   return any;
 }
 
-// `p_lidar`: the means of the `count` cells from `first`.
-bool SeenThrough::count_up_to_64(const FreeSpace::Points& p_lidar, std::size_t first, std::size_t count,
-                                 MapBlock& block) const {
-  constexpr std::uint8_t kMost = std::numeric_limits<std::uint8_t>::max();
-  FreeSpace::Ranges shortest_m;
-  free_space_.shortest_around(p_lidar, count, shortest_m);
+// Tests cells `first` … `first + count - 1` of the block; `p_lidar`: the means of their points.
+bool SeenThrough::count_batch(const FreeSpace::Points& p_lidar, std::size_t first, std::size_t count,
+                              MapBlock& block) const {
+  constexpr std::uint8_t kSaturated = std::numeric_limits<std::uint8_t>::max();
+  FreeSpace::Ranges min_range_m;
+  free_space_.min_ranges(p_lidar, count, min_range_m);
   bool any = false;
   for (std::size_t i = 0; i < count; ++i) {
     MapCell& cell = block.cells()[first + i];
     const Eigen::Vector3f p = p_lidar.at(i);
-    const float beyond_m = shortest_m[i] - margin_m_;
-    // Whatever the normal; most often so.
-    if (cell.seen_through == kMost || !(beyond_m > 0.0F) || p.squaredNorm() > beyond_m * beyond_m) {
+    // Early exit before the plane is looked up: most rays end too close behind the cell for any normal.
+    const float limit_m = min_range_m[i] - margin_m_;
+    if (cell.seen_through == kSaturated || !(limit_m > 0.0F) || p.squaredNorm() > limit_m * limit_m) {
       continue;
     }
     Eigen::Vector3f normal = Eigen::Vector3f::Zero();
     if (const PackedPlane* plane = block.plane_at(cell.slot)) {
       normal = T_lidar_local_.linear() * plane->unit_normal();
     }
-    if (FreeSpace::passes_through(p, normal, shortest_m[i], margin_m_)) {
+    if (FreeSpace::passes_through(p, normal, min_range_m[i], margin_m_)) {
       any = ++cell.seen_through > limit_ || any;
     }
   }

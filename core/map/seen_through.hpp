@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What rays have passed through: doors that opened, people that walked on. Their cells must go.
+// Removal of moved objects: cells that rays pass through, where a door opened or a person walked on.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,27 +14,27 @@
 
 namespace isobar {
 
-/// Counts for the cells of the map the rays of scans that passed them. Of scans that follow each other
-/// closely each looks at a part of the map only, since their rays say nearly the same.
+/// Counts per cell of the map the scans whose rays pass through it (MapCell::seen_through). Scans that follow
+/// each other closely are redundant: each tests a part of the blocks, in turn.
 class SeenThrough {
  public:
   /// `T_base_lidar`: pose of the lidar in base_link; rays start there.
   SeenThrough(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar);
 
-  /// Takes the rays of a scan, `elapsed_s` after the one before.
+  /// Sets the scan whose rays are used. `elapsed_s`: time since the previous scan.
   void set_scan(const RegisteredScan& scan, double elapsed_s);
 
-  /// False where no cell of a tile is near enough to be looked at.
+  /// True if cells of the tile may be within range of the test.
   [[nodiscard]] bool reaches(const TileKey& key) const;
 
-  /// Counts for block `index` of tile `key`, if it is near and its turn. True if one of its cells has been
-  /// seen through more often than the configuration allows.
+  /// Counts for the cells of block `index` (0 … 63) of tile `key`, if it is in range and its turn. Returns
+  /// true if the count of a cell exceeds MapConfig::see_through_limit.
   bool count(const TileKey& key, std::size_t index, MapBlock& block) const;
 
  private:
   bool count_cells(const Eigen::Vector3f& centre_local, MapBlock& block) const;
-  bool count_up_to_64(const FreeSpace::Points& p_lidar, std::size_t first, std::size_t count,
-                      MapBlock& block) const;
+  bool count_batch(const FreeSpace::Points& p_lidar, std::size_t first, std::size_t count,
+                   MapBlock& block) const;
 
   float cell_m_;
   float reach_m_;
@@ -47,8 +47,8 @@ class SeenThrough {
   Eigen::Vector3d p_map_base_ = Eigen::Vector3d::Zero();
   Eigen::Vector3f p_local_lidar_ = Eigen::Vector3f::Zero();
   Eigen::Isometry3f T_lidar_local_ = Eigen::Isometry3f::Identity();
-  std::uint64_t looks_ = 0;
-  std::size_t parts_ = 1;
+  std::uint64_t scan_count_ = 0;
+  std::size_t decimation_ = 1;  // this scan tests every decimation_-th block
 };
 
 }  // namespace isobar

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hands immutable snapshots from one writer to a few readers: no lock, nothing freed by a reader.
+// Lock-free hand-over of immutable snapshots from one writer to a few readers; only the writer frees memory.
 #pragma once
 
 #include <array>
@@ -11,13 +11,14 @@
 
 namespace isobar {
 
-/// Hazard pointers for one value: the writer publishes, each reader pins what it reads, the writer frees what
-/// nobody pins. publish() and the destructor belong to the writer's thread. Each reader thread uses its own
-/// slot. (GCC 12's std::atomic<std::shared_ptr> takes a lock.) After M. M. Michael, "Hazard Pointers", 2004.
+/// Hazard pointers for one value: the writer publishes, each reader pins the snapshot that it reads, the
+/// writer frees snapshots that nobody pins. Constructor, publish() and destructor are called by the writer's
+/// thread; each reader thread has its own slot. GCC 12's std::atomic<std::shared_ptr> would take a lock.
+/// Source: M. M. Michael, "Hazard Pointers", 2004.
 template <typename T, std::size_t kReaders = 2>
 class SnapshotExchange {
  public:
-  /// Holds one snapshot alive while it lives. Get it again for every scan.
+  /// Keeps one snapshot alive. Short-lived: pin anew for every scan.
   class Pin {
    public:
     Pin(const Pin&) = delete;
@@ -33,10 +34,11 @@ class SnapshotExchange {
     std::atomic<const T*>& hazard_;
   };
 
+  /// `first`: not null.
   explicit SnapshotExchange(std::shared_ptr<const T> first)
       : owner_(std::move(first)), current_(owner_.get()) {}
 
-  /// Writer only: makes `next` (not null) the current snapshot and frees older ones that nobody pins.
+  /// Writer only. Makes `next` (not null) the current snapshot and frees older ones that nobody pins.
   void publish(std::shared_ptr<const T> next) {
     if (next == owner_) {
       return;
@@ -47,8 +49,9 @@ class SnapshotExchange {
     std::erase_if(retired_, [this](const auto& old) { return !pinned(old.get()); });
   }
 
-  /// Reader only, one thread and one pin at a time a slot: the newest snapshot. Repeats only when a publish()
-  /// falls between its two loads.
+  /// Reader only. Pins the newest snapshot. `reader`: slot, 0 … kReaders - 1, with one thread and one pin at
+  /// a time. Retries only if a publish() falls between its two loads.
+  /// @throws std::out_of_range when `reader` is no slot
   [[nodiscard]] Pin pin(std::size_t reader = 0) {
     std::atomic<const T*>& hazard = hazards_.at(reader).pointer;
     const T* value = current_.load(std::memory_order_seq_cst);
@@ -62,11 +65,8 @@ class SnapshotExchange {
     }
   }
 
-  /// Writer only: snapshots that wait for a reader to let go.
-  [[nodiscard]] std::size_t retired_count() const { return retired_.size(); }
-
  private:
-  // One cache line each, so that readers do not disturb each other or the writer.
+  // One cache line each: no false sharing between readers and writer.
   struct alignas(64) Hazard {
     std::atomic<const T*> pointer{nullptr};
   };
@@ -81,7 +81,7 @@ class SnapshotExchange {
   }
 
   std::shared_ptr<const T> owner_;
-  std::vector<std::shared_ptr<const T>> retired_;
+  std::vector<std::shared_ptr<const T>> retired_;  // replaced, but still pinned
   alignas(64) std::atomic<const T*> current_;
   std::array<Hazard, kReaders> hazards_;
 };

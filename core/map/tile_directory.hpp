@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds the immutable tiles of a snapshot by their keys.
+// Immutable hash table of the tiles of a snapshot.
 #pragma once
 
 #include <bit>
@@ -12,11 +12,11 @@
 
 namespace isobar {
 
-/// Tiles of type `Tile`, which has a member `key`, in a table with open addressing.
+/// Hash table with open addressing and linear probing. `Tile` has a member `TileKey key`.
 template <typename Tile>
 class TileDirectory {
  public:
-  TileDirectory() = default;
+  /// `tiles`: no null pointers, no key twice.
   explicit TileDirectory(std::vector<std::shared_ptr<const Tile>> tiles) : tiles_(std::move(tiles)) {
     slots_.resize(std::bit_ceil(tiles_.size() * 2 + 1));
     for (const auto& tile : tiles_) {
@@ -28,7 +28,7 @@ class TileDirectory {
     }
   }
 
-  /// Null where there is no such tile.
+  /// Tile of a key; null if there is none.
   [[nodiscard]] const Tile* find(const TileKey& key) const {
     std::size_t slot = key.hash() & (slots_.size() - 1);
     while (slots_[slot].tile != nullptr && slots_[slot].key != key) {
@@ -37,15 +37,13 @@ class TileDirectory {
     return slots_[slot].tile;
   }
 
-  [[nodiscard]] std::size_t size() const { return tiles_.size(); }
-
  private:
   struct Slot {
     TileKey key;
     const Tile* tile = nullptr;
   };
   std::vector<std::shared_ptr<const Tile>> tiles_;
-  std::vector<Slot> slots_ = std::vector<Slot>(1);  // a power of two, at most half full
+  std::vector<Slot> slots_;  // size is a power of two, at most half of the slots are used
 };
 
 }  // namespace isobar

@@ -13,16 +13,16 @@ namespace {
 using ipc::HealthLevel;
 using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
 
-/// A thread comes round at least this often, so that its life can be seen.
-constexpr auto kRound = 250ms;
-/// isobard reports once a second; after this long the bridge says that it does not.
+/// Longest wait of a thread, so that its round counter shows that it is alive.
+constexpr auto kMaxWait = 250ms;
+/// isobard reports its health once a second. After three missed reports the diagnostics say so [ns].
 constexpr std::int64_t kMissingReportNs = 3'000'000'000;
 
 std::int64_t steady_ns() {
   return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
 }
 
-/// For messages that no sample of isobard's gives a time.
+/// Stamp of diagnostics without a health report of isobard to take it from.
 std::int64_t wall_ns() {
   return std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
 }
@@ -77,9 +77,9 @@ std::chrono::nanoseconds Forwarding::silence() const noexcept {
 void Forwarding::note_data() noexcept { last_data_ns_.store(steady_ns(), std::memory_order_relaxed); }
 
 void Forwarding::forward_poses() noexcept {
-  while (pose_waiter_.wait_for(kRound) != ipc::Waiter::Event::kStopped) {
+  while (pose_waiter_.wait_for(kMaxWait) != ipc::Waiter::Event::kStopped) {
     rounds_.fetch_add(1, std::memory_order_relaxed);
-    // Priors first: a pose needs the height that the altimeter had at its time.
+    // Priors first: a pose needs the altimeter's height at its stamp.
     while (const auto prior = prior_in_.take()) {
       note_data();
       if (outputs_.poses) outputs_.poses->on_prior(*prior);
@@ -95,7 +95,7 @@ void Forwarding::forward_poses() noexcept {
   }
 }
 
-void Forwarding::note_received(const ReceivedCounts& counts) noexcept { received_.put(counts); }
+void Forwarding::put_received(const ReceivedCounts& counts) noexcept { received_.put(counts); }
 
 void Forwarding::forward_health() {
   const auto report = health_in_.take_latest();
@@ -105,7 +105,7 @@ void Forwarding::forward_health() {
   last_report_ns_ = steady_ns();
   if (report) {
     note_data();
-    clock_.note(report->stamp_ns);
+    clock_.set_offset_ns(report->robot_clock_offset_ns);
     diagnostics_.start(report->stamp_ns);
     const std::uint32_t count = std::min(report->entry_count, ipc::HealthReport::kMaxEntries);
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -114,7 +114,7 @@ void Forwarding::forward_health() {
     }
   } else {
     diagnostics_.start(wall_ns());
-    diagnostics_.add("bridge/isobard", HealthLevel::kStale, "isobard runs but says nothing", 0.0);
+    diagnostics_.add("bridge/isobard", HealthLevel::kStale, "isobard sends no health report", 0.0);
   }
   add_own_health();
   outputs_.diagnostics.write(diagnostics_.message());
@@ -137,15 +137,16 @@ void Forwarding::add_own_health() {
                                (outputs_.station ? outputs_.station->failures() : 0);
   const ReceivedCounts received = received_.get();
   add_count("bridge/samples_lost", prior_in_.dropped() + pose_in_.dropped() + station_in_.dropped(),
-            "the bridge was too slow for isobard");
-  add_count("bridge/clouds_lost", value(clouds_dropped_), "the bridge was too slow for isobard");
+            "isobar-dds is slower than isobard");
+  add_count("bridge/clouds_lost", value(clouds_dropped_), "isobar-dds is slower than isobard");
   add_count("bridge/messages_unsent", unsent, "a DDS reader is too slow");
   add_count("bridge/clouds_unsent", value(cloud_failures_), "a DDS reader is too slow");
   add_count("bridge/samples_refused",
             prior_in_.rejected() + pose_in_.rejected() + station_in_.rejected() + health_in_.rejected(),
-            "isobard and isobar-dds are of different builds");
-  add_count("bridge/received_implausible", received.refused, "a DDS writer sends values that cannot be");
-  add_count("bridge/received_too_early", received.too_early, "came before isobard was ready for it");
+            "isobard and isobar-dds come from different builds");
+  add_count("bridge/received_implausible", received.refused, "a DDS writer sends implausible values");
+  add_count("bridge/shared_memory_faults", ipc::library_fault_count(), "errors in the iceoryx library");
+  add_count("bridge/received_too_early", received.too_early, "received before isobard could take it");
   add_station_health(received);
 }
 
@@ -163,7 +164,7 @@ void Forwarding::add_station_health(const ReceivedCounts& received) {
 }
 
 void Forwarding::forward_clouds() noexcept {
-  while (clouds_in_->waiter.wait_for(kRound) != ipc::Waiter::Event::kStopped) {
+  while (clouds_in_->waiter.wait_for(kMaxWait) != ipc::Waiter::Event::kStopped) {
     if (const auto scan = clouds_in_->scan.take_latest()) {
       outputs_.clouds->on_scan(*scan);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The bridge at work: what comes through shared memory goes out over DDS.
+// From shared memory to DDS.
 #pragma once
 
 #include <array>
@@ -18,29 +18,29 @@
 
 namespace isobar::bridge {
 
-/// Publishes that isobard does not run. For the time before a Forwarding exists.
+/// Publishes diagnostics that say that isobard is not running. For use before a Forwarding exists.
 void report_absence(Outputs& outputs, dds::DiagnosticsBuilder& builder);
 
-/// Forwards in two threads, so that a cloud of a megabyte never holds up odometry. The process must be
-/// attached to isobard; the outputs are this object's alone as long as it lives.
+/// Forwards poses and clouds in two threads, so that a cloud of 1 MiB never delays odometry. Requires an
+/// Attachment to isobard and exclusive use of the outputs during its lifetime.
 class Forwarding {
  public:
-  /// @throws ServiceError shared memory refuses
+  /// @throws ServiceError when shared memory cannot be used
   Forwarding(Outputs& outputs, const dds::DdsConfig& config);
   ~Forwarding();
   Forwarding(const Forwarding&) = delete;
   Forwarding& operator=(const Forwarding&) = delete;
 
-  /// What came the other way, to be told in the diagnostics. One thread.
-  void note_received(const ReceivedCounts& counts) noexcept;
-  [[nodiscard]] const RobotClock& clock() const noexcept { return clock_; }
-  /// Rounds of the pose thread: it stands still only if that thread hangs.
+  /// Passes on the counts of the opposite direction, for the diagnostics. One thread.
+  void put_received(const ReceivedCounts& counts) noexcept;
+  [[nodiscard]] const IsobardClock& clock() const noexcept { return clock_; }
+  /// Rounds of the pose thread: constant only while that thread hangs.
   [[nodiscard]] std::uint64_t rounds() const noexcept { return rounds_.load(std::memory_order_relaxed); }
   /// Time since the last message of isobard; zero before the first.
   [[nodiscard]] std::chrono::nanoseconds silence() const noexcept;
 
  private:
-  /// Made only if clouds are wanted: isobard makes no map cloud that nobody reads.
+  /// Constructed only when clouds are published: isobard builds map clouds only for a subscriber.
   struct CloudsIn {
     CloudsIn();
     ipc::Subscriber<RegisteredScan> scan;
@@ -53,7 +53,7 @@ class Forwarding {
   void forward_health();
   void add_own_health();
   void add_station_health(const ReceivedCounts& received);
-  /// Adds a line to the diagnostics, and logs it if it is news.
+  /// Adds an entry to the diagnostics, and logs it when its level has changed.
   void add(const std::string& name, ipc::HealthLevel level, const std::string& message, double value);
   void note_data() noexcept;
 
@@ -61,7 +61,7 @@ class Forwarding {
   std::array<std::string, 2> station_topics_;
   ipc::Subscriber<Prior> prior_in_;
   ipc::Subscriber<PoseEstimate> pose_in_;
-  ipc::Subscriber<PressureSample> station_in_;  ///< a base station's own pressure
+  ipc::Subscriber<PressureSample> station_in_;  ///< this base station's own pressure
   ipc::Subscriber<ipc::HealthReport> health_in_;
   ipc::Waiter pose_waiter_;
   std::optional<CloudsIn> clouds_in_;
@@ -73,7 +73,7 @@ class Forwarding {
   SeqLock<ReceivedCounts> received_;
   ReceivedCounts last_received_;  ///< pose thread
   LevelChanges changes_;          ///< pose thread
-  RobotClock clock_;
+  IsobardClock clock_;
   std::int64_t last_report_ns_ = 0;  ///< steady clock; pose thread
   std::thread pose_thread_;
   std::thread cloud_thread_;

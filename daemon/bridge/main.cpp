@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // isobar-dds: the bridge between isobard's shared memory and DDS.
 //
-// It is a process of its own, so that no fault in a network parser reaches the estimator. It waits for
-// isobard as long as it takes; when isobard goes, it starts itself over, because a process cannot attach to
-// shared memory twice.
-#include <spdlog/sinks/stdout_sinks.h>
+// A process of its own, so that a fault in a network parser cannot reach the estimator. Waits for isobard
+// without limit. Restarts itself in place when isobard ends, because a process can attach to shared memory
+// only once.
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
@@ -19,6 +18,8 @@
 #include "daemon/bridge/process.hpp"
 #include "daemon/bridge/receiving.hpp"
 #include "daemon/bridge/settings.hpp"
+#include "daemon/logging.hpp"
+#include "daemon/service.hpp"
 #include "ipc/dds/discovery.hpp"
 #include "ipc/dds/participant.hpp"
 #include "ipc/shared_memory.hpp"
@@ -28,15 +29,17 @@ namespace {
 
 using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
 
-/// isobard sends hundreds of priors a second and its health every second. After this long without anything
-/// the way through shared memory is broken (this process was stopped for so long that it was given up, say).
+/// Longest wait for isobard in one round of the supervise loop; stop signals are seen between two rounds.
+constexpr auto kAttachTimeout = 400ms;
+/// isobard sends hundreds of priors a second and its health once a second. After this silence the shared
+/// memory no longer reaches this process, for instance because iceoryx unregistered it while it was stopped.
 constexpr auto kMaxSilence = 5s;
-/// Joining takes milliseconds. An isobard that ends in the middle of it leaves the library waiting.
-constexpr auto kJoiningLimit = 10s;
-/// Leaving takes less than a second, but for the same fault.
-constexpr auto kLeavingLimit = 4s;
+/// Attaching takes milliseconds, but blocks for ever when isobard ends in the middle of it.
+constexpr auto kAttachLimit = 10s;
+/// Detaching takes less than a second, but blocks for ever when isobard hangs.
+constexpr auto kDetachLimit = 4s;
 
-/// Everything on the DDS side.
+/// The DDS side.
 struct Network {
   dds::Participant participant;
   Outputs outputs;
@@ -49,91 +52,109 @@ struct Network {
     announce(settings, {});
   }
 
-  /// Tells ROS 2 tools what belongs to this node.
+  /// Publishes which writers and readers belong to this ROS 2 node.
   void announce(const Settings& settings, const std::vector<dds_entity_t>& readers) {
     announcement.announce(settings.dds.ros_namespace, settings.dds.node_name, outputs.writers(), readers);
   }
 };
 
-/// Null when the program was told to end meanwhile.
-std::unique_ptr<ipc::Attachment> wait_for_isobard(Network& network, const Settings& settings,
-                                                  StopSignals& signals, const ServiceManager& manager) {
-  dds::DiagnosticsBuilder builder(settings.dds.node_name);
-  for (bool told = false; !signals.wait_for(0ms);) {
-    manager.alive();
-    limit_time(kJoiningLimit, &replace_process);
-    try {
-      return std::make_unique<ipc::Attachment>("isobar-dds", manager.interval());
-    } catch (const ServiceError& error) {
-      if (!told) {
-        spdlog::info("{}; waiting for it", error.what());
-        manager.status("waiting for isobard");
-        told = true;
-      }
-      report_absence(network.outputs, builder);
-    }
+/// The shared-memory side and both directions of forwarding, from attaching to isobard until the end.
+class Connection {
+ public:
+  Connection(std::unique_ptr<ipc::Attachment> attachment, Network& network, const Settings& settings)
+      : attachment_(std::move(attachment)),
+        network_(network),
+        forwarding_(network.outputs, settings.dds),
+        receiving_(network.participant.get(), settings, forwarding_.clock()),
+        watches_for_network_(settings.dds.network_interface.empty() &&
+                             !network.participant.network_interface().empty()) {
+    network.announce(settings, receiving_.readers());
   }
-  lift_time_limit();
-  return nullptr;
-}
 
-/// Why the bridge has to start over, if it has to.
-std::optional<std::string> reason_to_restart(const ipc::Attachment& attachment, const Forwarding& forwarding,
-                                             bool on_lonely_loopback) {
-  if (!attachment.broker_alive()) {
-    return "isobard has gone";
-  }
-  if (forwarding.silence() > kMaxSilence) {
-    return "isobard has been silent for " + std::to_string(kMaxSilence.count()) + " s";
-  }
-  if (on_lonely_loopback && dds::loopback_if_alone().empty()) {
-    return "a network has come up";
-  }
-  return std::nullopt;
-}
-
-/// Returns when told to end; starts over when it must.
-void forward(Network& network, const Settings& settings, const ipc::Attachment& attachment,
-             StopSignals& signals, const ServiceManager& manager) {
-  limit_time(kJoiningLimit, &replace_process);
-  Forwarding forwarding(network.outputs, settings.dds);
-  const Receiving receiving(network.participant.get(), settings, forwarding.clock());
-  lift_time_limit();
-  network.announce(settings, receiving.readers());
-  manager.status("forwarding");
-  spdlog::info("attached to isobard");
-  const bool on_lonely_loopback =
-      settings.dds.network_interface.empty() && !network.participant.network_interface().empty();
-  std::uint64_t rounds = 0;
-  while (!signals.wait_for(manager.interval())) {
-    if (forwarding.rounds() != rounds) {
-      rounds = forwarding.rounds();
-      manager.alive();
-    }
-    forwarding.note_received(receiving.counts());
-    if (const auto reason = reason_to_restart(attachment, forwarding, on_lonely_loopback)) {
-      spdlog::warn("{}; starting over", *reason);
-      // The readers learn that this participant ends. Nothing of shared memory is cleaned up: with isobard
-      // gone it cannot be, and the new program starts without it.
-      dds_delete(network.participant.get());
+  /// One round of the supervise loop. Restarts the process when the connection has become useless.
+  /// @return true when the pose thread has completed a round since the last call
+  bool check() {
+    forwarding_.put_received(receiving_.counts());
+    if (const auto reason = reason_to_restart()) {
+      spdlog::warn("{}; restarting", *reason);
+      // Remote readers learn that this participant ends. Shared memory is left as it is: without isobard it
+      // cannot be detached from, and the restarted program does not need it.
+      dds_delete(network_.participant.get());
       replace_process();
     }
+    const std::uint64_t rounds_before = rounds_;
+    rounds_ = forwarding_.rounds();
+    return rounds_ != rounds_before;
   }
-  limit_time(kLeavingLimit, &end_process);  // never lifted: the library takes its leave after main()
-}
+
+ private:
+  [[nodiscard]] std::optional<std::string> reason_to_restart() const {
+    if (!attachment_->broker_alive()) return "isobard has ended";
+    if (forwarding_.silence() > kMaxSilence) {
+      return "no message from isobard for " + std::to_string(kMaxSilence.count()) + " s";
+    }
+    if (watches_for_network_ && dds::loopback_if_alone().empty()) return "a network interface is up";
+    return std::nullopt;
+  }
+
+  std::unique_ptr<ipc::Attachment> attachment_;
+  Network& network_;
+  Forwarding forwarding_;
+  const Receiving receiving_;
+  bool watches_for_network_;  ///< loopback was chosen, as no other interface was up
+  std::uint64_t rounds_ = 0;
+};
+
+/// Attaches to isobard, and publishes its absence in the diagnostics until it runs.
+class Connector {
+ public:
+  Connector(Outputs& outputs, const std::string& node_name) : outputs_(outputs), builder_(node_name) {}
+
+  /// Waits kAttachTimeout for isobard.
+  /// @return null while isobard does not run
+  std::unique_ptr<ipc::Attachment> attach(Service& service) {
+    try {
+      return std::make_unique<ipc::Attachment>("isobar-dds", kAttachTimeout);
+    } catch (const ServiceError& error) {
+      if (!logged_) {
+        spdlog::info("{}; waiting for it", error.what());
+        service.set_status("waiting for isobard");
+        logged_ = true;
+      }
+      report_absence(outputs_, builder_);
+      return nullptr;
+    }
+  }
+
+ private:
+  Outputs& outputs_;
+  dds::DiagnosticsBuilder builder_;
+  bool logged_ = false;
+};
 
 int run(const Settings& settings) {
-  StopSignals signals;
-  const ServiceManager manager;
+  Service service;  // first, so that every thread inherits the blocked signals
   ipc::set_fatal_action(&replace_process_later);
   Network network(settings);
   const std::string& interface = network.participant.network_interface();
   spdlog::info("DDS domain {} on {}", settings.dds.domain_id, interface.empty() ? "the network" : interface);
-  manager.ready("DDS is up");
-  if (const auto attachment = wait_for_isobard(network, settings, signals, manager)) {
-    forward(network, settings, *attachment, signals, manager);
-  }
-  manager.stopping();
+  service.ready("DDS is up");
+  Connector connector(network.outputs, settings.dds.node_name);
+  std::optional<Connection> connection;
+  service.supervise([&] {
+    if (connection) return connection->check();
+    set_time_limit(kAttachLimit, &replace_process);
+    if (auto attachment = connector.attach(service)) {
+      connection.emplace(std::move(attachment), network, settings);
+      service.set_status("forwarding");
+      spdlog::info("attached to isobard");
+    }
+    clear_time_limit();
+    return true;
+  });
+  // Never cleared: the library detaches only after main() has returned.
+  if (connection) set_time_limit(kDetachLimit, &end_process);
+  connection.reset();
   spdlog::info("stopped");
   return 0;
 }
@@ -143,9 +164,8 @@ int run(const Settings& settings) {
 
 int main(int argc, char** argv) {
   isobar::bridge::remember_arguments(argv);
-  spdlog::set_default_logger(spdlog::stderr_logger_mt("isobar-dds"));
-  spdlog::set_pattern("%n: %l: %v");
-  CLI::App app("isobar-dds: publishes what isobard estimates over DDS, as ROS 2 nodes understand it");
+  isobar::set_up_logging("isobar-dds");
+  CLI::App app("isobar-dds: publishes isobard's estimates over DDS, as a ROS 2 node");
   isobar::bridge::Options options;
   isobar::bridge::add_options(app, options);
   try {
@@ -159,7 +179,7 @@ int main(int argc, char** argv) {
     spdlog::error("{}", error.what());
     return error.exit_code();
   } catch (const std::exception& error) {
-    spdlog::error("{}", error.what());
+    spdlog::error("unexpected: {}", error.what());
     return 70;
   }
 }

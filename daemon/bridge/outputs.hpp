@@ -9,15 +9,15 @@
 
 namespace isobar::bridge {
 
-/// Everything that this machine says over DDS: a robot where it is, a base station its pressure, both how
-/// they are.
+/// All DDS writers of this machine: pose and clouds on a robot, pressure on a base station, diagnostics on
+/// both.
 struct Outputs {
   dds::Writer<dds::DiagnosticsMessage> diagnostics;
-  std::optional<dds::PoseOutputs> poses;       ///< a robot's
-  std::optional<dds::CloudOutputs> clouds;     ///< a robot's, where they are wanted
-  std::optional<dds::StationOutputs> station;  ///< a base station's
+  std::optional<dds::PoseOutputs> poses;       ///< robot only
+  std::optional<dds::CloudOutputs> clouds;     ///< robot only, with dds.publish_clouds
+  std::optional<dds::StationOutputs> station;  ///< base station only
 
-  /// @throws ServiceError DDS refuses
+  /// @throws ServiceError when a DDS entity cannot be created
   Outputs(dds_entity_t participant, const Settings& settings)
       : diagnostics(participant, dds::topics::kDiagnostics) {
     if (settings.is_base_station) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/bridge/receiving.hpp"
 
-#include <algorithm>
 #include <chrono>
 
 #include "ipc/dds/samples.hpp"
@@ -22,17 +21,11 @@ void add_reader(const std::optional<Stream>& stream, std::vector<dds_entity_t>& 
 
 }  // namespace
 
-void RobotClock::note(std::int64_t stamp_ns) noexcept {
-  const std::int64_t bound_ns = stamp_ns - monotonic_ns();
-  const std::int64_t known_ns = offset_ns_.load(std::memory_order_relaxed);
-  offset_ns_.store(std::max(bound_ns, known_ns), std::memory_order_relaxed);
-}
-
-std::int64_t RobotClock::now_ns() const noexcept {
+std::int64_t IsobardClock::now_ns() const noexcept {
   return monotonic_ns() + offset_ns_.load(std::memory_order_relaxed);
 }
 
-Receiving::Receiving(dds_entity_t participant, const Settings& settings, const RobotClock& clock)
+Receiving::Receiving(dds_entity_t participant, const Settings& settings, const IsobardClock& clock)
     : clock_(clock) {
   const dds::DdsConfig& config = settings.dds;
   const auto open = [&](auto& stream, const auto& from, const auto& to) {
@@ -49,8 +42,8 @@ Receiving::Receiving(dds_entity_t participant, const Settings& settings, const R
     open(imu_, dds::topics::kImu, ipc::topics::kImu);
     open(wheel_, dds::topics::kWheel, ipc::topics::kWheel);
   }
-  waitset_ = dds::checked(dds_create_waitset(participant), "no wait set");
-  stop_ = dds::checked(dds_create_guardcondition(participant), "no guard condition");
+  waitset_ = dds::checked(dds_create_waitset(participant), "wait set");
+  stop_ = dds::checked(dds_create_guardcondition(participant), "guard condition");
   dds_waitset_attach(waitset_.get(), stop_.get(), 0);
   const auto attach = [this](const auto& stream) {
     if (!stream) {
@@ -84,12 +77,8 @@ std::vector<dds_entity_t> Receiving::readers() const {
 }
 
 ReceivedCounts Receiving::counts() const noexcept {
-  return {samples_.load(std::memory_order_relaxed),
-          refused_.load(std::memory_order_relaxed),
-          too_early_.load(std::memory_order_relaxed),
-          station_status_.get(),
-          stations_.size(),
-          clock_.now_ns()};
+  return {refused_.load(std::memory_order_relaxed), too_early_.load(std::memory_order_relaxed),
+          station_status_.get(), stations_.size(), clock_.now_ns()};
 }
 
 template <class Message, class Sample>
@@ -107,11 +96,10 @@ void Receiving::forward(std::optional<Stream<Message, Sample>>& stream) {
       too_early_.fetch_add(1, std::memory_order_relaxed);
       return;
     }
-    // Other machines have other clocks; nodes of this one run on the wall clock, which may jump.
+    // The sender's clock is that of another machine, or this machine's wall clock, which can step.
     static_cast<void>(stream->anchor.add(sample.stamp_ns, clock_.now_ns()));
     sample.stamp_ns = stream->anchor.to_host_ns(stream->anchor.device_unwrapped_ns());
-    auto& count = stream->publisher.send(sample) ? samples_ : too_early_;
-    count.fetch_add(1, std::memory_order_relaxed);
+    if (!stream->publisher.send(sample)) too_early_.fetch_add(1, std::memory_order_relaxed);
   });
 }
 
@@ -121,9 +109,9 @@ void Receiving::forward_stations() {
     if (clock_.known()) {
       refused_.fetch_add(stations_[i]->take(clock_.now_ns(),
                                             [this](const PressureSample& sample) {
-                                              auto& count =
-                                                  base_pressure_->send(sample) ? samples_ : too_early_;
-                                              count.fetch_add(1, std::memory_order_relaxed);
+                                              if (!base_pressure_->send(sample)) {
+                                                too_early_.fetch_add(1, std::memory_order_relaxed);
+                                              }
                                             }),
                          std::memory_order_relaxed);
     } else {

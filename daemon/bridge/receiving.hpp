@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way in: what ROS 2 nodes and base stations measure goes to isobard through shared memory.
+// From DDS to shared memory: samples of ROS 2 nodes and base stations, for isobard.
 #pragma once
 
 #include <array>
@@ -20,14 +20,16 @@
 
 namespace isobar::bridge {
 
-/// isobard's clock: the monotonic clock and an offset that only isobard knows and that never changes while it
-/// lives. Every stamp that it gives out bounds the offset from below; the largest bound is late by the
-/// fastest way through shared memory, a tenth of a millisecond. Any thread.
-class RobotClock {
+/// The robot clock of isobard, read from this process: CLOCK_MONOTONIC plus the offset in isobard's health
+/// report. Any thread.
+class IsobardClock {
  public:
-  /// isobard said at this moment that it is `stamp_ns`. One thread.
-  void note(std::int64_t stamp_ns) noexcept;
+  /// @param offset_ns HealthReport::robot_clock_offset_ns
+  void set_offset_ns(std::int64_t offset_ns) noexcept {
+    offset_ns_.store(offset_ns, std::memory_order_relaxed);
+  }
   [[nodiscard]] bool known() const noexcept { return offset_ns_.load(std::memory_order_relaxed) != kUnknown; }
+  /// Meaningless before known().
   [[nodiscard]] std::int64_t now_ns() const noexcept;
 
  private:
@@ -35,22 +37,21 @@ class RobotClock {
   std::atomic<std::int64_t> offset_ns_{kUnknown};
 };
 
-/// What came in, for the diagnostics.
+/// Counts of received messages, for the diagnostics.
 struct ReceivedCounts {
-  std::uint64_t samples = 0;
-  std::uint64_t refused = 0;    ///< implausible
-  std::uint64_t too_early = 0;  ///< before isobard's clock was known, or without room in shared memory
-  /// The base stations that are listened to, [0 … station_count-1].
+  std::uint64_t refused = 0;  ///< implausible
+  std::uint64_t too_early = 0;  ///< no clock of isobard yet, or no free chunk in shared memory
+  /// Base stations with readers, [0 … station_count-1].
   std::array<BaseStationStatus, 2> stations;
   std::size_t station_count = 0;
-  std::int64_t taken_ns = 0;  ///< robot clock, when this was true
+  std::int64_t taken_ns = 0;  ///< when the counts were taken, robot clock
 };
 
-/// Readers of the topics that the configuration asks for, and one thread that hands on what they get.
+/// Readers of the configured topics, and the thread that forwards their samples.
 class Receiving {
  public:
-  /// @throws ServiceError DDS or shared memory refuses
-  Receiving(dds_entity_t participant, const Settings& settings, const RobotClock& clock);
+  /// @throws ServiceError when a DDS entity cannot be created
+  Receiving(dds_entity_t participant, const Settings& settings, const IsobardClock& clock);
   ~Receiving();
   Receiving(const Receiving&) = delete;
   Receiving& operator=(const Receiving&) = delete;
@@ -59,7 +60,8 @@ class Receiving {
   [[nodiscard]] std::vector<dds_entity_t> readers() const;
 
  private:
-  /// One topic's way: from the sender's clock to the robot's, from DDS to shared memory.
+  /// Path of one topic: DDS reader, mapping of the sender's clock to the robot clock, shared-memory
+  /// publisher.
   template <class Message, class Sample>
   struct Stream {
     dds::Reader<Message> reader;
@@ -76,14 +78,13 @@ class Receiving {
   void forward_stations();
   void loop() noexcept;
 
-  const RobotClock& clock_;
+  const IsobardClock& clock_;
   std::vector<std::unique_ptr<StationInput>> stations_;
   std::optional<ipc::Publisher<PressureSample>> base_pressure_;
   std::optional<Stream<dds::ImuMessage, ImuSample>> imu_;
   std::optional<Stream<dds::OdometryMessage, WheelSample>> wheel_;
   dds::Entity waitset_;
   dds::Entity stop_;
-  std::atomic<std::uint64_t> samples_{0};
   std::atomic<std::uint64_t> refused_{0};
   std::atomic<std::uint64_t> too_early_{0};
   SeqLock<std::array<BaseStationStatus, 2>> station_status_;

@@ -9,11 +9,13 @@
 namespace isobar::bridge {
 
 void add_options(CLI::App& app, Options& options) {
-  app.add_option("--config", options.config_file, "configuration of isobard; its section [dds] is used")
+  app.add_option(
+         "--config", options.config_file,
+         "configuration file of isobard, of which the bridge uses section [dds], role and sensor mounts")
       ->type_name("FILE");
-  app.add_option("--domain", options.domain, "DDS domain, as ROS_DOMAIN_ID (0 to 232)")->type_name("N");
-  app.add_option("--interface", options.network_interface,
-                 "network interface to speak on, by name or address")
+  app.add_option("--domain", options.domain, "DDS domain, the ROS_DOMAIN_ID of the ROS 2 nodes (0 to 232)")
+      ->type_name("N");
+  app.add_option("--interface", options.network_interface, "network interface, by name or address")
       ->type_name("NAME");
 }
 

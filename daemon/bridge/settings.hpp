@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the bridge is told: by its command line, which wins, and by the configuration file.
+// Settings of the bridge: the configuration file, overridden by the command line.
 #pragma once
 
 #include <optional>
@@ -28,7 +28,7 @@ struct Settings {
 
 void add_options(CLI::App& app, Options& options);
 
-/// @throws ConfigError the file or the command line breaks a rule
+/// @throws ConfigError when the file or an option on the command line breaks a rule
 [[nodiscard]] Settings load_settings(const Options& options);
 
 }  // namespace isobar::bridge

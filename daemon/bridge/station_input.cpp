@@ -7,7 +7,8 @@
 namespace isobar::bridge {
 namespace {
 
-/// The temperature of a sensor changes by less than 0.1 K meanwhile [ns].
+/// Largest difference of stamps for which a temperature still applies to a pressure [ns]. A sensor's
+/// temperature changes by less than 0.1 K in it.
 constexpr std::int64_t kSameTimeNs = 2'000'000'000;
 
 struct EndpointDeleter {

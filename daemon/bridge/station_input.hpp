@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One base station's way in: from its DDS writers and its clock to isobard and the robot's clock.
+// DDS readers of one base station, with its samples mapped to the robot clock.
 #pragma once
 
 #include <array>
@@ -13,13 +13,13 @@
 
 namespace isobar::bridge {
 
-/// The temperatures that came last, to be put beside the pressures of the same sensor.
+/// The newest temperatures, to be matched with pressures of the same sensor.
 class Temperatures {
  public:
-  /// @param source whatever tells base stations apart
+  /// @param source identifier of the base station
   void add(std::uint64_t source, const dds::TemperatureSample& sample) noexcept;
-  /// The one of this source with the stamp nearest to `stamp_ns`, which a base station's own has exactly; NaN
-  /// where there is none within two seconds.
+  /// Temperature of this source with the stamp nearest to `stamp_ns` [degrees C]; NaN: none within 2 s.
+  /// A base station's isobar-dds sends both with the same stamp.
   [[nodiscard]] double at(std::uint64_t source, std::int64_t stamp_ns) const noexcept;
 
  private:
@@ -34,14 +34,14 @@ class Temperatures {
 /// Readers of NAME/fluid_pressure and NAME/temperature. One thread.
 class StationInput {
  public:
-  /// @param station 0 the first, 1 the second
-  /// @throws ServiceError DDS refuses
+  /// @param station index: 0 first, 1 second base station
+  /// @throws ServiceError when a DDS entity cannot be created
   StationInput(dds_entity_t participant, const std::string& name, std::uint8_t station);
 
-  /// Takes what has come.
+  /// Takes all waiting messages.
   /// @param now_ns robot clock
-  /// @param hand_on called with every good PressureSample, on the robot's clock
-  /// @return messages that are implausible
+  /// @param hand_on called with each accepted PressureSample, stamp on the robot clock
+  /// @return number of implausible messages
   template <class HandOn>
   std::uint64_t take(std::int64_t now_ns, const HandOn& hand_on) {
     std::uint64_t refused = 0;
@@ -61,17 +61,17 @@ class StationInput {
     return refused;
   }
 
-  /// Throws away what has come, while nothing can be done with it.
-  /// @return how many messages
+  /// Discards all waiting messages.
+  /// @return number of pressure messages
   std::uint64_t drop();
 
-  /// The reader that wakes the thread: a temperature is of no use without its pressure.
+  /// The reader to wait on: a temperature is used only with its pressure.
   [[nodiscard]] dds_entity_t pressure_reader() const noexcept { return pressure_.get(); }
   [[nodiscard]] dds_entity_t temperature_reader() const noexcept { return temperature_.get(); }
   [[nodiscard]] BaseStationStatus status() const noexcept { return stream_.status(); }
 
  private:
-  /// The participant of the writer that was asked for last.
+  /// Cached participant of a writer.
   struct Source {
     dds_instance_handle_t writer = 0;
     std::uint64_t participant = 0;
@@ -79,7 +79,8 @@ class StationInput {
 
   std::uint64_t take_temperatures();
   void note_departures() noexcept;
-  /// Tells whose temperature belongs to whose pressure: both writers of a base are in one participant.
+  /// The DDS participant of a writer. It links temperature and pressure of a base station, whose two writers
+  /// belong to one participant.
   [[nodiscard]] static std::uint64_t source_of(dds_entity_t reader, dds_instance_handle_t writer,
                                                Source& last) noexcept;
 

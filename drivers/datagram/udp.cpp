@@ -96,6 +96,8 @@ Ancillary read_ancillary(msghdr& message) {
 
 std::int64_t RobotClock::now_ns() { return read_clock(CLOCK_MONOTONIC) + wall_offset_at_start(); }
 
+std::int64_t RobotClock::offset_ns() { return wall_offset_at_start(); }
+
 std::int64_t RobotClock::from_realtime_ns(std::int64_t realtime_ns) {
   const std::int64_t age_ns = read_clock(CLOCK_REALTIME) - realtime_ns;
   const bool believable = age_ns >= 0 && age_ns <= kMaxAgeNs;

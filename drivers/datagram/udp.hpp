@@ -25,6 +25,8 @@ struct ReceivedDatagram {
 class RobotClock {
  public:
   static std::int64_t now_ns();
+  /// Robot clock minus CLOCK_MONOTONIC, constant for the life of the process [ns].
+  static std::int64_t offset_ns();
   /// Takes a wall-clock reading made a moment ago to the robot clock.
   static std::int64_t from_realtime_ns(std::int64_t realtime_ns);
 };

@@ -12,7 +12,7 @@
 namespace isobar::dds {
 namespace {
 
-/// The two sizes of the message are two generated types with the same members.
+/// The message exists with identifiers of 16 and 24 bytes, as two generated types with the same members.
 struct Wide {
   using Info = rmw_dds_common_msg_dds__ParticipantEntitiesInfo_;
   using Node = rmw_dds_common_msg_dds__NodeEntitiesInfo_;
@@ -36,7 +36,7 @@ template <class Gid>
 Gid gid_of(dds_entity_t entity) {
   dds_guid_t guid{};
   if (dds_get_guid(entity, &guid) != DDS_RETCODE_OK) {
-    throw ServiceError("DDS: an entity has no id");
+    throw ServiceError("DDS: an entity has no GUID");
   }
   Gid gid{};
   static_assert(sizeof(gid.data) >= sizeof(guid.v));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tells ROS 2 tools which node the writers and readers of this participant belong to.
+// ROS 2 discovery: which node the writers and readers of this participant belong to.
 #pragma once
 
 #include <dds/dds.h>
@@ -12,25 +12,25 @@
 
 namespace isobar::dds {
 
-/// The node of one participant on the topic ros_discovery_info. Latched: lives as long as this.
+/// The node of one participant, on the latched topic ros_discovery_info. Ends with this object.
 class NodeAnnouncement {
  public:
   /// @param gid_bytes 16 or 24, see DdsConfig::ros_gid_bytes
-  /// @throws ServiceError DDS refuses
+  /// @throws ServiceError when a DDS entity cannot be created
   NodeAnnouncement(dds_entity_t participant, int gid_bytes);
   ~NodeAnnouncement();
   NodeAnnouncement(const NodeAnnouncement&) = delete;
   NodeAnnouncement& operator=(const NodeAnnouncement&) = delete;
 
-  /// @param ros_namespace "" or "robot1"
-  /// @throws ServiceError DDS refuses
+  /// @param ros_namespace such as "robot1"; empty: none
+  /// @throws ServiceError when the message cannot be written
   void announce(const std::string& ros_namespace, const std::string& node_name,
                 const std::vector<dds_entity_t>& writers, const std::vector<dds_entity_t>& readers);
 
  private:
   dds_entity_t participant_;
   int gid_bytes_;
-  dds_topic_descriptor_t descriptor_;  // Cyclone keeps a pointer to it while the topic lives
+  dds_topic_descriptor_t descriptor_;  // Cyclone DDS keeps a pointer to it as long as the topic exists
   Entity topic_;
   Entity writer_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One writer or one reader of one topic.
+// Writer and reader of a DDS topic.
 #pragma once
 
 #include <algorithm>
@@ -13,20 +13,27 @@
 
 namespace isobar::dds {
 
+/// @throws ServiceError when the topic cannot be created
+template <class Message>
+[[nodiscard]] Entity make_topic(dds_entity_t participant, const DdsTopic<Message>& topic,
+                                const std::string& name) {
+  return checked(dds_create_topic(participant, topic.descriptor, name.c_str(), nullptr, nullptr),
+                 "topic " + name);
+}
+
 /// Writes a topic. One thread at a time.
 template <class Message>
 class Writer {
  public:
-  /// @throws ServiceError DDS refuses
+  /// @throws ServiceError when the topic or the writer cannot be created
   Writer(dds_entity_t participant, const DdsTopic<Message>& topic, const std::string& ros_namespace = {}) {
     const std::string name = dds_name(topic, ros_namespace);
-    topic_ = checked(dds_create_topic(participant, topic.descriptor, name.c_str(), nullptr, nullptr),
-                     "topic " + name);
     const QosPointer qos = endpoint_qos(topic.delivery, topic.depth);
+    topic_ = make_topic(participant, topic, name);
     writer_ = checked(dds_create_writer(participant, topic_.get(), qos.get(), nullptr), "writer of " + name);
   }
 
-  /// False when it could not be sent, which is counted: somebody reads too slowly.
+  /// @return false when a slow reader blocked the writer for too long; counted in failures()
   bool write(const Message& message) noexcept {
     if (dds_write(writer_.get(), &message) == DDS_RETCODE_OK) {
       return true;
@@ -37,7 +44,7 @@ class Writer {
   [[nodiscard]] std::uint64_t failures() const noexcept { return failures_; }
   [[nodiscard]] dds_entity_t get() const noexcept { return writer_.get(); }
 
-  /// Does anybody listen? Latched topics are worth writing even if not.
+  /// Whether a reader is matched. Write latched topics in any case.
   [[nodiscard]] bool has_readers() const noexcept {
     dds_publication_matched_status_t status{};
     return dds_get_publication_matched_status(writer_.get(), &status) == DDS_RETCODE_OK &&
@@ -54,18 +61,17 @@ class Writer {
 template <class Message>
 class Reader {
  public:
-  /// @throws ServiceError DDS refuses
+  /// @throws ServiceError when the topic or the reader cannot be created
   Reader(dds_entity_t participant, const DdsTopic<Message>& topic, const std::string& ros_namespace = {}) {
     const std::string name = dds_name(topic, ros_namespace);
-    topic_ = checked(dds_create_topic(participant, topic.descriptor, name.c_str(), nullptr, nullptr),
-                     "topic " + name);
     const QosPointer qos = endpoint_qos(topic.delivery, topic.depth);
+    topic_ = make_topic(participant, topic, name);
     reader_ = checked(dds_create_reader(participant, topic_.get(), qos.get(), nullptr), "reader of " + name);
   }
 
-  /// Hands every waiting message to `use(const Message&)`, or to `use(const Message&, sender)` with the
-  /// instance handle of its writer; they are valid during the call only.
-  /// @return how many there were
+  /// Takes every waiting message and calls `use(const Message&)`, or `use(const Message&, writer)` with the
+  /// instance handle of its writer. A message is valid during its call only.
+  /// @return number of messages
   template <class Use>
   int take(Use&& use) {
     int used = 0;
@@ -89,7 +95,7 @@ class Reader {
   }
   [[nodiscard]] dds_entity_t get() const noexcept { return reader_.get(); }
 
-  /// Is this writer still there, for all that is known? True while there are more than some dozens.
+  /// Whether this writer is still matched. Always true when more than 64 writers are matched.
   [[nodiscard]] bool is_matched(dds_instance_handle_t writer) const noexcept {
     std::array<dds_instance_handle_t, 64> writers{};
     const dds_return_t count = dds_get_matched_publications(reader_.get(), writers.data(), writers.size());

@@ -12,11 +12,12 @@ namespace {
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 
-// sensor_msgs/PointField's numbers of the types
+// Type numbers of sensor_msgs/PointField
 constexpr std::uint8_t kUint8 = 2;
 constexpr std::uint8_t kFloat32 = 7;
 
-static_assert(std::endian::native == std::endian::little, "points are sent as they are in memory");
+static_assert(std::endian::native == std::endian::little,
+              "points are sent as their bytes in memory, declared little endian");
 
 void fill_vector(const Eigen::Vector3d& vector, geometry_msgs_msg_dds__Vector3_& message) noexcept {
   message.x = vector.x();
@@ -40,7 +41,7 @@ void fill_pose_of(const Eigen::Isometry3d& T, geometry_msgs_msg_dds__Pose_& mess
   fill_rotation(T, message.orientation);
 }
 
-/// ROS wants the rows one after the other, in the order of Matrix6d's variables.
+/// Row-major, as ROS defines it; Matrix6d has the same order of variables.
 void fill_covariance(const Matrix6d& covariance, double (&message)[36]) noexcept {  // NOLINT
   for (int row = 0; row < 6; ++row) {
     for (int column = 0; column < 6; ++column) {
@@ -122,7 +123,7 @@ const CloudMessage& CloudBuilder::build(std::int64_t stamp_ns, const std::string
   message_.width = count;
   message_.row_step = count * message_.point_step;
   message_.data._length = message_.data._maximum = message_.row_step;
-  // Cyclone only reads what it writes, so that the points need not be copied first.
+  // Cyclone DDS only reads the data of a message that it writes.
   message_.data._buffer = const_cast<std::uint8_t*>(reinterpret_cast<const std::uint8_t*>(points));  // NOLINT
   return message_;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Isobar's values in ROS 2's messages. Texts in the messages point to what the caller keeps alive.
+// Conversion of Isobar's values to ROS 2 messages. Texts in the messages point into the arguments, which must
+// outlive them.
 #pragma once
 
 #include <array>
@@ -19,11 +20,12 @@ using HeaderMessage = std_msgs_msg_dds__Header_;
 using TransformStampedMessage = geometry_msgs_msg_dds__TransformStamped_;
 using PointFieldMessage = sensor_msgs_msg_dds__PointField_;
 
-/// The generated C types want a pointer to characters that may change; nothing here changes them.
+/// A text as the generated C types declare it, char*. Nothing writes through the pointer.
 [[nodiscard]] inline char* text(const char* value) noexcept { return const_cast<char*>(value); }
 [[nodiscard]] inline char* text(const std::string& value) noexcept { return text(value.c_str()); }
 
-/// Nanoseconds since the epoch, before it too: ROS counts the nanoseconds upwards from the second below.
+/// ROS time of a stamp since the epoch, possibly negative: seconds are rounded down, nanoseconds are 0 …
+/// 999999999.
 [[nodiscard]] TimeMessage to_time(std::int64_t stamp_ns) noexcept;
 [[nodiscard]] std::int64_t to_stamp_ns(const TimeMessage& time) noexcept;
 
@@ -34,7 +36,7 @@ void fill_altitude(const Prior& prior, const DdsConfig& names, AltitudeMessage& 
 void fill_transform(std::int64_t stamp_ns, const std::string& parent, const std::string& child,
                     const Eigen::Isometry3d& T_parent_child, TransformStampedMessage& message) noexcept;
 
-/// Builds PointCloud2 messages over points that stay where they are: a ScanPoint is sent as its 16 bytes.
+/// Builds PointCloud2 messages without copying the points: each ScanPoint is sent as its 16 bytes in memory.
 /// Fields: x, y, z (float32, metres), intensity (uint8) and, for scans, ring (uint8).
 class CloudBuilder {
  public:
@@ -42,7 +44,7 @@ class CloudBuilder {
   CloudBuilder(const CloudBuilder&) = delete;
   CloudBuilder& operator=(const CloudBuilder&) = delete;
 
-  /// The message is valid until the next call, and as long as `points` and `frame` are.
+  /// The message is valid until the next call and during the lifetimes of `points` and `frame`.
   [[nodiscard]] const CloudMessage& build(std::int64_t stamp_ns, const std::string& frame,
                                           const ScanPoint* points, std::uint32_t count,
                                           bool with_ring) noexcept;
@@ -52,16 +54,16 @@ class CloudBuilder {
   CloudMessage message_{};
 };
 
-/// Builds the diagnostics of isobard's health report and of the bridge itself.
+/// Builds the diagnostics message from the health entries of isobard and of the bridge.
 class DiagnosticsBuilder {
  public:
-  /// @param node whose state this is: "node: name" is what ROS 2 tools sort by
+  /// @param node prefix of each status name, "node: name", by which ROS 2 tools group the statuses
   explicit DiagnosticsBuilder(const std::string& node = "isobar");
   DiagnosticsBuilder(const DiagnosticsBuilder&) = delete;
   DiagnosticsBuilder& operator=(const DiagnosticsBuilder&) = delete;
 
   void start(std::int64_t stamp_ns) noexcept;
-  /// Adds what health entries say; those that do not fit are left out. Texts are copied.
+  /// Adds a health entry, with copies of its texts. Entries beyond kMaxStatuses are left out.
   void add(const char* name, ipc::HealthLevel level, const char* message, double value) noexcept;
   [[nodiscard]] const DiagnosticsMessage& message() const noexcept { return message_; }
 

@@ -61,7 +61,7 @@ StationOutputs::StationOutputs(dds_entity_t participant, const std::string& name
       temperature_(participant, topics::kBaseTemperature, name) {}
 
 void StationOutputs::on_pressure(const PressureSample& sample) {
-  // First, so that a robot that gets the pressure has it.
+  // Temperature first: a robot matches it on receiving the pressure.
   if (!std::isnan(sample.temperature_c)) {
     TemperatureMessage message{};
     fill_temperature(sample, frame_, message);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All that Isobar says over DDS, one function a topic.
+// The DDS outputs: which topics are published, and when.
 #pragma once
 
 #include <array>
@@ -16,14 +16,16 @@
 
 namespace isobar::dds {
 
-/// Lets so many samples through that `rate_hz` come out on average, or all if there are fewer.
+/// Thins a stream of samples to `rate_hz` on average; a slower stream passes unchanged.
 class RateLimit {
  public:
   explicit RateLimit(double rate_hz) : period_ns_(static_cast<std::int64_t>(1e9 / rate_hz)) {}
 
-  /// True when a message with this stamp is due. A stamp that goes back far starts over.
+  /// True when a message with this stamp is due. A stamp more than two periods before the next due time
+  /// restarts the schedule.
   bool due(std::int64_t stamp_ns) noexcept {
-    // A source of just this rate jitters: it may be early by a tenth, which the next one makes good.
+    // Tolerance of a tenth of the period, so that jitter of a source at exactly this rate drops no sample.
+    // The schedule advances by whole periods, so the average rate stays exact.
     const std::int64_t early_ns = next_ns_ - stamp_ns;
     if (early_ns > period_ns_ / 10 && early_ns <= 2 * period_ns_) {
       return false;
@@ -41,7 +43,7 @@ class RateLimit {
 /// odom, pose, tf, tf_static, altitude. One thread.
 class PoseOutputs {
  public:
-  /// @throws ServiceError DDS refuses
+  /// @throws ServiceError when a DDS entity cannot be created
   PoseOutputs(dds_entity_t participant, const DdsConfig& config, const SensorMounts& mounts);
   PoseOutputs(const PoseOutputs&) = delete;
   PoseOutputs& operator=(const PoseOutputs&) = delete;
@@ -68,17 +70,16 @@ class PoseOutputs {
   Writer<AltitudeMessage> altitude_;
 };
 
-/// What a base station tells: NAME/fluid_pressure and NAME/temperature, which have the same stamp. One
-/// thread.
+/// Outputs of a base station: NAME/fluid_pressure and NAME/temperature, with equal stamps. One thread.
 class StationOutputs {
  public:
-  /// @param name of the station and of its frame
-  /// @throws ServiceError DDS refuses
+  /// @param name name of the base station and of its frame
+  /// @throws ServiceError when a DDS entity cannot be created
   StationOutputs(dds_entity_t participant, const std::string& name);
   StationOutputs(const StationOutputs&) = delete;
   StationOutputs& operator=(const StationOutputs&) = delete;
 
-  /// A sample without temperature gives pressure only.
+  /// A sample whose temperature is NaN gives a pressure message only.
   void on_pressure(const PressureSample& sample);
 
   [[nodiscard]] std::vector<dds_entity_t> writers() const { return {pressure_.get(), temperature_.get()}; }
@@ -92,17 +93,17 @@ class StationOutputs {
   Writer<TemperatureMessage> temperature_;
 };
 
-/// registered_scan and map. One thread, which need not be that of PoseOutputs.
+/// registered_scan and map. One thread, possibly another one than that of PoseOutputs.
 class CloudOutputs {
  public:
-  /// @throws ServiceError DDS refuses
+  /// @throws ServiceError when a DDS entity cannot be created
   CloudOutputs(dds_entity_t participant, const DdsConfig& config);
   CloudOutputs(const CloudOutputs&) = delete;
   CloudOutputs& operator=(const CloudOutputs&) = delete;
 
-  /// The scan in the frame of base_link at its stamp, the end of the scan. Nothing is sent if nobody listens.
+  /// Publishes the deskewed scan in base_link at the scan's end, which is its stamp. Skipped without readers.
   void on_scan(const RegisteredScan& scan);
-  /// The local map in the map frame.
+  /// Publishes the local map, in the map frame.
   void on_map(const ipc::MapCloud& map);
 
   [[nodiscard]] std::vector<dds_entity_t> writers() const { return {scan_.get(), map_.get()}; }

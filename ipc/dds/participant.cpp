@@ -15,8 +15,8 @@
 namespace isobar::dds {
 namespace {
 
-/// Linux's loopback carries multicast although its flags deny it, so Cyclone has to be told. Readers that do
-/// not know this are reached one by one.
+/// Linux's loopback carries multicast although its interface flags lack IFF_MULTICAST, so the configuration
+/// has to enable it. Peers without that setting are reached by unicast.
 constexpr std::string_view kLoopback = "lo";
 
 ParticipantSettings with_interface(ParticipantSettings settings) {
@@ -26,7 +26,7 @@ ParticipantSettings with_interface(ParticipantSettings settings) {
   return settings;
 }
 
-/// What rmw puts into a participant's user data; without it ROS 2 tools ignore the participant.
+/// User data of a participant as ROS 2's rmw sets it; ROS 2 tools ignore participants without.
 constexpr std::string_view kUserData = "enclave=/;";
 
 }  // namespace
@@ -77,7 +77,7 @@ std::string domain_configuration(const ParticipantSettings& settings) {
       "</MaxAutoParticipantIndex>";
   xml += on_loopback ? "<Peers><Peer address=\"127.0.0.1\"/></Peers>" : "";
   xml += "</Discovery>";
-  // A whole cloud may be on its way before the writer waits for readers that acknowledge.
+  // High-water mark of unacknowledged data: a whole cloud, before the writer blocks.
   xml += "<Internal><Watermarks><WhcHigh>8MB</WhcHigh></Watermarks></Internal>";
   xml += "<Tracing><Verbosity>none</Verbosity></Tracing></Domain>";
   return xml;
@@ -89,13 +89,13 @@ Participant::Participant(const ParticipantSettings& settings) {
   const auto domain_id = static_cast<dds_domainid_t>(chosen.domain_id);
   const std::string on =
       network_interface_.empty() ? std::string() : " on the network interface " + network_interface_;
-  // A participant made after this failed would silently run with the defaults.
+  // Checked, because after a failure dds_create_participant() would silently use the default configuration.
   domain_ = checked(dds_create_domain(domain_id, domain_configuration(chosen).c_str()),
                     "domain " + std::to_string(chosen.domain_id) + on + " cannot be created");
   const QosPointer qos = make_qos();
   dds_qset_userdata(qos.get(), kUserData.data(), kUserData.size());
   participant_ = checked(dds_create_participant(domain_id, qos.get(), nullptr),
-                         "no participant in domain " + std::to_string(chosen.domain_id));
+                         "participant in domain " + std::to_string(chosen.domain_id));
 }
 
 }  // namespace isobar::dds

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The program's presence in a DDS domain.
+// Participant of this program in a DDS domain.
 #pragma once
 
 #include <dds/dds.h>
@@ -9,7 +9,7 @@
 
 namespace isobar::dds {
 
-/// Owns a Cyclone DDS entity and all that was made from it.
+/// Owner of a Cyclone DDS entity and its child entities.
 class Entity {
  public:
   Entity() = default;
@@ -36,25 +36,26 @@ class Entity {
   dds_entity_t handle_ = 0;
 };
 
-/// Owns the result of a Cyclone DDS call.
-/// @throws ServiceError the call failed; says `what` and why
+/// Takes ownership of the entity that a Cyclone DDS call returned.
+/// @param what the entity, for the error's text
+/// @throws ServiceError when the call failed, with its reason
 [[nodiscard]] Entity checked(dds_entity_t handle, const std::string& what);
 
-/// What a participant is configured by.
 struct ParticipantSettings {
   int domain_id = 0;
-  std::string network_interface;  ///< empty: chosen
+  std::string network_interface;  ///< name or address; empty: chosen automatically
   int max_message_bytes = 14720;
 };
 
-/// A domain and a participant in it that ROS 2 tools take for one of theirs. One a process and domain.
+/// A DDS domain and a participant in it that ROS 2 tools recognise. At most one per process and domain.
 class Participant {
  public:
-  /// @throws ServiceError no such network interface, no ports left, or DDS refuses
+  /// @throws ServiceError when the network interface does not exist, when the domain has no free port, or
+  ///         when DDS fails otherwise
   explicit Participant(const ParticipantSettings& settings);
 
   [[nodiscard]] dds_entity_t get() const noexcept { return participant_.get(); }
-  /// The interface that was asked for or chosen; empty: left to Cyclone DDS.
+  /// The configured interface, or "lo" where it was chosen; empty: chosen by Cyclone DDS.
   [[nodiscard]] const std::string& network_interface() const noexcept { return network_interface_; }
 
  private:
@@ -63,10 +64,10 @@ class Participant {
   Entity participant_;
 };
 
-/// "lo" where the machine has no other IPv4 network that is up, else empty.
+/// "lo" when loopback is the only IPv4 interface that is up, else empty.
 [[nodiscard]] std::string loopback_if_alone();
 
-/// Cyclone DDS's configuration, as it reads it.
+/// XML configuration for Cyclone DDS.
 [[nodiscard]] std::string domain_configuration(const ParticipantSettings& settings);
 
 }  // namespace isobar::dds

@@ -4,9 +4,9 @@
 namespace isobar::dds {
 namespace {
 
-/// A writer waits this long for readers that do not keep up, and then loses the message for them: odometry
-/// must not stop because somebody's viewer does.
-constexpr dds_duration_t kMaxBlocking = DDS_MSECS(10);
+/// Longest time that a writer blocks for a slow reader before it drops the message [ns]: a stopped viewer
+/// must not stop odometry.
+constexpr dds_duration_t kMaxBlockingNs = DDS_MSECS(10);
 
 }  // namespace
 
@@ -17,13 +17,13 @@ QosPointer endpoint_qos(Delivery delivery, int depth) {
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, depth);
   dds_qset_reliability(
       qos.get(), delivery == Delivery::kBestEffort ? DDS_RELIABILITY_BEST_EFFORT : DDS_RELIABILITY_RELIABLE,
-      kMaxBlocking);
+      kMaxBlockingNs);
   dds_qset_durability(
       qos.get(), delivery == Delivery::kLatched ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
   dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, depth, DDS_LENGTH_UNLIMITED,
                               DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   dds_qset_writer_data_lifecycle(qos.get(), false);
-  // ROS 2 is XCDR1 only. A writer of XCDR2 would be matched by other vendors' readers and deliver nothing.
+  // ROS 2 uses XCDR1 only. Readers of other vendors match an XCDR2 writer but receive nothing from it.
   const dds_data_representation_id_t representation = DDS_DATA_REPRESENTATION_XCDR1;
   dds_qset_data_representation(qos.get(), 1, &representation);
   return qos;

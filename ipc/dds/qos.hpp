@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Quality of service, as ROS 2 nodes expect it.
+// Quality-of-service settings, compatible with ROS 2 nodes.
 #pragma once
 
 #include <dds/dds.h>
@@ -16,14 +16,14 @@ using QosPointer = std::unique_ptr<dds_qos_t, QosDeleter>;
 
 [[nodiscard]] QosPointer make_qos();
 
-/// The choices of the design.
+/// Delivery of a topic.
 enum class Delivery : std::uint8_t {
-  kReliable,    ///< every message, to readers that are there
-  kLatched,     ///< every message; readers that come later get the last ones (ROS: transient local)
-  kBestEffort,  ///< newest first, losses allowed: sensors
+  kReliable,    ///< lossless for matched readers
+  kLatched,     ///< lossless; late readers get the last `depth` messages (DDS: transient local)
+  kBestEffort,  ///< losses allowed, for sensors
 };
 
-/// @param depth messages kept for a reader that is slow or, if latched, late, 1 …
+/// @param depth messages kept for slow readers and, if latched, for late ones, >= 1
 [[nodiscard]] QosPointer endpoint_qos(Delivery delivery, int depth);
 
 }  // namespace isobar::dds

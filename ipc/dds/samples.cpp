@@ -10,7 +10,7 @@
 namespace isobar::dds {
 namespace {
 
-/// Checks stamp and values, and only then lets the sample out.
+/// Copies the candidate to `sample` if its stamp and values are plausible.
 template <class Sample>
 const char* hand_over(const HeaderMessage& header, Sample& candidate, Sample& sample) noexcept {
   candidate.stamp_ns = to_stamp_ns(header.stamp);
@@ -65,7 +65,7 @@ void fill_pressure(const PressureSample& sample, const std::string& frame,
                    PressureMessage& message) noexcept {
   fill_header(sample.stamp_ns, frame, message.header);
   message.fluid_pressure = sample.pressure_pa;
-  message.variance = sample.variance_pa2 > 0.0 ? sample.variance_pa2 : 0.0;  // NaN fails
+  message.variance = sample.variance_pa2 > 0.0 ? sample.variance_pa2 : 0.0;  // NaN compares false
 }
 
 const char* to_sample(const TemperatureMessage& message, TemperatureSample& sample) noexcept {

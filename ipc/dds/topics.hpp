@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every DDS topic: its ROS 2 name, its type, how it is delivered. The topic /a of ROS is rt/a in DDS.
+// Table of the DDS topics: ROS 2 name, type, delivery. ROS topic /a is rt/a in DDS.
 #pragma once
 
 #include <ros2.h>
@@ -11,7 +11,7 @@
 
 namespace isobar::dds {
 
-// The generated names are C's; these are the ROS 2 types.
+// ROS 2 types, under short names for those of the generated C code.
 using OdometryMessage = nav_msgs_msg_dds__Odometry_;
 using PoseMessage = geometry_msgs_msg_dds__PoseWithCovarianceStamped_;
 using TfMessage = tf2_msgs_msg_dds__TFMessage_;
@@ -29,7 +29,7 @@ struct DdsTopic {
   const dds_topic_descriptor_t* descriptor;
   Delivery delivery;
   int depth;
-  bool is_global;  ///< stays outside the robot's namespace
+  bool is_global;  ///< not prefixed with the robot's namespace
 };
 
 namespace topics {
@@ -44,7 +44,7 @@ inline const DdsTopic<CloudMessage> kRegisteredScan{"registered_scan", &sensor_m
 inline const DdsTopic<CloudMessage> kMap{"map", &sensor_msgs_msg_dds__PointCloud2__desc, Delivery::kLatched, 1, false};
 inline const DdsTopic<DiagnosticsMessage> kDiagnostics{"diagnostics", &diagnostic_msgs_msg_dds__DiagnosticArray__desc, Delivery::kReliable, 10, true};
 
-// Of a base station: its name is their namespace, "base" for one.
+// Topics of a base station, with its name as namespace, such as "base".
 inline const DdsTopic<PressureMessage> kBasePressure{"fluid_pressure", &sensor_msgs_msg_dds__FluidPressure__desc, Delivery::kBestEffort, 5, false};
 inline const DdsTopic<TemperatureMessage> kBaseTemperature{"temperature", &sensor_msgs_msg_dds__Temperature__desc, Delivery::kBestEffort, 5, false};
 inline const DdsTopic<ImuMessage> kImu{"imu/data", &sensor_msgs_msg_dds__Imu__desc, Delivery::kBestEffort, 5, false};
@@ -53,7 +53,7 @@ inline const DdsTopic<OdometryMessage> kWheel{"wheel/odom", &nav_msgs_msg_dds__O
 
 }  // namespace topics
 
-/// The name in DDS: "rt/odom", or "rt/robot1/odom" in the namespace robot1.
+/// DDS name of a topic: "rt/odom"; in the namespace robot1, "rt/robot1/odom".
 template <class Message>
 [[nodiscard]] std::string dds_name(const DdsTopic<Message>& topic, const std::string& ros_namespace) {
   const bool plain = topic.is_global || ros_namespace.empty();

@@ -25,7 +25,7 @@ std::string tile_name(const TileKey& key) {
   return "tile (" + std::to_string(key.x) + ", " + std::to_string(key.y) + ", " + std::to_string(key.z) + ")";
 }
 
-MapExport export_map(TileStore& store, const MapHeader& header, const std::optional<MapBox>& box,
+MapExport export_map(FileTileStore& store, const MapHeader& header, const std::optional<MapBox>& box,
                      PlyWriter& ply) {
   MapExport done;
   std::vector<std::byte> bytes;
@@ -34,7 +34,7 @@ MapExport export_map(TileStore& store, const MapHeader& header, const std::optio
     // Margin: a point on the plane of a cell at the tile's edge may lie up to one cell outside.
     if (box && !overlap(MapBox::of_tile(key, header.tile_m), *box, header.cell_m)) continue;
     points.clear();
-    if (!store.take(key, bytes) || !append_tile_points(bytes, points)) {
+    if (!store.take(key, bytes) || !MapTile::append_stored_points(bytes, points)) {
       if (done.unreadable++ == 0) done.first_unreadable = tile_name(key);
       continue;
     }

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "run/files/ply_writer.hpp"
+#include "run/tile_store/file_tile_store.hpp"
 #include "run/tile_store/map_folder.hpp"
-#include "run/tile_store/tile_store.hpp"
 
 namespace isobar::files {
 
@@ -40,7 +40,7 @@ struct MapExport {
 /// and equal maps give equal files. Unreadable tiles are counted and left out.
 /// @param box only points inside; nothing: all points
 /// @throws ServiceError when `ply` cannot be written
-MapExport export_map(TileStore& store, const MapHeader& header, const std::optional<MapBox>& box,
+MapExport export_map(FileTileStore& store, const MapHeader& header, const std::optional<MapBox>& box,
                      PlyWriter& ply);
 
 }  // namespace isobar::files

@@ -30,7 +30,7 @@ void RunOutput::add_pose(const PoseEstimate& pose, const Prior& prior) {
   from_prior_ += pose.mode == PoseMode::kPriorOnly ? 1 : 0;
 }
 
-MapExport RunOutput::write_map(TileStore& store, const MapHeader& header) {
+MapExport RunOutput::write_map(FileTileStore& store, const MapHeader& header) {
   return export_map(store, header, std::nullopt, map_);
 }
 

@@ -34,7 +34,7 @@ class RunOutput {
 
   void add_pose(const PoseEstimate& pose, const Prior& prior);
   /// Writes map.ply from the run's tile store, at the end of the run.
-  MapExport write_map(TileStore& store, const MapHeader& header);
+  MapExport write_map(FileTileStore& store, const MapHeader& header);
   /// Writes settings.toml.
   void write_settings(std::string_view toml) const;
   /// Writes counters.csv and closes all files.

@@ -10,7 +10,7 @@
 
 namespace isobar {
 
-/// Closes a descriptor when it goes; -1 is none.
+/// Owns a file descriptor and closes it in the destructor; -1: none.
 class FileDescriptor {
  public:
   FileDescriptor() = default;
@@ -33,7 +33,7 @@ class FileDescriptor {
   int value_ = -1;
 };
 
-/// What errno says, in words.
+/// Text of the current errno.
 inline std::string errno_message() { return std::generic_category().message(errno); }
 
 }  // namespace isobar

@@ -10,14 +10,17 @@ namespace isobar {
 
 namespace {
 
-/// A file goes when its superseded tiles are this share of it: at most as many bytes are written again as get
-/// free. Near the limit it is less, so that no tile is forgotten for the sake of superseded ones.
+/// Share of superseded bytes at which a segment is compacted: compaction then rewrites at most as many bytes
+/// as it frees.
 constexpr double kDeadShare = 0.5;
+/// The same when the disk space is used up to kNearLimit (share of max_bytes): superseded versions are
+/// removed before the limit costs a live tile.
 constexpr double kDeadShareNearLimit = 0.25;
 constexpr double kNearLimit = 0.75;
-/// What a put may move beside as much as it wrote itself.
-constexpr std::uint64_t kLeastMovedBytes = std::uint64_t{64} * 1024;
-/// What passing by a superseded tile counts of that.
+/// Bytes that compaction may rewrite per put() in addition to the size of the tile put, so that compaction
+/// keeps ahead of small tiles.
+constexpr std::uint64_t kExtraMovedBytes = std::uint64_t{64} * 1024;
+/// Cost of skipping a superseded tile, counted as rewritten bytes: it bounds the loop as well.
 constexpr std::uint64_t kSkippedBytes = 256;
 
 }  // namespace
@@ -32,14 +35,13 @@ FileTileStore::FileTileStore(std::filesystem::path directory, const MapHeader& h
 
 std::unique_ptr<FileTileStore> FileTileStore::open_to_read(const std::filesystem::path& directory) {
   const MapHeader header = read_map_header(directory);
-  // The process that writes this map may remove a file after it was listed; its tiles are in a later one
-  // then.
+  // Retry: the writer may remove a segment between listing and opening it; its tiles are then in a later one.
   constexpr int kAttempts = 10;
   for (int attempt = 1; attempt <= kAttempts; ++attempt) {
     std::unique_ptr<FileTileStore> store(new FileTileStore(directory, header, {}, std::nullopt));
     if (store->load(TileSegment::Access::kRead)) return store;
   }
-  throw ServiceError(directory.string() + ": its files vanish while they are opened");
+  throw ServiceError(directory.string() + ": cannot be opened: another process keeps removing its files");
 }
 
 std::unique_ptr<FileTileStore> FileTileStore::open_to_continue(const std::filesystem::path& directory,
@@ -49,8 +51,8 @@ std::unique_ptr<FileTileStore> FileTileStore::open_to_continue(const std::filesy
   if (found != header) {
     throw DataError((directory / "map.toml").string() + ": the map has tiles of " +
                     std::to_string(found.tile_m) + " m with cells of " + std::to_string(found.cell_m) +
-                    " m; they must be of " + std::to_string(header.tile_m) + " m with cells of " +
-                    std::to_string(header.cell_m) + " m, as configured");
+                    " m; the configuration requires tiles of " + std::to_string(header.tile_m) +
+                    " m with cells of " + std::to_string(header.cell_m) + " m");
   }
   std::unique_ptr<FileTileStore> store(new FileTileStore(directory, header, limits, MapLock(directory)));
   static_cast<void>(store->load(TileSegment::Access::kWrite));
@@ -99,17 +101,17 @@ std::uint64_t FileTileStore::live_bytes() const {
 
 bool FileTileStore::put(const TileKey& key, std::span<const std::byte> bytes) {
   if (!lock_) {
-    refuse(directory_.string() + ": was opened to be read only");
+    refuse(directory_.string() + ": the map was opened read-only");
     return false;
   }
   if (bytes.empty() || bytes.size() > kMaxTileBytes || record_bytes(bytes.size()) > limits_.max_bytes / 2) {
     refuse(directory_.string() + ": a tile of " + std::to_string(bytes.size()) +
-           " bytes; must be within 1 and half of the limit");
+           " bytes; must have at least 1 byte and fill at most half of the disk limit");
     return false;
   }
   if (!append(key, bytes)) return false;
   ++counters_.put;
-  compact(record_bytes(bytes.size()) + kLeastMovedBytes);
+  compact(record_bytes(bytes.size()) + kExtraMovedBytes);
   return true;
 }
 
@@ -206,7 +208,7 @@ void FileTileStore::choose_compaction() {
   for (const auto& [number, segment] : segments_) {
     const auto size = static_cast<double>(segment.file.tile_bytes());
     const double dead = size - static_cast<double>(segment.live_bytes);
-    // Not the newest: it is still written.
+    // The newest segment is still being written.
     if (number == segments_.rbegin()->first || size == 0.0 || dead / size < most) continue;
     most = dead / size;
     compaction_ = {number, segments_.rbegin()->first, 0};
@@ -236,7 +238,7 @@ void FileTileStore::compact(std::uint64_t budget_bytes) {
       drop_location(key);
       continue;
     }
-    // Room for this tile may have cost the oldest file, and that may be the one that is emptied.
+    // Making room may remove the oldest segment, which may be the one being compacted.
     make_room(record_bytes(moving_.size()));
     if (!compaction_ || !append(key, moving_)) return;
     ++counters_.moved;
@@ -246,7 +248,7 @@ void FileTileStore::compact(std::uint64_t budget_bytes) {
 }
 
 void FileTileStore::finish_compaction() {
-  // A loss of power must not find the file gone and its tiles not yet on the disk.
+  // Flush before removal: a power failure must not lose both copies of a tile.
   for (auto target = segments_.lower_bound(compaction_->first_target); target != segments_.end(); ++target) {
     if (target->second.file.flush()) continue;
     refuse(target->second.file.file().string() + ": cannot be written to the disk");

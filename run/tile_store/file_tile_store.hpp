@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The map on disk: every tile at the end of the newest file, an index in memory, files whose tiles are mostly
-// superseded emptied and removed. All the work of a call is bounded by the size of a segment or of the tile.
+// Map on disk as a log-structured store: tiles are appended to the newest of several segment files, an index
+// in memory holds the newest version of each tile, and compaction removes segments that are mostly
+// superseded. The work of one call is bounded by the size of a segment.
 #pragma once
 
 #include <cstddef>
@@ -14,49 +15,52 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/map/tile_storage.hpp"
 #include "run/tile_store/map_folder.hpp"
 #include "run/tile_store/tile_segment.hpp"
-#include "run/tile_store/tile_store.hpp"
 
 namespace isobar {
 
-/// What the disk has to give.
+/// Limits of the disk space.
 struct TileStoreLimits {
-  /// Bytes of all files of tiles and indices at most, 1 MiB … 1 TB. When a tile would not fit any more, the
-  /// file that was begun longest ago goes with all its tiles.
+  /// Maximum size of all segments and indices together, 1 MiB … 1 TB. When a new tile would exceed it, the
+  /// oldest segment is removed with all its tiles.
   std::uint64_t max_bytes = 4'000'000'000;
 
-  /// Size at which a file of tiles is closed and the next one begun: a 64th of the whole, so that little goes
-  /// at once, but within 256 KiB … 1 GiB, so that the offsets fit and no more than some hundred files are
-  /// open.
+  /// Size at which a segment is closed and the next one begun: max_bytes / 64, so that the limit costs few
+  /// tiles at once, clamped to 256 KiB … 1 GiB, so that 32-bit offsets suffice and few files are open.
   [[nodiscard]] std::uint64_t segment_bytes() const;
 };
 
-/// What happened since the opening. The messages are those of the first case.
+/// Events since the store was opened. Each message is that of the first event.
 struct TileStoreCounters {
-  std::uint64_t put = 0;
-  std::uint64_t taken = 0;
-  std::uint64_t refused = 0;  ///< tiles that the disk did not take
+  std::uint64_t put = 0;      ///< tiles written
+  std::uint64_t taken = 0;    ///< tiles read
+  std::uint64_t refused = 0;  ///< tiles not written because the disk or a limit refused
   std::string first_refusal;
-  std::uint64_t damaged = 0;  ///< tiles that could not be read, and stretches without any that can
+  std::uint64_t damaged = 0;  ///< unreadable tiles, and unreadable stretches between tiles
   std::string first_damage;
-  std::uint64_t torn = 0;       ///< records whose writing was cut off, found by the opening
-  std::uint64_t forgotten = 0;  ///< tiles that had to go because of the limit
-  std::uint64_t moved = 0;      ///< tiles written again so that their file could go
+  std::uint64_t torn = 0;       ///< records that a crash left incomplete, found when the store was opened
+  std::uint64_t forgotten = 0;  ///< tiles removed because of max_bytes
+  std::uint64_t moved = 0;      ///< tiles rewritten by compaction
 };
 
-/// A map in a folder. One thread; the constructor throws, the rest returns false and counts.
-class FileTileStore : public TileStore {
+/// Map in a folder. One thread. The named constructors throw; all other functions count errors and return
+/// false.
+class FileTileStore : public TileStorage {
  public:
-  /// Opens the map of a folder to look at it. It may be written by another process meanwhile: what is seen is
-  /// the map of this moment. Throws DataError where there is no map of a known format, ServiceError.
+  /// Opens a map read-only, as it is at this moment; another process may be writing it.
+  /// @throws DataError when the folder holds no map of a known format
+  /// @throws ServiceError when a file cannot be opened or read
   [[nodiscard]] static std::unique_ptr<FileTileStore> open_to_read(const std::filesystem::path& directory);
-  /// Opens the map of a folder, repairs it after a crash and goes on with it. Throws as above, also where the
-  /// map was made with another header or somebody writes it.
+  /// Opens a map for writing and repairs it after a crash.
+  /// @throws DataError when the folder holds no map of a known format, or one with another header
+  /// @throws ServiceError when a file cannot be opened or repaired, or another process writes the map
   [[nodiscard]] static std::unique_ptr<FileTileStore> open_to_continue(const std::filesystem::path& directory,
                                                                        const MapHeader& header,
                                                                        const TileStoreLimits& limits);
-  /// Begins an empty map in the folder, in place of the one that may be there. Throws ServiceError.
+  /// Creates an empty map for writing; a map that is already in the folder is deleted.
+  /// @throws ServiceError when a file cannot be created or deleted, or another process writes the map
   [[nodiscard]] static std::unique_ptr<FileTileStore> create(const std::filesystem::path& directory,
                                                              const MapHeader& header,
                                                              const TileStoreLimits& limits);
@@ -64,38 +68,40 @@ class FileTileStore : public TileStore {
   bool put(const TileKey& key, std::span<const std::byte> bytes) override;
   bool take(const TileKey& key, std::vector<std::byte>& bytes) override;
   [[nodiscard]] bool contains(const TileKey& key) const override { return tiles_.contains(key); }
-  [[nodiscard]] std::vector<TileKey> keys() const override { return sorted_keys(tiles_); }
+  /// Keys of all tiles, sorted by x, y, z.
+  [[nodiscard]] std::vector<TileKey> keys() const { return TileKey::sorted(tiles_); }
 
   [[nodiscard]] const MapHeader& header() const { return header_; }
   [[nodiscard]] const TileStoreCounters& counters() const { return counters_; }
   [[nodiscard]] std::size_t tile_count() const { return tiles_.size(); }
   [[nodiscard]] std::size_t segment_count() const { return segments_.size(); }
-  /// Of the newest versions, with their heads.
+  /// Size of the newest versions of all tiles, including their record heads.
   [[nodiscard]] std::uint64_t live_bytes() const;
+  /// Size of all segments and indices.
   [[nodiscard]] std::uint64_t disk_bytes() const { return disk_bytes_; }
-  /// What was wrong with the tile that take() last found damaged: file, place, rule.
+  /// The last damage that take() found: file, offset, tile, rule.
   [[nodiscard]] const std::string& last_damage() const { return last_damage_; }
 
  private:
   struct Segment {
     TileSegment file;
     std::uint64_t live_bytes = 0;
-    std::vector<TileKey> keys{};  ///< of its records in their order, superseded ones too
+    std::vector<TileKey> keys{};  ///< of all records in their order, including superseded ones
   };
   struct Location {
     std::uint32_t segment = 0;
     TilePlace place;
   };
-  /// A segment whose living tiles are being moved to the newest one.
+  /// Progress of moving the live tiles of a segment to the newest segment.
   struct Compaction {
     std::uint32_t segment = 0;
-    std::uint32_t first_target = 0;  ///< the oldest segment that took some of them
-    std::size_t next = 0;            ///< in its keys
+    std::uint32_t first_target = 0;  ///< oldest segment that received tiles
+    std::size_t next = 0;            ///< index in Segment::keys of the next tile to move
   };
 
   FileTileStore(std::filesystem::path directory, const MapHeader& header, const TileStoreLimits& limits,
                 std::optional<MapLock> lock);
-  /// False if a file vanished meanwhile, which only a reader meets.
+  /// Returns false if a writer removed a file between listing and opening it; never for the writer itself.
   [[nodiscard]] bool load(TileSegment::Access access);
   void add_location(std::uint32_t number, Segment& segment, const TileKey& key, const TilePlace& place);
   void drop_location(const TileKey& key);
@@ -113,9 +119,9 @@ class FileTileStore : public TileStore {
   std::filesystem::path directory_;
   MapHeader header_;
   TileStoreLimits limits_;
-  std::optional<MapLock> lock_;  ///< none: this object only reads
-  std::map<std::uint32_t, Segment> segments_;
-  std::unordered_map<TileKey, Location, TileKeyHash> tiles_;
+  std::optional<MapLock> lock_;                ///< none: read-only
+  std::map<std::uint32_t, Segment> segments_;  ///< by number; the last one is the newest and is written
+  std::unordered_map<TileKey, Location, TileKey::Hash> tiles_;
   std::optional<Compaction> compaction_;
   std::uint64_t disk_bytes_ = 0;
   std::uint32_t next_number_ = 0;

@@ -23,27 +23,27 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kLargestTileM = 1'000.0;
-constexpr std::size_t kNumberDigits = 8;
+constexpr double kMaxTileM = 1'000.0;     // plausibility of a header; a tile is 8.8 m by default
+constexpr std::size_t kNumberDigits = 8;  // digits of NNNNNNNN.tiles
 
-/// A parsed map.toml, which knows the place of everything in it.
+/// Parsed map.toml; its errors name file, line, column, key and rule.
 class HeaderText {
  public:
   explicit HeaderText(const fs::path& file) : file_(file.string()) {
     std::ifstream in(file, std::ios::binary);
-    if (!in) throw DataError(file_ + ": cannot be read; a folder without it holds no map");
+    if (!in) throw DataError(file_ + ": cannot be read; a folder without this file holds no map");
     std::ostringstream text;
     text << in.rdbuf();
     try {
       table_ = toml::parse(text.str(), file_);
     } catch (const toml::parse_error& error) {
-      throw DataError(place(error.source()) + "is no TOML: " + std::string(error.description()));
+      throw DataError(place(error.source()) + "not valid TOML: " + std::string(error.description()));
     }
   }
 
   void must_be(const char* key, std::int64_t only, const std::string& rule) const {
     const toml::node& node = entry(key, rule);
-    // value_exact: value would first cast a float to an integer, which is undefined for 1e72.
+    // value_exact(), because value() casts a float to an integer first, which is undefined for 1e72.
     const auto value = node.value_exact<std::int64_t>();
     if (!value || *value != only) fail(node, key, rule);
   }
@@ -71,7 +71,7 @@ class HeaderText {
   toml::table table_;
 };
 
-/// The number in a name such as 00000012.tiles; -1 for other names.
+/// Number in a name such as 00000012.tiles; -1 for other names.
 std::int64_t number_of(const fs::path& file) {
   const std::string stem = file.stem().string();
   std::uint32_t number = 0;
@@ -94,9 +94,9 @@ MapHeader read_map_header(const fs::path& directory) {
   const HeaderText text(directory / "map.toml");
   text.must_be(
       "format", MapHeader::kFormat,
-      "must be " + std::to_string(MapHeader::kFormat) + ": this program reads no other format of map");
+      "must be " + std::to_string(MapHeader::kFormat) + ": this program supports no other format of map");
   MapHeader header;
-  header.tile_m = text.number("tile_m", 1e-3, kLargestTileM, "must be a number within 0.001 … 1000 m");
+  header.tile_m = text.number("tile_m", 1e-3, kMaxTileM, "must be a number within 0.001 … 1000 m");
   header.cell_m = text.number("cell_m", 1e-3, header.tile_m, "must be a number within 0.001 m … tile_m");
   return header;
 }
@@ -104,7 +104,7 @@ MapHeader read_map_header(const fs::path& directory) {
 void write_map_header(const fs::path& directory, const MapHeader& header) {
   const fs::path file = directory / "map.toml";
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << "# A map of Isobar. `isobar map info` tells what is in it.\n"
+  out << "# Map of Isobar. `isobar map info` prints its content.\n"
       << "format = " << MapHeader::kFormat << "\n";
   out.precision(17);
   out.setf(std::ios::showpoint);
@@ -123,9 +123,10 @@ MapLock::MapLock(const fs::path& directory) {
   if (::flock(file_.get(), LOCK_EX | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK) throw ServiceError(file.string() + ": cannot be locked: " + errno_message());
     throw ServiceError(directory.string() + ": " + holder_of(file) +
-                       " writes this map; only one process at a time may");
+                       " writes this map; only one process may write it at a time");
   }
-  // For the error above in another process; the lock holds without it.
+  // Name of the holder for the error above in another process. A failure is ignored: the lock holds without
+  // it.
   const std::string holder =
       std::string(program_invocation_short_name) + " (process " + std::to_string(::getpid()) + ")\n";
   static_cast<void>(::ftruncate(file_.get(), 0) == 0 &&
@@ -139,8 +140,9 @@ std::vector<std::uint32_t> segment_numbers(const fs::path& directory) {
   if (error) throw ServiceError(directory.string() + ": cannot be read: " + error.message());
   for (const auto& entry : entries) {
     const std::int64_t number = number_of(entry.path());
-    if (number >= 0 && entry.path().extension() == ".tiles")
+    if (number >= 0 && entry.path().extension() == ".tiles") {
       numbers.push_back(static_cast<std::uint32_t>(number));
+    }
   }
   std::sort(numbers.begin(), numbers.end());
   return numbers;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The folder of a map: map.toml says what it is, `lock` who writes it, the rest are tiles (tile_record.hpp).
+// Folder of a map: `map.toml` (format and grid), `lock` (held by the process that writes), and segments of
+// tiles with their indices (tile_record.hpp).
 #pragma once
 
 #include <cstdint>
@@ -11,34 +12,39 @@
 
 namespace isobar {
 
-/// map.toml.
+/// Content of map.toml.
 struct MapHeader {
-  static constexpr std::int64_t kFormat = 1;
-  double tile_m = 8.0;   ///< edge of a tile [m], above 0, up to 1000
-  double cell_m = 0.25;  ///< edge of a cell [m], above 0, up to tile_m
+  static constexpr std::int64_t kFormat = 1;  ///< version of the format
+  double tile_m = 8.0;                        ///< edge of a tile [m], above 0, up to 1000
+  double cell_m = 0.25;                       ///< edge of a cell [m], above 0, up to tile_m
   bool operator==(const MapHeader&) const = default;
 };
 
-/// Reads DIR/map.toml. Throws DataError "file:line:column: key: rule", also where there is none: no map.
+/// Reads DIR/map.toml.
+/// @throws DataError when the file is missing or breaks a rule; the text is "file:line:column: key: rule"
 MapHeader read_map_header(const std::filesystem::path& directory);
-/// Writes it. Throws ServiceError.
+/// Writes DIR/map.toml.
+/// @throws ServiceError when the file cannot be written
 void write_map_header(const std::filesystem::path& directory, const MapHeader& header);
 
-/// Held by the one process that may write in the folder; the kernel gives it back when that process ends.
+/// Lock of the one process that writes the map. The kernel releases it when the process ends.
 class MapLock {
  public:
-  /// Makes the folder if it is missing. Throws ServiceError naming who holds the lock.
+  /// Creates the folder if it is missing, and takes the lock.
+  /// @throws ServiceError when another process holds the lock (the text names it) or a file cannot be opened
   explicit MapLock(const std::filesystem::path& directory);
 
  private:
   FileDescriptor file_;
 };
 
-/// Numbers of the files of tiles in the folder, ascending.
+/// Numbers of the segments in the folder, ascending.
+/// @throws ServiceError when the folder cannot be read
 std::vector<std::uint32_t> segment_numbers(const std::filesystem::path& directory);
-/// DIR/NNNNNNNN.tiles
+/// Path of a segment: DIR/NNNNNNNN.tiles
 std::filesystem::path segment_file(const std::filesystem::path& directory, std::uint32_t number);
-/// Removes the map from the folder and leaves alone what is no part of one. Hold the lock.
+/// Deletes the files of the map and no other file of the folder. The caller holds the lock.
+/// @throws ServiceError when a file cannot be deleted
 void remove_map(const std::filesystem::path& directory);
 
 }  // namespace isobar

@@ -7,48 +7,46 @@
 
 namespace isobar {
 
-static_assert(std::endian::native == std::endian::little, "the files hold numbers as the machine does");
+static_assert(std::endian::native == std::endian::little, "records are written as they are in memory");
 
 namespace {
 
 bool is_tile_length(std::uint32_t length) { return length > 0 && length <= kMaxTileBytes; }
 
-/// Of everything but the last number, which is the checksum itself.
+/// Checksum of all fields but the last, which holds the checksum itself.
 template <typename Record>
-std::uint32_t checksum_of(const Record& record) {
-  return checksum(std::as_bytes(std::span(&record, 1)).first(sizeof(Record) - sizeof(std::uint32_t)));
+std::uint32_t crc_of_fields(const Record& record) {
+  return crc32_of(std::as_bytes(std::span(&record, 1)).first(sizeof(Record) - sizeof(std::uint32_t)));
 }
 
 }  // namespace
 
-std::uint32_t checksum(std::span<const std::byte> bytes) {
+std::uint32_t crc32_of(std::span<const std::byte> bytes) {
   return static_cast<std::uint32_t>(
       crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));  // NOLINT: zlib's type
 }
 
-RecordHead make_head(const TileKey& key, std::span<const std::byte> bytes) {
+RecordHead RecordHead::of(const TileKey& key, std::span<const std::byte> bytes) {
   RecordHead head;
   head.length = static_cast<std::uint32_t>(bytes.size());
   head.key = key;
-  head.bytes_crc = checksum(bytes);
-  head.head_crc = checksum_of(head);
+  head.bytes_crc = crc32_of(bytes);
+  head.head_crc = crc_of_fields(head);
   return head;
 }
 
-IndexEntry make_entry(const TileKey& key, std::uint32_t offset, std::uint32_t length) {
+IndexEntry IndexEntry::of(const TileKey& key, std::uint32_t offset, std::uint32_t length) {
   IndexEntry entry{key, offset, length, 0};
-  entry.crc = checksum_of(entry);
+  entry.crc = crc_of_fields(entry);
   return entry;
 }
 
-bool is_sound(const RecordHead& head) {
-  return head.magic == RecordHead::kMagic && is_tile_length(head.length) &&
-         head.head_crc == checksum_of(head);
+bool RecordHead::is_valid() const {
+  return magic == kMagic && is_tile_length(length) && head_crc == crc_of_fields(*this);
 }
 
-bool is_sound(const IndexEntry& entry) {
-  return is_tile_length(entry.length) && entry.offset % kRecordAlignment == 0 &&
-         entry.crc == checksum_of(entry);
+bool IndexEntry::is_valid() const {
+  return is_tile_length(length) && offset % kRecordAlignment == 0 && crc == crc_of_fields(*this);
 }
 
 }  // namespace isobar

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One file of tiles and its index (tile_record.hpp).
+// Segment: one append-only file of tiles and its index (tile_record.hpp).
 #pragma once
 
 #include <cstddef>
@@ -14,60 +14,63 @@
 
 namespace isobar {
 
-/// Where a tile lies in a segment.
+/// Position of a tile in a segment.
 struct TilePlace {
-  std::uint32_t offset = 0;
-  std::uint32_t length = 0;
+  std::uint32_t offset = 0;  ///< of the record's head [bytes]
+  std::uint32_t length = 0;  ///< of the tile, without head and padding [bytes]
 };
 
-/// What an opening found.
+/// Result of opening a segment.
 struct SegmentContent {
   struct Tile {
     TileKey key;
     TilePlace place;
   };
-  std::vector<Tile> tiles;    ///< in the order in which they were written
-  std::uint64_t torn = 0;     ///< records whose writing was cut off
-  std::uint64_t damaged = 0;  ///< stretches in which no record could be read
-  std::string first_fault;    ///< file, place and rule of the first of these; empty if there was none
+  std::vector<Tile> tiles;    ///< in the order of their records
+  std::uint64_t torn = 0;     ///< incomplete records at the end of the file
+  std::uint64_t damaged = 0;  ///< stretches without a readable record
+  std::string first_fault;    ///< file, offset and rule of the first of these; empty if there was none
 };
 
-/// A file of records, written at its end only. One thread.
+/// Append-only file of records with its index. One thread.
 class TileSegment {
  public:
   enum class Access : std::uint8_t {
-    kRead,   ///< leaves everything as it is
-    kWrite,  ///< cuts off what was torn, writes a faulty index anew
+    kRead,   ///< changes no file
+    kWrite,  ///< truncates torn records, rebuilds a faulty index
   };
 
-  /// Opens `NNNNNNNN.tiles` (and makes it, to write) with the index beside it, and says what is in it. Throws
-  /// ServiceError where the file cannot be opened or read.
+  /// Opens `tiles_file` (NNNNNNNN.tiles) and the index beside it, and fills `content`. With kWrite, missing
+  /// files are created.
+  /// @throws ServiceError when the file of tiles cannot be opened, read or truncated
   TileSegment(std::filesystem::path tiles_file, Access access, SegmentContent& content);
 
-  /// Writes a record at the end. False where the disk refuses; then the file is as it was before, and
-  /// refusal() says why.
+  /// Appends a record. If the disk refuses, returns false, leaves the file unchanged and sets refusal().
   bool append(const TileKey& key, std::span<const std::byte> bytes, TilePlace& place);
 
-  /// Reads a tile and checks it. Null if all is well, else what is wrong; `bytes` is then empty.
+  /// Reads and checks a tile. Returns null on success; otherwise the rule that is broken, with `bytes` empty.
   const char* read(const TileKey& key, const TilePlace& place, std::vector<std::byte>& bytes) const;
 
-  /// Nothing is written any more: gives back the index's descriptor.
+  /// Closes the index: no record is appended after this.
   void seal() { index_ = FileDescriptor(); }
-  /// Waits until the disk has everything. False where it refuses.
+  /// Waits until all records are on the disk (fdatasync). False if the disk refuses.
   bool flush() noexcept;
-  /// Removes both files; the tiles can be read until this object goes.
+  /// Deletes both files; tiles remain readable during the lifetime of this object.
   void remove() noexcept;
 
   [[nodiscard]] const std::filesystem::path& file() const { return tiles_file_; }
-  [[nodiscard]] std::uint64_t tile_bytes() const { return end_; }  ///< of the file of tiles
+  /// Size of the file of tiles.
+  [[nodiscard]] std::uint64_t tile_bytes() const { return end_; }
+  /// Size of both files.
   [[nodiscard]] std::uint64_t disk_bytes() const { return end_ + index_end_; }
+  /// Reason of the last failed append().
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
 
  private:
   std::uint64_t read_index(SegmentContent& content);
   void scan(std::uint64_t begin, std::uint64_t end, SegmentContent& content);
   [[nodiscard]] bool read_head(std::uint64_t offset, RecordHead& head) const;
-  [[nodiscard]] std::uint64_t next_sound_head(std::uint64_t begin, std::uint64_t end) const;
+  [[nodiscard]] std::uint64_t next_valid_head(std::uint64_t begin, std::uint64_t end) const;
   void note(SegmentContent& content, std::uint64_t offset, const char* rule) const;
   void repair(const SegmentContent& content);
   bool write_all(const FileDescriptor& file, std::span<const std::byte> bytes, std::uint64_t offset);
@@ -75,10 +78,10 @@ class TileSegment {
   std::filesystem::path tiles_file_;
   FileDescriptor tiles_;
   FileDescriptor index_;
-  std::uint64_t end_ = 0;          ///< of the sound part of the file of tiles
-  std::uint64_t index_end_ = 0;    ///< of the index
-  std::uint64_t write_begun_ = 0;  ///< up to here the disk has been told to write
-  bool index_is_whole_ = true;
+  std::uint64_t end_ = 0;          ///< of the complete records in the file of tiles
+  std::uint64_t index_end_ = 0;    ///< of the valid entries in the index
+  std::uint64_t write_begun_ = 0;  ///< write-back to the disk has been started up to this offset
+  bool index_is_whole_ = true;     ///< the index has an entry for every record and nothing else
   std::string refusal_;
   std::vector<std::byte> record_;  ///< scratch
 };

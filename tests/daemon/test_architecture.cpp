@@ -87,7 +87,7 @@ const std::map<std::string, Names> kMayIncludeInCore{
 /// Libraries and the places that may name them. A library that is not listed is free.
 const std::map<std::string, Names> kNamedOnlyBy{
     {"spdlog/", {"daemon/"}},
-    {"iceoryx", {"ipc/shared_memory.cpp"}},
+    {"iceoryx", {"ipc/iceoryx/"}},
     {"dds/", {"ipc/dds/"}},
     {"CLI/", {"daemon/", "tools/"}},
     {"nanoflann", {"core/map/"}},

@@ -99,7 +99,7 @@ int ChildProcess::wait(std::chrono::milliseconds timeout) {
   if (pid_ <= 0) {
     return exit_code_;
   }
-  // A pidfd becomes readable when the process ends: no polling.
+  // A pidfd becomes readable when the process ends.
   const int descriptor = static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0));
   pollfd waiting{descriptor, POLLIN, 0};
   const int ready = ::poll(&waiting, 1, static_cast<int>(timeout.count()));

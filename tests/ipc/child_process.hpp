@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A program that a test starts, reads from and ends.
+// Child process of a test.
 #pragma once
 
 #include <sys/types.h>
@@ -12,22 +12,24 @@ namespace isobar::test {
 
 class ChildProcess {
  public:
-  /// Starts arguments[0]; its standard output (and error) comes back through read_line().
+  /// Starts the program arguments[0], with its standard output and error piped to read_line().
+  /// @throws std::runtime_error when there is no pipe
   explicit ChildProcess(const std::vector<std::string>& arguments);
-  ~ChildProcess();  ///< kills it if it still runs
+  ~ChildProcess();  ///< kills the process if it is still running
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// The next line without its end. False when none came in time or the program closed its output.
+  /// Reads the next line, without its line feed.
+  /// @return false when no line arrives within the timeout, or when the program has closed its output
   bool read_line(std::string& line, std::chrono::milliseconds timeout);
-  /// Reads lines until one contains `text`.
+  /// Reads lines until one contains `text`; false as for read_line().
   bool read_until(const std::string& text, std::chrono::milliseconds timeout);
   [[nodiscard]] pid_t pid() const { return pid_; }
   void signal(int number) const;
-  /// Exit code, 128 + signal when a signal ended it, -1 when it still runs after the timeout.
+  /// @return exit code; 128 + signal number if a signal ended it; -1 if it is still running after the timeout
   int wait(std::chrono::milliseconds timeout);
   [[nodiscard]] bool running();
-  [[nodiscard]] const std::string& output() const { return output_; }  ///< all that was read so far
+  [[nodiscard]] const std::string& output() const { return output_; }  ///< everything read so far
 
  private:
   pid_t pid_ = -1;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The other process of the shared-memory tests. Exit codes: 0 done, 69 service error, 1 something else.
-//   peer broker            holds the broker and publishes priors, whose height counts up, until it is killed
-//   peer read N            attaches and reads until N priors came; prints how the heights went
-//   peer watch             attaches, reads one prior, then waits until the broker is gone
+// The second process of the shared-memory tests. Exit codes: 0 success, 69 service error, 1 failure.
+//   peer broker            holds the broker and publishes priors with increasing heights until it is killed
+//   peer read N            attaches and receives N priors; fails unless the heights increase
+//   peer watch             attaches, receives one prior, then waits until the broker ends
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Run by CTest with a /dev/shm of 32 MB.
+// CTest runs this program with a /dev/shm of 32 MB.
 #include <doctest/doctest.h>
 #include <sys/statvfs.h>
 
@@ -14,11 +14,11 @@ using namespace isobar::ipc;
 
 namespace {
 
-TEST_CASE("a /dev/shm that is too small is refused with what is needed and what there is") {
+TEST_CASE("a /dev/shm that is too small is refused with the space needed and available") {
   struct statvfs status {};
   REQUIRE(::statvfs("/dev/shm", &status) == 0);
   if (status.f_bavail * status.f_frsize >= Broker::needed_bytes()) {
-    MESSAGE("skipped: /dev/shm is large enough, because this does not run as root");
+    MESSAGE("skipped: without root the test has the /dev/shm of the machine, which is large enough");
     return;
   }
   test::ChildProcess broker({ISOBAR_IPC_PEER, "broker"});

@@ -24,7 +24,7 @@ Scenario make_still_scenario() {
 
 }  // namespace
 
-TEST_CASE("pressure without errors, put into the hypsometric equation, gives the height") {
+TEST_CASE("the hypsometric equation applied to pressure without errors gives the height") {
   const Scenario scenario = make_still_scenario();
   const Atmosphere air(scenario, AirErrors{}, Random(1));
   BarometerModel robot(BarometerErrors{}, Random(2));
@@ -38,7 +38,7 @@ TEST_CASE("pressure without errors, put into the hypsometric equation, gives the
   }
 }
 
-TEST_CASE("weather moves both sensors alike and moves by hectopascals in three hours") {
+TEST_CASE("weather acts equally on both sensors and changes by hectopascals in three hours") {
   const Scenario scenario = make_still_scenario();
   AirErrors errors = AirErrors::draw(Random(4));
   CHECK(std::abs(errors.ramp_pa_s) * 10'800.0 >= 100.0);
@@ -53,7 +53,8 @@ TEST_CASE("weather moves both sensors alike and moves by hectopascals in three h
   }
 }
 
-TEST_CASE("a change of ventilated zone shifts the robot's pressure by at most 35 cm and nothing else") {
+TEST_CASE(
+    "a change of the ventilated zone shifts only the robot's pressure, by the equivalent of at most 35 cm") {
   Scenario scenario = make_still_scenario();
   for (std::size_t i = 10'000; i < scenario.air.zone.size(); ++i) scenario.air.zone[i] = 1;
   AirErrors errors;
@@ -63,14 +64,14 @@ TEST_CASE("a change of ventilated zone shifts the robot's pressure by at most 35
     const Atmosphere air(scenario, errors, Random(seed));
     CHECK(std::abs(air.robot_pa(499.0, 0.0) - air.robot_pa(5.0, 0.0)) < 1e-9);
     const double step = air.robot_pa(520.0, 0.0) - air.robot_pa(499.0, 0.0);
-    CHECK(std::abs(step) * 0.0845 < 0.35);  // 8.45 cm a pascal at 12.5 degrees and 990 hPa
+    CHECK(std::abs(step) * 0.0845 < 0.35);  // 8.45 cm/Pa at 12.5 degC and 990 hPa
     CHECK(std::abs(air.base_pa(520.0) - air.base_pa(499.0)) < 1e-9);
     largest = std::max(largest, std::abs(step));
   }
   CHECK(largest > 0.5);
 }
 
-TEST_CASE("a door makes a short pulse that is gone two seconds later") {
+TEST_CASE("a door causes a short pulse that is over two seconds later") {
   Scenario scenario = make_still_scenario();
   scenario.air.door_pulses_1_s = 1.0 / 60.0;
   AirErrors errors;
@@ -86,11 +87,11 @@ TEST_CASE("a door makes a short pulse that is gone two seconds later") {
   }
   CHECK(peak > 3.0);
   CHECK(peak < 20.0);
-  CHECK(disturbed > 50);  // 1000 s with a pulse a minute, about a second each
+  CHECK(disturbed > 50);  // 1000 s with one pulse per minute, of about one second each
   CHECK(disturbed < 600);
 }
 
-TEST_CASE("warming up moves pressure and temperature along one exponential") {
+TEST_CASE("during warm-up, pressure and temperature follow the same exponential") {
   BarometerErrors errors;
   errors.warm_up_k = 3.0;
   errors.warm_up_tau_s = 200.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The city's plan, its ground and the drive through it.
+// Plan and ground of the city, and the drive through it.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -23,14 +23,14 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A street of the grid, whichever way it is driven.
+/// Key of a street of the grid, independent of the direction.
 std::pair<std::pair<int, int>, std::pair<int, int>> street_of(const Crossing& a, const Crossing& b) {
   const std::pair p(a.x, a.y);
   const std::pair q(b.x, b.y);
   return p < q ? std::pair(p, q) : std::pair(q, p);
 }
 
-/// One whole run, built once.
+/// One full run, built once for all test cases.
 const Scenario& whole_city() {
   static const Scenario scenario = make_city(1, false);
   return scenario;
@@ -45,7 +45,7 @@ double length_m(const Scenario& scenario) {
   return sum;
 }
 
-/// What the robot of `scenario` sees from a point of its base_link.
+/// Hit of a ray from a point of the robot's base_link.
 Hit look(const Scenario& scenario, double time_s, const Vector3d& from_base, const Vector3d& direction_base) {
   const MotionState state = scenario.trajectory.at(time_s);
   const Vector3d eye = state.p_world + state.q_world_base * from_base;
@@ -56,7 +56,8 @@ Hit look(const Scenario& scenario, double time_s, const Vector3d& from_base, con
 
 }  // namespace
 
-TEST_CASE("the hills are 0 at the origin, never steeper than 6 %, and their slope is their derivative") {
+TEST_CASE(
+    "the terrain is 0 at the origin, never steeper than 6 %, and its slope is the derivative of its height") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Random random(seed);
     const CityTerrain terrain{Random(random.next())};
@@ -75,13 +76,14 @@ TEST_CASE("the hills are 0 at the origin, never steeper than 6 %, and their slop
       worst = std::max(worst, (slope - numeric / (2.0 * kH)).norm());
     }
     CHECK(steepest <= CityTerrain::kSteepest);
-    CHECK(steepest > 0.03);  // a hill it is
-    CHECK(worst < 1e-8);     // h^2 times the third derivative: 1e-4 * 1e-5, and rounding
+    CHECK(steepest > 0.03);  // not flat
+    CHECK(worst < 1e-8);     // h^2 times the third derivative: 1e-4 * 1e-5, plus rounding
   }
 }
 
 TEST_CASE(
-    "a way of 10 km leads from neighbour to neighbour, through new streets, and comes back to old ones") {
+    "a way of 10 km consists of adjacent crossings, uses new streets, and then returns to streets driven "
+    "before") {
   const CityWayWish wish{13, 9'000.0, 1'000.0};
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
@@ -96,12 +98,12 @@ TEST_CASE(
       const Crossing& a = way.crossings[i];
       const Crossing& b = way.crossings[i + 1];
       REQUIRE(std::abs(a.x - b.x) + std::abs(a.y - b.y) == 1);
-      // A street on every side: there are blocks to the left and right of it.
+      // Never on the border of the grid: there are blocks on both sides of every street.
       REQUIRE(b.x >= 1);
       REQUIRE(b.x <= grid.columns() - 2);
       REQUIRE(b.y >= 1);
       REQUIRE(b.y <= grid.rows() - 2);
-      if (i > 0) CHECK_FALSE(way.crossings[i - 1] == b);  // it never turns round
+      if (i > 0) CHECK_FALSE(way.crossings[i - 1] == b);  // never turns round
       const bool again = !driven.insert(street_of(a, b)).second;
       (i < way.first_old ? repeated_new : repeated_old) += again ? 1 : 0;
       length += (grid.at(b) - grid.at(a)).norm();
@@ -109,11 +111,11 @@ TEST_CASE(
     CHECK(repeated_new == 0);
     CHECK(repeated_old >= 3);
     CHECK(length >= 10'000.0);
-    CHECK(length < 10'200.0);  // up to two streets of 95 m more
+    CHECK(length < 10'200.0);  // exceeded by at most two streets of 95 m
   }
 }
 
-TEST_CASE("a block is the same whatever else is built, and its neighbour is another") {
+TEST_CASE("a block does not depend on what else is built, and differs from its neighbour") {
   Random random(3);
   const CityTerrain terrain{Random(random.next())};
   const CityGrid grid(Random(random.next()), 5, 5);
@@ -134,7 +136,7 @@ TEST_CASE("a block is the same whatever else is built, and its neighbour is anot
   CHECK(differences == 0);
 }
 
-TEST_CASE("from the air, streets and pavements lie on the hills and houses stand on them") {
+TEST_CASE("seen from above, streets and pavements lie on the terrain and houses stand on it") {
   Random random(8);
   const CityTerrain terrain{Random(random.next())};
   const CityGrid grid(Random(random.next()), 4, 4);
@@ -151,7 +153,7 @@ TEST_CASE("from the air, streets and pavements lie on the hills and houses stand
     const Hit hit = caster.cast(eye.cast<float>(), -Eigen::Vector3f::UnitZ(), 100.0F);
     REQUIRE(hit.found);  // the ground has no holes
     const double height = kSkyM - static_cast<double>(hit.distance_m);
-    // Patches of 4 m across hills that bend by less than 1/1000 m: 2 mm; single precision adds a few
+    // Flat patches of 4 m on terrain with a curvature below 1/1000 m: 2 mm; single precision adds a few
     // micrometres.
     CHECK(height > -0.002);
     const bool road = std::abs(height) < 0.002;
@@ -163,7 +165,7 @@ TEST_CASE("from the air, streets and pavements lie on the hills and houses stand
   CHECK(above > 400);
 }
 
-TEST_CASE("the city's vehicle stays on the ground and clear of everything, parked and moving") {
+TEST_CASE("the city's vehicle stays on the ground and clear of all obstacles, parked and moving") {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     CAPTURE(seed);
     const Scenario brief = seed == 1 ? Scenario{} : make_city(seed, true);
@@ -173,7 +175,7 @@ TEST_CASE("the city's vehicle stays on the ground and clear of everything, parke
     double highest = -1.0;
     double tilt = 0.0;
     for (double t = 0.0; t < scenario.trajectory.duration_s(); t += 0.4) {
-      // At the height of a bonnet: what stands lower, kerbs above all, its wheels may pass.
+      // At the height of a bonnet: lower objects such as kerbs may pass between the wheels.
       for (int i = 0; i < 16; ++i) {
         const double angle = 2.0 * std::numbers::pi * i / 16;
         const Hit hit = look(scenario, t, {0.0, 0.0, 0.9}, {std::cos(angle), std::sin(angle), 0.0});
@@ -183,23 +185,24 @@ TEST_CASE("the city's vehicle stays on the ground and clear of everything, parke
           static_cast<double>(look(scenario, t, {0.0, 0.0, 0.5}, -Vector3d::UnitZ()).distance_m);
       lowest = std::min(lowest, above - 0.5);
       highest = std::max(highest, above - 0.5);
-      // Left and right of it the ground is equally far below: it leans with the road.
+      // The ground is equally far below on the left and on the right: the vehicle rolls with the road.
       const double left =
           static_cast<double>(look(scenario, t, {0.0, 0.6, 0.5}, -Vector3d::UnitZ()).distance_m);
       const double right =
           static_cast<double>(look(scenario, t, {0.0, -0.6, 0.5}, -Vector3d::UnitZ()).distance_m);
       tilt = std::max(tilt, std::abs(left - right));
     }
-    CHECK(least > 0.9);  // half of its width, 0.7 m, and a hand
-    // Springs heave by 3 mm rms (1.5 cm at five sigma) and its lean tilts the ray by a hair.
+    CHECK(least > 0.9);  // half of its width, 0.7 m, plus 0.2 m
+    // Heave of 3 mm rms is 1.5 cm at five sigma; the inclination of the ray adds little.
     CHECK(lowest > -0.02);
     CHECK(highest < 0.02);
-    // It leans with the road, but for 0.2 degrees rms of rolling: 4 mm over 1.2 m, 2.1 cm at five sigma.
+    // Vibration of the roll by 0.2 degrees rms: 4 mm over 1.2 m, 2.1 cm at five sigma.
     CHECK(tilt < 0.022);
   }
 }
 
-TEST_CASE("city is 2 km of streets with several metres of height, at 6 to 10 m/s where it is straight") {
+TEST_CASE(
+    "city is 2 km of streets with several metres of height, driven at 6 to 10 m/s on straight stretches") {
   const Scenario& scenario = whole_city();
   CHECK(length_m(scenario) > 1'950.0);
   CHECK(length_m(scenario) < 2'250.0);
@@ -218,10 +221,10 @@ TEST_CASE("city is 2 km of streets with several metres of height, at 6 to 10 m/s
   CHECK(top_m_s > 7.0);
   CHECK(top_m_s < 10.1);
   CHECK(high_m - low_m > 4.0);
-  CHECK(side_m_s2 < 3.0);  // nobody falls over: corners at 2.4 m/s on 4 m are 1.4 m/s^2, brakes 1.8
+  CHECK(side_m_s2 < 3.0);  // corners at 2.4 m/s with a radius of 4 m: 1.4 m/s^2; braking: 1.8
 }
 
-TEST_CASE("traffic moves on the ground, is there while the robot is near, and on both sides of the way") {
+TEST_CASE("traffic moves on the ground, exists while the robot is near, and on both sides of the way") {
   Random random(4);
   const CityWayWish wish{3, 400.0, 0.0};
   const CityTerrain terrain{Random(random.next())};
@@ -239,7 +242,7 @@ TEST_CASE("traffic moves on the ground, is there while the robot is near, and on
     for (std::size_t i = 0; i + 6 < body.x_m.size(); ++i) {
       const double t = SplineGrid::kStepS * static_cast<double>(i + 3);
       const Vector2d at(body.x_m.at(t), body.y_m.at(t));
-      // On the carriageway or, 12 cm higher, on the pavement.
+      // On the carriageway, or 12 cm higher on the pavement.
       const double above = body.z_m.at(t) - terrain.height_m(at);
       CHECK(std::min(std::abs(above), std::abs(above - kKerbM)) < 0.002);
       const RawPose& robot = poses[body.first + i + 3];

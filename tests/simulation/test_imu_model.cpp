@@ -30,7 +30,7 @@ Trajectory make_drive() {
 
 }  // namespace
 
-TEST_CASE("at rest and level the unit reads gravity upwards and its biases") {
+TEST_CASE("at rest and level, the unit reads gravity upwards plus its biases") {
   ImuErrors errors;
   errors.gyro_bias_rad_s = {0.001, -0.002, 0.003};
   errors.accel_bias_m_s2 = {0.02, -0.01, 0.03};
@@ -41,7 +41,7 @@ TEST_CASE("at rest and level the unit reads gravity upwards and its biases") {
   CHECK((sample.accel_m_s2 - errors.accel_bias_m_s2 - Vector3d(0.0, 0.0, 9.80665)).norm() < 1e-9);
 }
 
-TEST_CASE("integrating a unit without errors, mounted askew, gives back the motion") {
+TEST_CASE("integrating the samples of a rotated unit without errors reproduces the motion") {
   const Trajectory drive = make_drive();
   const Eigen::Isometry3d T_base_imu = Mount{{0.3, -0.1, 0.2}, {5.0, -10.0, 30.0}}.T_base_sensor();
   ImuModel imu(drive, T_base_imu, ImuErrors{}, Random(1));
@@ -53,7 +53,8 @@ TEST_CASE("integrating a unit without errors, mounted askew, gives back the moti
     T_world_base.translation() = state.p_world;
     return Eigen::Isometry3d(T_world_base * T_base_imu);
   };
-  // Strapdown with the midpoint rule at 2 kHz: errors of the order of (w dt)^2 a t, far below the tolerance.
+  // Strapdown integration by the midpoint rule at 2 kHz: errors of the order of (w dt)^2 a t, far below the
+  // tolerance.
   constexpr double kDt = 5e-4;
   Eigen::Quaterniond q(pose_of_imu(0.0).rotation());
   Vector3d p = pose_of_imu(0.0).translation();
@@ -78,13 +79,13 @@ TEST_CASE("integrating a unit without errors, mounted askew, gives back the moti
   CHECK(q.angularDistance(Eigen::Quaterniond(expected.rotation())) < 1e-4);
 }
 
-TEST_CASE("white noise has the data sheet's density") {
+TEST_CASE("white noise has the density of the data sheet") {
   ImuErrors errors;
   errors.gyro_density_rad_s_rthz = 5e-4;
   errors.accel_density_m_s2_rthz = 8e-4;
   const Trajectory rest = make_rest();
   ImuModel imu(rest, Eigen::Isometry3d::Identity(), errors, Random(2));
-  // The variance of the mean over one second is density^2 / (2 * 1 s), whatever the rate.
+  // The variance of the mean over one second is density^2 / (2 * 1 s), independent of the sampling rate.
   double gyro = 0.0;
   double accel = 0.0;
   constexpr int kMeans = 400;

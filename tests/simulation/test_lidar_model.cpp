@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A closed room whose walls are easy to measure without any ray caster.
+// A closed room for which the distance to the walls is known in closed form.
 const Vector3d kLow(-3.0, -4.0, 0.0);
 const Vector3d kHigh(9.0, 6.0, 3.2);
 
@@ -44,8 +44,8 @@ Trajectory make_drive() {
 
 const Mount kMount{{0.2, 0.1, 0.5}, {3.0, -4.0, 25.0}};
 
-/// All points of all packets up to `seconds`, as distances from the nearest wall. `pose_time_of` says which
-/// pose a point gets.
+/// Distances from the nearest wall of all points of all packets up to `seconds`. `pose_time_of`: time of the
+/// pose that a point is transformed with.
 template <typename PoseTime>
 std::vector<double> wall_errors(const LidarErrors& errors, double seconds, PoseTime pose_time_of) {
   const World room = make_room();
@@ -81,33 +81,33 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
-TEST_CASE("packets of a perfect sensor on a moving robot decode to points on the walls of the room") {
+TEST_CASE("decoded packets of a perfect sensor on a moving robot are points on the walls of the room") {
   const std::vector<double> errors = wall_errors(LidarErrors{}, 2.0, [](double t) { return t; });
-  CHECK(errors.size() > 500'000);  // 300000 a second, all of them hit
-  // 1 mm from the 2 mm unit of range, up to 2 mm from the 0.01 degree unit of azimuth at 12 m, the
-  // micrometres of single precision; the time anchor may be off by a tenth of a millisecond: 0.1 mm at 1 m/s.
+  CHECK(errors.size() > 500'000);  // 300000 per second, all of which hit
+  // Resolution of the range (2 mm): 1 mm; of the azimuth (0.01 degree) at 12 m: up to 2 mm; single precision:
+  // some micrometres; error of the time anchor (0.1 ms) at 1 m/s: 0.1 mm.
   CHECK(*std::max_element(errors.begin(), errors.end()) < 4e-3);
   CHECK(median(errors) < 1e-3);
 }
 
-TEST_CASE("every laser is fired from its own pose: with one pose a turn the walls are smeared") {
+TEST_CASE("each laser fires from its own pose: with one pose per revolution the walls are smeared") {
   const std::vector<double> errors =
       wall_errors(LidarErrors{}, 2.0, [](double t) { return 0.1 * std::floor(10.0 * t); });
-  // Up to 0.1 s at 1 m/s.
+  // Poses are off by up to 0.1 s at 1 m/s.
   CHECK(*std::max_element(errors.begin(), errors.end()) > 0.05);
 }
 
-TEST_CASE("range noise has its standard deviation on a wall at right angles") {
+TEST_CASE("at normal incidence, range noise has its nominal standard deviation") {
   LidarErrors errors;
   errors.range_sigma_m = 0.012;
   const std::vector<double> distances = wall_errors(errors, 0.5, [](double t) { return t; });
-  // Errors along the beam show as less across an oblique wall; the median of |error| at right angles is 0.67
-  // sigma = 8 mm.
+  // The distance from an oblique wall shows only a part of the error along the beam; at normal incidence the
+  // median of |error| is 0.67 sigma = 8 mm.
   CHECK(median(distances) > 0.004);
   CHECK(median(distances) < 0.009);
 }
 
-TEST_CASE("the sensor's clock runs from its offset with its drift and starts again every hour") {
+TEST_CASE("the sensor's clock starts at its offset, drifts and wraps every hour") {
   LidarErrors errors;
   errors.clock_offset_s = 3599.9995;
   errors.clock_drift = 1e-3;
@@ -119,11 +119,11 @@ TEST_CASE("the sensor's clock runs from its offset with its drift and starts aga
     return static_cast<double>(bytes[1200] | bytes[1201] << 8 | bytes[1202] << 16) + 16777216.0 * bytes[1203];
   };
   CHECK(std::abs(clock_us(0) - 3'599'999'500.0) <= 1.0);
-  // 24 firing cycles of 55.296 us, times 1.001, less what was left of the hour
+  // 24 firing cycles of 55.296 us, times 1.001, minus the rest of the hour
   CHECK(std::abs(clock_us(1) - (24 * 55.296 * 1.001 - 500.0)) <= 1.0);
 }
 
-TEST_CASE("a body that moves is seen where it is at the time of the ray") {
+TEST_CASE("a moving body is hit at its position at the time of the ray") {
   Mesh panel;
   panel.quad({0.0, -1.0, -1.0}, {0.0, 1.0, -1.0}, {0.0, 1.0, 1.0}, {0.0, -1.0, 1.0}, Surface::kWood);
   std::vector<double> x;

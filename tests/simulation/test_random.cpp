@@ -30,14 +30,15 @@ TEST_CASE("the streams have the moments of their distributions") {
   CHECK(std::abs(exponential / kDraws - 2.0) < 0.032);
 }
 
-TEST_CASE("streams of another name, index or seed are different, equal ones the same") {
+TEST_CASE("streams with another name, index or seed differ; streams with the same are equal") {
   CHECK(Random(1, "a").next() == Random(1, "a").next());
   CHECK(Random(1, "a").next() != Random(1, "b").next());
   CHECK(Random(1, "a", 0).next() != Random(1, "a", 1).next());
   CHECK(Random(1, "a").next() != Random(2, "a").next());
 }
 
-TEST_CASE("correlated noise has its standard deviation at every step and its memory over a time constant") {
+TEST_CASE(
+    "correlated noise has its standard deviation at every step and its correlation after a time constant") {
   GaussMarkov process(2.0, 5.0, Random(3));
   constexpr int kSteps = 400'000;
   double previous = process.step(0.0);
@@ -49,7 +50,7 @@ TEST_CASE("correlated noise has its standard deviation at every step and its mem
     products += value * previous;
     previous = value;
   }
-  // 400000 steps of a tenth of a time constant are 20000 independent ones: 5 sigma of the variance is 5 %.
+  // 400000 steps of a tenth of a time constant equal 20000 independent ones: 5 sigma of the variance is 5 %.
   CHECK(squares / kSteps == doctest::Approx(4.0).epsilon(0.05));
   CHECK(products / squares == doctest::Approx(std::exp(-0.1)).epsilon(0.01));
 }

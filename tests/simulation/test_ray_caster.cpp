@@ -23,7 +23,7 @@ Vector3d draw_point(Random& random, double size) {
   return {x, y, z};
 }
 
-/// Independent of the ray caster: plane, then the three edges, in double precision, over all triangles.
+/// Exhaustive search in double precision, independent of the ray caster: plane, then the three edges.
 double nearest(const Mesh& mesh, const Vector3d& origin, const Vector3d& direction, double limit) {
   double best = limit;
   for (const Triangle& triangle : mesh.triangles()) {
@@ -56,7 +56,7 @@ Mesh draw_mesh(Random& random) {
 
 }  // namespace
 
-TEST_CASE("a ray ends where a search through all triangles says") {
+TEST_CASE("the nearest hit is that of an exhaustive search") {
   Random random(42);
   const Mesh mesh = draw_mesh(random);
   const RayCaster caster(mesh);
@@ -69,8 +69,8 @@ TEST_CASE("a ray ends where a search through all triangles says") {
     const double expected = nearest(mesh, origin, direction, 50.0);
     const Hit hit = caster.cast(origin.cast<float>(), direction.cast<float>(), 50.0F);
     hits += hit.found ? 1 : 0;
-    // Single precision at 20 m leaves some micrometres; more where a triangle is seen almost edge-on. A ray
-    // that grazes an edge may fall on either side of it.
+    // Single precision at 20 m: some micrometres, more for a triangle seen almost edge-on. A ray that grazes
+    // an edge may pass on either side of it.
     if (std::abs(static_cast<double>(hit.distance_m) - expected) > 1e-3) ++differences;
   }
   CHECK(hits > kRays / 10);
@@ -96,7 +96,7 @@ TEST_CASE("rays along the axes and from inside a box hit its walls") {
   }
 }
 
-TEST_CASE("nothing is hit beyond the limit, and nothing in an empty world") {
+TEST_CASE("there is no hit beyond the limit and none in an empty world") {
   Mesh mesh;
   mesh.quad({5.0, -1.0, -1.0}, {5.0, 1.0, -1.0}, {5.0, 1.0, 1.0}, {5.0, -1.0, 1.0}, Surface::kWood);
   const RayCaster wall(mesh);

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Distance to what stands in a direction given in base_link, from a point of base_link.
+/// Distance to the nearest obstacle from a point of base_link in a direction of base_link [m].
 double look(const Scenario& scenario, double time_s, const Vector3d& from_base,
             const Vector3d& direction_base) {
   const MotionState state = scenario.trajectory.at(time_s);
@@ -25,7 +25,7 @@ double look(const Scenario& scenario, double time_s, const Vector3d& from_base,
   return scenario.world.cast(moment, eye, state.q_world_base * direction_base, 50.0).distance_m;
 }
 
-/// Least free distance around the robot's middle, 0.45 m above the floor, at all times.
+/// Minimum horizontal distance from the robot's centre to any obstacle, 0.45 m above the floor, over the run.
 double least_clearance(const Scenario& scenario) {
   double least = 50.0;
   for (double t = 0.0; t < scenario.trajectory.duration_s(); t += 0.2) {
@@ -43,7 +43,7 @@ struct Height {
   double highest = -10.0;
 };
 
-/// Height of the robot's middle above what is under it.
+/// Height of the robot's centre above the surface below it.
 Height height_above_floor(const Scenario& scenario) {
   Height height;
   for (double t = 0.0; t < scenario.trajectory.duration_s(); t += 0.1) {
@@ -69,7 +69,7 @@ double travelled_m(const Scenario& scenario, const std::string& label) {
 
 }  // namespace
 
-TEST_CASE("the robot stays clear of walls and people and on the floor, in every building") {
+TEST_CASE("in every building, the robot stays clear of walls and people and on the floor") {
   struct Case {
     Scenario (*make)(std::uint64_t, bool);
     bool short_form;
@@ -81,17 +81,18 @@ TEST_CASE("the robot stays clear of walls and people and on the floor, in every 
       const Scenario scenario = test.make(seed, test.short_form);
       CAPTURE(scenario.description);
       CAPTURE(seed);
-      CHECK(least_clearance(scenario) > 0.35);  // half the robot's width
+      CHECK(least_clearance(scenario) > 0.35);  // half of the robot's width
       const Height height = height_above_floor(scenario);
-      // On the flat the tracks touch. On stairs the middle rides on the edges: up to a whole rise of 0.18 m
-      // above the tread behind an edge; where it tips over, it cuts the corner by a few centimetres.
+      // On the flat the tracks touch the floor. On stairs they roll on the edges of the steps: up to a rise
+      // of 0.18 m above the tread behind an edge, and a few centimetres below the edge where the slope
+      // changes.
       CHECK(height.lowest > -0.05);
       CHECK(height.highest < 0.25);
     }
   }
 }
 
-TEST_CASE("three-floors is the paper's run: 311 m of corridors, 12 m of height, one long bare stretch") {
+TEST_CASE("three-floors is the paper's run: 311 m of corridors, 12 m of height, a long featureless stretch") {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Scenario scenario = make_three_floors(seed, false);
     const double start_m = scenario.trajectory.at(0.0).p_world.z();
@@ -106,7 +107,7 @@ TEST_CASE("three-floors is the paper's run: 311 m of corridors, 12 m of height, 
   }
 }
 
-TEST_CASE("short forms last 30 to 90 s, whole runs start with 3 to 8 s of rest") {
+TEST_CASE("short forms last 30 to 90 s; full runs start with 3 to 8 s at rest") {
   for (const auto make : {make_three_floors, make_elevator, make_moulin, make_stairs_demo, make_city}) {
     const Scenario brief = make(4, true);
     CHECK(brief.trajectory.duration_s() > 30.0);
@@ -118,14 +119,14 @@ TEST_CASE("short forms last 30 to 90 s, whole runs start with 3 to 8 s of rest")
   }
 }
 
-TEST_CASE("the elevator's cabin carries the robot: during the ride its walls and floor keep their distance") {
+TEST_CASE("during an elevator ride, the distances to the walls and floor of the cabin are constant") {
   const Scenario scenario = make_elevator(2, true);
   const auto ride = std::find_if(scenario.labels.begin(), scenario.labels.end(),
                                  [](const LabelledSpan& span) { return span.label == "elevator"; });
   REQUIRE(ride != scenario.labels.end());
   const double middle_s = 0.5 * (ride->start_s + ride->end_s);
   CHECK(std::abs(scenario.trajectory.at(middle_s).v_world.z()) > 0.5);
-  // The label holds until the doors are open again; the ride is where the robot moves.
+  // The label lasts until the doors are open again; the ride is the part with motion.
   double end_s = ride->end_s;
   while (std::abs(scenario.trajectory.at(end_s).v_world.z()) < 0.01) end_s -= 0.05;
   for (const Vector3d& direction :
@@ -134,14 +135,13 @@ TEST_CASE("the elevator's cabin carries the robot: during the ride its walls and
     const double before = look(scenario, ride->start_s, {0.0, 0.0, 0.6}, direction);
     CHECK(before < 2.0);
     for (double t = ride->start_s; t < end_s; t += 0.3) {
-      // The walls are exact; single precision at 40 m leaves some micrometres.
+      // Tolerance: single precision at 40 m, some micrometres.
       CHECK(std::abs(look(scenario, t, {0.0, 0.0, 0.6}, direction) - before) < 1e-4);
     }
   }
 }
 
-TEST_CASE(
-    "the sphere hangs: the force that its accelerometer feels lies along its rope, its shaft around it") {
+TEST_CASE("the sphere hangs in the shaft, and the specific force on its accelerometer is along the rope") {
   const Scenario scenario = make_moulin(3, false);
   double worst_rad = 0.0;
   double tilt_rad = 0.0;
@@ -154,7 +154,7 @@ TEST_CASE(
   }
   CHECK(tilt_rad > 0.005);
   CHECK(tilt_rad < 0.15);
-  // The rope's length changes and hands pull unevenly: not a perfect pendulum.
+  // No ideal pendulum: the rope's length changes, unevenly.
   CHECK(worst_rad < 0.5 * tilt_rad + 0.01);
   CHECK(least_clearance(scenario) > 0.6);
 }

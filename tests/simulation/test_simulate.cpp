@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder that goes when the test ends.
+/// Temporary folder, deleted at the end of the test.
 class Scratch {
  public:
   Scratch() {
@@ -54,7 +54,7 @@ ScenarioRequest brief(const char* name, std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("the same seed gives the same bytes in every file, another seed gives others") {
+TEST_CASE("the same seed gives byte-identical files, another seed different ones") {
   const Scratch scratch;
   for (const ScenarioInfo& info : scenarios()) {
     CAPTURE(info.name);
@@ -79,7 +79,7 @@ TEST_CASE("the same seed gives the same bytes in every file, another seed gives 
   }
 }
 
-TEST_CASE("progress rises to one") {
+TEST_CASE("progress increases to one") {
   const Scratch scratch;
   double last = 0.0;
   bool falls = false;
@@ -91,7 +91,7 @@ TEST_CASE("progress rises to one") {
   CHECK(last == doctest::Approx(1.0));
 }
 
-TEST_CASE("an unknown scenario is a usage error that names the known ones") {
+TEST_CASE("an unknown scenario is a usage error that lists the known ones") {
   const Scratch scratch;
   std::string message;
   try {

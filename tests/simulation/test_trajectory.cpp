@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A corner, a staircase and a stop: everything that a robot does.
+/// A route with a corner, a staircase and a stop.
 Trajectory make_drive() {
   StairSizes sizes;
   sizes.steps = 6;
@@ -36,7 +36,7 @@ Trajectory make_drive() {
 
 TEST_CASE("velocity, acceleration and both angular rates are the derivatives of the pose") {
   const Trajectory drive = make_drive();
-  // Central differences: the error is h^2/6 times the third derivative (below 100 m/s^3 here), far below the
+  // Central differences: their error, h^2/6 times the third derivative (below 100 m/s^3), is far below the
   // tolerances.
   constexpr double kH = 2e-4;
   double largest_a = 0.0;
@@ -52,10 +52,10 @@ TEST_CASE("velocity, acceleration and both angular rates are the derivatives of 
     CHECK((now.wdot_base - (after.w_base - before.w_base) / (2.0 * kH)).norm() < 1e-3);
     largest_a = std::max(largest_a, now.a_world.norm());
   }
-  CHECK(largest_a > 0.3);  // something happened
+  CHECK(largest_a > 0.3);  // the robot does accelerate
 }
 
-TEST_CASE("position and attitude have no kinks: even acceleration is continuous") {
+TEST_CASE("position and attitude are smooth: the acceleration is continuous") {
   const Trajectory drive = make_drive();
   double largest_step = 0.0;
   double largest_turn_step = 0.0;
@@ -68,7 +68,7 @@ TEST_CASE("position and attitude have no kinks: even acceleration is continuous"
   CHECK(largest_turn_step < 1e-3);
 }
 
-TEST_CASE("the robot faces where it goes, on the flat and on the stairs") {
+TEST_CASE("the robot faces its direction of travel, on the flat and on stairs") {
   const Trajectory drive = make_drive();
   double worst_side = 0.0;
   double steepest = 0.0;
@@ -79,13 +79,13 @@ TEST_CASE("the robot faces where it goes, on the flat and on the stairs") {
     worst_side = std::max(worst_side, std::abs(v_base.y()) / v_base.x());
     steepest = std::max(steepest, std::asin(std::abs(state.q_world_base.toRotationMatrix()(2, 0))));
   }
-  CHECK(worst_side < 0.12);  // smoothing of corners and shaking of the heading: some degrees
+  CHECK(worst_side < 0.12);  // smoothing of corners and vibration of the heading: some degrees
   // 0.17 m rise on 0.29 m going is 30.4 degrees.
   CHECK(steepest > 0.50);
   CHECK(steepest < 0.62);
 }
 
-TEST_CASE("an elevator ride keeps its speed and acceleration and arrives") {
+TEST_CASE("an elevator ride respects its limits of speed and acceleration and reaches the target height") {
   Route route({0.0, 0.0}, 10.0, 0.0);
   route.wait(1.0);
   route.ride(-7.3, 1.0, 0.8);
@@ -99,7 +99,7 @@ TEST_CASE("an elevator ride keeps its speed and acceleration and arrives") {
   }
   CHECK(ride.at(ride.duration_s()).p_world.z() == doctest::Approx(2.7));
   CHECK(speed == doctest::Approx(1.0).epsilon(0.001));
-  CHECK(acceleration == doctest::Approx(0.8).epsilon(0.03));  // smoothing takes the tip off
+  CHECK(acceleration == doctest::Approx(0.8).epsilon(0.03));  // the spline flattens the peak
 }
 
 }  // namespace isobar::test::test_trajectory

@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A box of 1 m that moves along x from the given place, for a part of the run.
+/// A box of 1 m that moves along x from the given position during a part of the run.
 MovingBody make_box(double x_m, double speed_m_s, std::size_t first, std::size_t samples) {
   Mesh shape;
   shape.box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, Surface::kMetal);
@@ -30,11 +30,11 @@ double look(const World& world, double time_s) {
 
 }  // namespace
 
-TEST_CASE("a body is seen where it is at its own time, and only while it is there") {
-  // 100 samples are 5 s; the second body comes after 2 s and goes after 4 s.
+TEST_CASE("a moving body is hit at its position at the time of the ray, and only while it exists") {
+  // 100 samples are 5 s; the second body exists from 2 s to 4 s.
   const World world(Mesh{}, {make_box(20.0, 0.0, 0, 100), make_box(5.0, 2.0, 40, 40)});
   CHECK(look(world, 1.0) == doctest::Approx(19.5));
-  CHECK(look(world, 2.5) == doctest::Approx(5.5));  // 0.5 s on its way: 5 + 1 - 0.5
+  CHECK(look(world, 2.5) == doctest::Approx(5.5));  // 5 m + 0.5 s * 2 m/s, minus half of the box
   CHECK(look(world, 3.5) == doctest::Approx(7.5));
   CHECK(look(world, 4.5) == doctest::Approx(19.5));
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "daemon/cpu_time.hpp"
+#include "tests/core/map/nearest_match.hpp"
 
 namespace isobar::bench {
 
@@ -26,8 +27,7 @@ void SystemUnderTest::hand_over() {
 
 bool SystemUnderTest::has_plane_near(const Eigen::Vector3d& p_map, const Eigen::Vector3d& viewpoint_map,
                                      double max_distance_m) const {
-  MapMatch match;
-  return map_.snapshot()->nearest(p_map, viewpoint_map, max_distance_m, match);
+  return test::nearest_match(*map_.snapshot(), p_map, viewpoint_map, max_distance_m).has_value();
 }
 
 StageProbe::StageProbe(const StageSettings& settings)

@@ -23,7 +23,7 @@ Eigen::Vector3f ray(float azimuth_deg, float elevation_deg, float range) {
   return range * Eigen::Vector3f(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
 }
 
-// A sphere of 10 m around a 16-beam lidar.
+// Scan of a sphere with a radius of 10 m by a 16-beam lidar in its centre.
 std::unique_ptr<RegisteredScan> scan_of_sphere() {
   auto scan = std::make_unique<RegisteredScan>();
   scan->point_count = 0;
@@ -39,15 +39,15 @@ std::unique_ptr<RegisteredScan> scan_of_sphere() {
 bool passes_through(const FreeSpace& free_space, const Eigen::Vector3f& p_lidar,
                     const Eigen::Vector3f& normal) {
   FreeSpace::Points points;
-  FreeSpace::Ranges shortest_m{};
+  FreeSpace::Ranges min_range_m{};
   points.set(0, p_lidar);
-  free_space.shortest_around(points, 1, shortest_m);
-  return FreeSpace::passes_through(p_lidar, normal, shortest_m[0], 0.3F);
+  free_space.min_ranges(points, 1, min_range_m);
+  return FreeSpace::passes_through(p_lidar, normal, min_range_m[0], 0.3F);
 }
 
 }  // namespace
 
-TEST_CASE("rays pass what stands in front of their ends, not what lies behind or where no ray goes") {
+TEST_CASE("rays pass through a point in front of their ends, not behind them or where no ray goes") {
   auto free_space = std::make_unique<FreeSpace>();
   free_space->set_scan(*scan_of_sphere(), Eigen::Isometry3d::Identity());
   const Eigen::Vector3f towards = -ray(33.0F, 1.0F, 1.0F);
@@ -57,7 +57,7 @@ TEST_CASE("rays pass what stands in front of their ends, not what lies behind or
   CHECK_FALSE(passes_through(*free_space, ray(33.0F, 60.0F, 5.0F), -ray(33.0F, 60.0F, 1.0F)));
 }
 
-TEST_CASE("a surface that is only grazed is not passed, however far the rays go") {
+TEST_CASE("rays never pass through a surface that they graze, however far they go") {
   auto free_space = std::make_unique<FreeSpace>();
   free_space->set_scan(*scan_of_sphere(), Eigen::Isometry3d::Identity());
   // A floor 0.1 m under the rays, seen at one degree.

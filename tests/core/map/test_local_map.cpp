@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/map/local_map.hpp"
+#include "tests/core/map/nearest_match.hpp"
 
 namespace isobar::test::test_local_map {
 
@@ -18,22 +19,21 @@ namespace {
 
 using isobar::LocalMap;
 using isobar::MapConfig;
-using isobar::MapMatch;
 using isobar::MapPoint;
 using isobar::PoseMode;
 using isobar::RegisteredScan;
 using isobar::ScanPoint;
 
-constexpr double kRoomM = 5.0;  // half the edge of a square room, the lidar in its middle
+constexpr double kRoomM = 5.0;  // half the edge of a square room with the lidar in its centre
 
-// Range along a direction to the walls of the room (no floor, no ceiling).
+// Range to the walls of the room along a direction (no floor, no ceiling).
 double range_to_walls(const Eigen::Vector3d& direction) {
   return kRoomM / std::max(std::abs(direction.x()), std::abs(direction.y()));
 }
 
 using RangeOf = std::function<double(const Eigen::Vector3d&)>;
 
-// A scan of 16 rings from `x_m` along the x axis; `range_of` gives the range along a direction.
+// Scan of 16 rings by a robot at `x_m` on the x axis; `range_of`: range along a direction.
 void fill_scan(RegisteredScan& scan, double x_m, std::int64_t stamp_ns, const RangeOf& range_of) {
   scan.pose = {};
   scan.pose.stamp_ns = stamp_ns;
@@ -63,8 +63,8 @@ std::size_t points_within(const LocalMap& map, const Eigen::Vector3d& centre, do
   return count;
 }
 
-// A shelf that keeps everything in memory and counts.
-struct ShelfInMemory final : isobar::TileShelf {
+// Tile storage in memory that counts the tiles read.
+struct StorageInMemory final : isobar::TileStorage {
   bool put(const isobar::TileKey& key, std::span<const std::byte> bytes) override {
     tiles[key].assign(bytes.begin(), bytes.end());
     return true;
@@ -79,7 +79,7 @@ struct ShelfInMemory final : isobar::TileShelf {
   std::size_t taken = 0;
 };
 
-// A post of 0.4 m at `x_m`, 0: what a standing person looks like.
+// The room with a post of 0.4 m width at (x_m, 0), like a standing person.
 RangeOf room_with_post(double x_m) {
   return [x_m](const Eigen::Vector3d& direction) {
     const double wall = range_to_walls(direction);
@@ -90,7 +90,7 @@ RangeOf room_with_post(double x_m) {
 
 }  // namespace
 
-TEST_CASE("a wall is matched on its plane, with the normal towards the robot") {
+TEST_CASE("a wall is matched with its plane and the normal towards the robot") {
   LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
   auto scan = std::make_unique<RegisteredScan>();
   std::mt19937 random(5);
@@ -100,14 +100,14 @@ TEST_CASE("a wall is matched on its plane, with the normal towards the robot") {
               [&](const Eigen::Vector3d& direction) { return range_to_walls(direction) + noise(random); });
     CHECK(map.update(*scan));
   }
-  MapMatch match;
   const Eigen::Vector3d beside_wall(kRoomM - 0.1, 1.0, 0.3);
-  REQUIRE(map.snapshot()->nearest(beside_wall, Eigen::Vector3d::Zero(), 0.5, match));
-  // Ten scans of 1.5 cm noise average to millimetres in place and about a degree in direction.
-  CHECK(match.q_map.x() == doctest::Approx(kRoomM).epsilon(0.002));
-  CHECK(match.normal_map.x() < -std::cos(3.0F * std::numbers::pi_v<float> / 180.0F));
-  // From behind the wall there is nothing to match.
-  CHECK_FALSE(map.snapshot()->nearest(beside_wall, Eigen::Vector3d(20.0, 1.0, 0.3), 0.5, match));
+  const auto match = nearest_match(*map.snapshot(), beside_wall, Eigen::Vector3d::Zero(), 0.5);
+  REQUIRE(match.has_value());
+  // Ten scans with 1.5 cm noise average to millimetres in position and about a degree in direction.
+  CHECK(match->q_map.x() == doctest::Approx(kRoomM).epsilon(0.002));
+  CHECK(match->normal_map.x() < -std::cos(3.0F * std::numbers::pi_v<float> / 180.0F));
+  // Seen from behind the wall, no plane faces the viewpoint.
+  CHECK_FALSE(nearest_match(*map.snapshot(), beside_wall, Eigen::Vector3d(20.0, 1.0, 0.3), 0.5).has_value());
 }
 
 TEST_CASE("a robot that stands still does not make the map grow") {
@@ -125,19 +125,20 @@ TEST_CASE("a robot that stands still does not make the map grow") {
 }
 
 TEST_CASE(
-    "of scans that follow each other closely each gives half, in turns; where it matters a scan is whole") {
+    "scans that follow each other closely insert shares of their points in turn; in a new place, all "
+    "points") {
   MapConfig config;
   config.update_distance_m = 0.0;  // every scan is taken
   config.see_through_limit = 0;
   auto scan = std::make_unique<RegisteredScan>();
-  // Cells after the first scan in an empty map, and `count` of another place `interval_ns` apart.
+  // Number of cells after one scan in an empty map and `count` scans of another place, `interval_ns` apart.
   const auto cells_after = [&](int count, std::int64_t interval_ns, PoseMode mode, double overlap) {
     LocalMap map(config, Eigen::Isometry3d::Identity());
     fill_scan(*scan, 0.0, 0, range_to_walls);
     map.update(*scan);
     for (int i = 1; i <= count; ++i) {
       fill_scan(*scan, 50.0, i * interval_ns, range_to_walls);
-      // Where a point stands, none other does: in the room of 10 m they share cells, in one of 60 m few do.
+      // Scaled to a room of 60 m, where few points share a cell: in the room of 10 m most do.
       for (ScanPoint& p : std::span(scan->points).first(scan->point_count)) {
         p = {6 * p.x_m, 6 * p.y_m, 6 * p.z_m, 0, 0, 0};
       }
@@ -153,20 +154,20 @@ TEST_CASE(
   const std::size_t half = cells_after(1, 100 * kMs, PoseMode::kRegistered, 0.9) - first;
   const std::size_t quarter = cells_after(1, 50 * kMs, PoseMode::kRegistered, 0.9) - first;
   REQUIRE(whole > 5'000);
-  // Some cells hold two points or three, so that half of the points fill more than half of the cells.
+  // Some cells contain two or three points, so that half of the points fill more than half of the cells.
   CHECK(half < 7 * whole / 10);
   CHECK(half > 4 * whole / 10);
   CHECK(quarter < half);
   CHECK(cells_after(2, 100 * kMs, PoseMode::kRegistered, 0.9) - first == whole);
   CHECK(cells_after(4, 50 * kMs, PoseMode::kRegistered, 0.9) - first == whole);
-  // A new place, and one of which the prior alone says where it is.
+  // All points are inserted in a new place, and when the pose is that of the prior alone.
   CHECK(cells_after(1, 100 * kMs, PoseMode::kRegistered, 0.3) - first == whole);
   CHECK(cells_after(1, 100 * kMs, PoseMode::kPriorOnly, 0.9) - first == whole);
-  // Time that goes back, after a clock was set.
+  // Negative time since the last scan, after the clock was set back.
   CHECK(cells_after(1, -100 * kMs, PoseMode::kRegistered, 0.9) - first == whole);
 }
 
-TEST_CASE("what rays pass through leaves the map; the walls stay") {
+TEST_CASE("cells that rays pass through are removed from the map; the walls stay") {
   LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
   auto scan = std::make_unique<RegisteredScan>();
   fill_scan(*scan, 0.0, 0, room_with_post(3.0));
@@ -181,16 +182,15 @@ TEST_CASE("what rays pass through leaves the map; the walls stay") {
   }
   CHECK(points_within(map, post, 0.5) == 0);
   CHECK(points_within(map, Eigen::Vector3d(-kRoomM, 0.0, 0.0), 2.0) >= walls);
-  MapMatch match;
-  CHECK_FALSE(map.snapshot()->nearest(post, Eigen::Vector3d::Zero(), 0.5, match));
+  CHECK_FALSE(nearest_match(*map.snapshot(), post, Eigen::Vector3d::Zero(), 0.5).has_value());
   CHECK(map.seen_through_count() > 0);
 }
 
-TEST_CASE("tiles out of reach go to the shelf, and memory stays bounded on a long way") {
+TEST_CASE("tiles beyond the radius move to the storage, and memory stays bounded on a long way") {
   MapConfig config;
   config.radius_m = 20.0;
-  ShelfInMemory shelf;
-  LocalMap map(config, Eigen::Isometry3d::Identity(), &shelf);
+  StorageInMemory storage;
+  LocalMap map(config, Eigen::Isometry3d::Identity(), &storage);
   auto scan = std::make_unique<RegisteredScan>();
   std::size_t most_tiles = 0;
   constexpr int kWayM = 100;  // five times the radius
@@ -199,25 +199,26 @@ TEST_CASE("tiles out of reach go to the shelf, and memory stays bounded on a lon
     map.update(*scan);
     most_tiles = std::max(most_tiles, map.tile_count());
   }
-  // A ball of 20 m + one tile holds at most (2 * 28 / 8 + 1)^3 tiles, of which a flat world fills two layers.
+  // A ball of 20 m plus one tile has at most (2 * 28 / 8 + 1)^3 tiles, of which a flat world fills two
+  // layers.
   CHECK(most_tiles < 128);
   std::vector<MapPoint> stored;
-  for (const auto& [key, bytes] : shelf.tiles) {
-    CHECK(isobar::append_tile_points(bytes, stored));
+  for (const auto& [key, bytes] : storage.tiles) {
+    CHECK(isobar::MapTile::append_stored_points(bytes, stored));
   }
   REQUIRE(stored.size() > 1000);
   double nearest = 1e9;
   for (const MapPoint& point : stored) {
     nearest = std::min(nearest, kWayM - point.p_map.x());
   }
-  CHECK(nearest > config.radius_m - 8.0);  // less a tile
+  CHECK(nearest > config.radius_m - 8.0);  // minus the width of a tile
 }
 
-TEST_CASE("a robot that comes back finds the map that it left, and no shelf is asked in between") {
+TEST_CASE("a robot that returns finds the map that it left, and the storage is not read in between") {
   MapConfig config;
   config.radius_m = 20.0;
-  ShelfInMemory shelf;
-  LocalMap map(config, Eigen::Isometry3d::Identity(), &shelf);
+  StorageInMemory storage;
+  LocalMap map(config, Eigen::Isometry3d::Identity(), &storage);
   auto scan = std::make_unique<RegisteredScan>();
   std::int64_t stamp_ns = 0;
   const auto go_to = [&](double x_m) {
@@ -227,47 +228,45 @@ TEST_CASE("a robot that comes back finds the map that it left, and no shelf is a
   for (int i = 0; i < 5; ++i) go_to(0.0);
   const Eigen::Vector3d wall(-kRoomM, 0.0, 0.0);
   const std::size_t points = points_within(map, wall, 4.0);
-  std::vector<isobar::MapMatch> before;
-  const auto look = [&] {
-    std::vector<isobar::MapMatch> matches;
+  const auto match_wall = [&] {
+    std::vector<NearestMatch> matches;
     for (double y = -4.0; y <= 4.0; y += 0.3) {
-      isobar::MapMatch match;
-      if (map.snapshot()->nearest({-kRoomM + 0.05, y, 0.2}, Eigen::Vector3d::Zero(), 0.4, match))
-        matches.push_back(match);
+      const Eigen::Vector3d p(-kRoomM + 0.05, y, 0.2);
+      const auto match = nearest_match(*map.snapshot(), p, Eigen::Vector3d::Zero(), 0.4);
+      if (match) matches.push_back(*match);
     }
     return matches;
   };
-  before = look();
+  const auto before = match_wall();
   REQUIRE(before.size() > 10);
   for (double x = 8.0; x < 80.0; x += 8.0) go_to(x);
   REQUIRE(points_within(map, wall, 4.0) == 0);
-  const std::size_t taken = shelf.taken;
+  const std::size_t taken = storage.taken;
   go_to(80.0);
-  CHECK(shelf.taken == taken);
-  // 12 m away, so that these scans add nothing to the wall.
+  CHECK(storage.taken == taken);
+  // 17 m from the wall, whose tiles are within the radius again; the new scans do not reach it.
   for (int i = 0; i < 8; ++i) go_to(12.0);
   CHECK(points_within(map, wall, 4.0) == points);
-  const auto after = look();
+  const auto after = match_wall();
   REQUIRE(after.size() == before.size());
   for (std::size_t i = 0; i < before.size(); ++i) {
     CHECK(after[i].q_map == before[i].q_map);
     CHECK(after[i].normal_map == before[i].normal_map);
   }
-  CHECK(map.lost_tile_count() == 0);
 }
 
-TEST_CASE("points that fall into a tile of the shelf add to it, even before the map looked for it") {
+TEST_CASE("points in a stored tile are added to it, even if the map has not brought it back yet") {
   MapConfig config;
   config.radius_m = 20.0;
-  ShelfInMemory shelf;
-  LocalMap map(config, Eigen::Isometry3d::Identity(), &shelf);
+  StorageInMemory storage;
+  LocalMap map(config, Eigen::Isometry3d::Identity(), &storage);
   auto scan = std::make_unique<RegisteredScan>();
   fill_scan(*scan, 0.0, 0, range_to_walls);
   map.update(*scan);
   const std::size_t points = points_within(map, Eigen::Vector3d(-kRoomM, 0.0, 0.0), 3.0);
   fill_scan(*scan, 60.0, 1'000'000'000, range_to_walls);
   map.update(*scan);
-  // One long look back along the x axis: its points lie on the wall that was seen from 0.
+  // One long ray back along the x axis ends on the wall that was seen from x = 0.
   scan->pose.T_map_base.translation().x() = 13.0;
   scan->pose.stamp_ns += 1'000'000'000;
   scan->point_count = 1;
@@ -276,20 +275,20 @@ TEST_CASE("points that fall into a tile of the shelf add to it, even before the 
   CHECK(points_within(map, Eigen::Vector3d(-kRoomM, 0.0, 0.0), 3.0) >= points);
 }
 
-TEST_CASE("a damaged tile is counted and forgotten, and the place is mapped anew") {
+TEST_CASE("a damaged tile is dropped and its place is mapped anew") {
   MapConfig config;
   config.radius_m = 20.0;
-  ShelfInMemory shelf;
-  LocalMap map(config, Eigen::Isometry3d::Identity(), &shelf);
+  StorageInMemory storage;
+  LocalMap map(config, Eigen::Isometry3d::Identity(), &storage);
   auto scan = std::make_unique<RegisteredScan>();
   fill_scan(*scan, 0.0, 0, range_to_walls);
   map.update(*scan);
   fill_scan(*scan, 80.0, 1'000'000'000, range_to_walls);
   map.update(*scan);
-  for (auto& [key, bytes] : shelf.tiles) bytes.resize(bytes.size() - 1);
+  for (auto& [key, bytes] : storage.tiles) bytes.resize(bytes.size() - 1);
   fill_scan(*scan, 0.0, 2'000'000'000, range_to_walls);
   map.update(*scan);
-  CHECK(map.lost_tile_count() > 0);
+  CHECK(storage.taken > 0);
   CHECK(points_within(map, Eigen::Vector3d::Zero(), 8.0) > 1000);
 }
 
@@ -306,13 +305,13 @@ TEST_CASE("a snapshot does not change when the map does, and unchanged tiles are
   CHECK(map.snapshot()->plane_count() > planes);
 }
 
-TEST_CASE("a scan placed by the prior alone adds what is unknown and leaves what is known") {
+TEST_CASE("a scan whose pose is that of the prior alone adds points only where the map has none") {
   LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
   auto scan = std::make_unique<RegisteredScan>();
   fill_scan(*scan, 0.0, 0, range_to_walls);
   map.update(*scan);
   const std::size_t known = points_within(map, Eigen::Vector3d(-kRoomM, 0.0, 0.0), 1.5);
-  // 0.3 m off: it would double every wall that is perpendicular to the way.
+  // Shifted by 0.3 m, it would double every wall perpendicular to x.
   fill_scan(*scan, 0.3, 1'000'000'000, range_to_walls);
   scan->pose.mode = PoseMode::kPriorOnly;
   map.update(*scan);
@@ -323,7 +322,7 @@ TEST_CASE("a scan placed by the prior alone adds what is unknown and leaves what
   CHECK(points_within(map, Eigen::Vector3d(40.0 - kRoomM, 0.0, 0.0), 1.5) > known / 2);
 }
 
-TEST_CASE("a pose that is not finite does not reach the map") {
+TEST_CASE("a scan with a non-finite pose is refused") {
   LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
   auto scan = std::make_unique<RegisteredScan>();
   fill_scan(*scan, 0.0, 0, range_to_walls);

@@ -11,6 +11,7 @@
 #include "core/map/cell_mask.hpp"
 #include "core/map/cell_moments.hpp"
 #include "core/map/map_tile.hpp"
+#include "tests/core/map/point_moments.hpp"
 
 namespace isobar::test::test_map_block {
 
@@ -38,7 +39,7 @@ SlotSet all_slots() {
   return all;
 }
 
-// A tile with a few hundred cells, of which two thirds have planes.
+// Tile with a few hundred cells, two thirds of which have planes.
 MapTile random_tile(std::mt19937& random) {
   MapTile tile({-3, 5, 0});
   std::uniform_int_distribution<int> block(0, 9);
@@ -60,6 +61,18 @@ MapTile random_tile(std::mt19937& random) {
   return tile;
 }
 
+std::size_t memory_bytes_of(const MapTile& tile) {
+  std::size_t bytes = sizeof(MapTile) + sizeof(isobar::PlaneTile);
+  for (std::size_t i = 0; i < isobar::kBlocksPerTile; ++i) {
+    const MapBlock* block = tile.block(i);
+    if (block == nullptr) continue;
+    bytes += sizeof(MapBlock) + block->cells().capacity() * sizeof(MapCell);
+    if (block->planes() == nullptr) continue;
+    bytes += sizeof(isobar::PlaneBlock) + block->planes()->planes.capacity() * sizeof(PackedPlane);
+  }
+  return bytes;
+}
+
 std::vector<std::byte> bytes_of(const MapTile& tile) {
   std::vector<std::byte> bytes;
   tile.store(kCellM, bytes);
@@ -68,8 +81,8 @@ std::vector<std::byte> bytes_of(const MapTile& tile) {
 
 }  // namespace
 
-TEST_CASE("places, blocks and tiles name each cell once, on both sides of the origin") {
-  std::set<std::array<int, 6>> names;
+TEST_CASE("tile, block and place identify each cell uniquely, on both sides of the origin") {
+  std::set<std::array<int, 5>> names;
   for (int x = -40; x < 40; x += 3) {
     for (int y = -33; y < 40; y += 7) {
       for (int z = -20; z < 40; z += 5) {
@@ -79,20 +92,20 @@ TEST_CASE("places, blocks and tiles name each cell once, on both sides of the or
         const int place = isobar::place_of(cell);
         CHECK(isobar::first_cell(key, block) + isobar::offset_of(place) == cell);
         CHECK(isobar::first_of_block(cell) == isobar::first_cell(key, block));
-        names.insert({key.x, key.y, key.z, static_cast<int>(block), place, 0});
+        names.insert({key.x, key.y, key.z, static_cast<int>(block), place});
       }
     }
   }
   CHECK(names.size() == 27 * 11 * 12);
 }
 
-TEST_CASE("floor_int is floor, at whole numbers too") {
+TEST_CASE("floor_int equals std::floor, also at integers") {
   for (const double value : {-3.0, -2.5, -1e-9, 0.0, 0.999, 1.0, 41.5, -41.5}) {
     CHECK(isobar::floor_int(value) == static_cast<int>(std::floor(value)));
   }
 }
 
-TEST_CASE("a mask's rank is the number of members below") {
+TEST_CASE("the rank of a slot is the number of members below it") {
   std::mt19937 random(3);
   std::uniform_int_distribution<int> slot(0, CellMask::kSlots - 1);
   CellMask mask;
@@ -111,17 +124,16 @@ TEST_CASE("a mask's rank is the number of members below") {
     CHECK(mask.rank(probe) ==
           static_cast<std::size_t>(std::distance(members.begin(), members.lower_bound(probe))));
   }
-  CHECK(mask.count() == members.size());
 }
 
-TEST_CASE("a window over blocks visits each member in it once, and nothing else") {
+TEST_CASE("a box of cells across blocks visits each member in it once, and no other cell") {
   std::mt19937 random(31);
   std::uniform_int_distribution<int> coordinate(-20, 20);
   std::uniform_int_distribution<int> size(0, 11);
   for (int i = 0; i < 200; ++i) {
     const CellIndex first(coordinate(random), coordinate(random), coordinate(random));
     const CellIndex last = first + CellIndex(size(random), size(random), size(random));
-    // Every cell of the world is a member where the sum of its coordinates is a multiple of three.
+    // Cells are members if the sum of their indices is a multiple of three.
     const auto is_member = [](const CellIndex& cell) { return (cell.x() + cell.y() + cell.z()) % 3 == 0; };
     std::set<std::array<int, 3>> visited;
     int visits = 0;
@@ -131,7 +143,7 @@ TEST_CASE("a window over blocks visits each member in it once, and nothing else"
                              for (int place = 0; place < isobar::kPlacesPerBlock; ++place) {
                                if (is_member(block + isobar::offset_of(place))) mask.mark(place);
                              }
-                             mask.count_ranks();
+                             mask.update_ranks();
                              isobar::for_each_in_window(mask, 0, low, high, [&](int slot) {
                                const CellIndex cell = block + isobar::offset_of(slot);
                                visited.insert({cell.x(), cell.y(), cell.z()});
@@ -151,14 +163,14 @@ TEST_CASE("a window over blocks visits each member in it once, and nothing else"
   }
 }
 
-TEST_CASE("whole-number moments are those of the points to the width of a unit, in any order") {
+TEST_CASE("fixed-point moments agree with the points to their resolution, in any order of points") {
   std::mt19937 random(4);
   std::uniform_real_distribution<float> fraction(0.0F, 1.0F);
   std::vector<Eigen::Vector3f> points(CellMoments::kMostPoints);
   Moments exact;
   for (Eigen::Vector3f& p : points) {
     p = {fraction(random), fraction(random), fraction(random)};
-    exact.add((p.array() - 0.5F) * kCellM);
+    add_point(exact, (p.array() - 0.5F) * kCellM);
   }
   CellMoments forward;
   CellMoments backward;
@@ -169,13 +181,13 @@ TEST_CASE("whole-number moments are those of the points to the width of a unit, 
   CHECK(forward.sum == backward.sum);
   const Moments moments = forward.in_metres(kCellM);
   CHECK(moments.count == exact.count);
-  // A point is off by a quarter of a millimetre at most.
-  CHECK((moments.mean() - exact.mean()).cwiseAbs().maxCoeff() < 0.00025F);
+  // Rounding moves a point by at most half a unit of 0.5 mm.
+  CHECK((mean_of(moments) - mean_of(exact)).cwiseAbs().maxCoeff() < 0.00025F);
   CHECK((moments.outer_diagonal - exact.outer_diagonal).cwiseAbs().maxCoeff() / exact.count <
         2.0F * 0.125F * 0.00025F);
 }
 
-TEST_CASE("moments of cells around one add up to those of all points about its centre") {
+TEST_CASE("the sum of the moments of neighbouring cells equals the moments of all their points") {
   std::mt19937 random(41);
   std::uniform_real_distribution<float> fraction(0.0F, 1.0F);
   std::uniform_int_distribution<int> step(-3, 3);
@@ -187,20 +199,20 @@ TEST_CASE("moments of cells around one add up to those of all points about its c
     for (int i = 0; i < 100; ++i) {
       const Eigen::Vector3f p(fraction(random), fraction(random), fraction(random));
       moments.add(p);
-      exact.add((p.array() - 0.5F + offset.array().cast<float>()) * kCellM);
+      add_point(exact, (p.array() - 0.5F + offset.array().cast<float>()) * kCellM);
     }
     sum.add(moments, offset);
   }
   const Moments moments = sum.in_metres(kCellM);
   CHECK(moments.count == exact.count);
-  // A point is off by a quarter of a millimetre at most, at up to 1 m.
-  CHECK((moments.mean() - exact.mean()).cwiseAbs().maxCoeff() < 0.00025F);
+  // Rounding moves a point by at most 0.25 mm, at up to 1 m from the centre.
+  CHECK((mean_of(moments) - mean_of(exact)).cwiseAbs().maxCoeff() < 0.00025F);
   CHECK((moments.outer_diagonal - exact.outer_diagonal).cwiseAbs().maxCoeff() / exact.count < 0.0005F);
   CHECK((moments.outer_off_diagonal - exact.outer_off_diagonal).cwiseAbs().maxCoeff() / exact.count <
         0.0005F);
 }
 
-TEST_CASE("the most points at the corner of a cell do not overflow") {
+TEST_CASE("the moments of a full cell with all points in a corner do not overflow") {
   for (const float corner : {0.0F, 1.0F}) {
     CellMoments moments;
     for (int i = 0; i < 200; ++i) moments.add(Eigen::Vector3f::Constant(corner));
@@ -210,21 +222,21 @@ TEST_CASE("the most points at the corner of a cell do not overflow") {
   }
 }
 
-TEST_CASE("sums over as many full cells as a cube of both sides has do not overflow") {
+TEST_CASE("the moments of a cube of full cells on both sides do not overflow") {
   CellMoments full;
   for (int i = 0; i < CellMoments::kMostPoints; ++i) full.add(Eigen::Vector3f::Ones());
   isobar::MomentSum sum;
   for (int cell = 0; cell < 128; ++cell) sum.add(full, {4, -4, 4});
   const Moments moments = sum.in_metres(kCellM);
   CHECK(moments.count == 128.0F * CellMoments::kMostPoints);
-  // All points at one place: 4.5 cells from the centre, and -3.5. Exact but for the rounding of a float.
+  // All points are at one place, 4.5 and -3.5 cells from the centre: exact except for rounding to float.
   const Eigen::Vector3f place = Eigen::Vector3f(4.5F, -3.5F, 4.5F) * kCellM;
-  CHECK((moments.mean() - place).norm() < 1e-6F);
+  CHECK((mean_of(moments) - place).norm() < 1e-6F);
   CHECK(moments.outer_diagonal.y() / moments.count == doctest::Approx(place.y() * place.y()));
   CHECK(moments.outer_off_diagonal.z() / moments.count == doctest::Approx(place.y() * place.z()));
 }
 
-TEST_CASE("a packed plane is the plane to 31 um and 0.002 degrees") {
+TEST_CASE("packing a plane changes its point by less than 32 um per axis and its normal by 0.002 degrees") {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> place(-1.1F, 1.1F);
   std::normal_distribution<float> direction;
@@ -238,7 +250,7 @@ TEST_CASE("a packed plane is the plane to 31 um and 0.002 degrees") {
   }
 }
 
-TEST_CASE("published planes stay as they are while the block goes on") {
+TEST_CASE("published planes do not change when the block does") {
   MapBlock block;
   std::vector<PackedPlane> scratch;
   const PackedPlane plane = PackedPlane::of({0.1F, 0.2F, 0.3F}, Eigen::Vector3f::UnitX(), kCellM);
@@ -250,9 +262,9 @@ TEST_CASE("published planes stay as they are while the block goes on") {
   CHECK(block.refit(all_slots(), on_this_side, scratch));
   const auto published = block.planes();
   REQUIRE(published->planes.size() == 1);
-  CHECK_FALSE(block.refit(all_slots(), on_this_side, scratch));  // the same plane again: nothing to hand over
+  CHECK_FALSE(block.refit(all_slots(), on_this_side, scratch));  // the same plane again: nothing changed
   CHECK(block.planes() == published);
-  // From the other side it is another cell: a thin wall has two.
+  // A point seen from the other side goes to the slot of the other side.
   MapBlock::Observation behind = observation_at({0.5F, 0.5F, 0.5F});
   behind.toward = -behind.toward;
   CHECK(block.observe(77, behind) == 77 + isobar::kPlacesPerBlock);
@@ -264,11 +276,11 @@ TEST_CASE("published planes stay as they are while the block goes on") {
 }
 
 TEST_CASE(
-    "a look at a surface from behind goes to the cell's other side, by its plane and not by its first "
+    "the side of a point depends on the normal of the cell's plane, not on the direction to the first "
     "observer") {
   MapBlock block;
   std::vector<PackedPlane> scratch;
-  // Seen along x first, but the surface faces between x and y.
+  // First seen along x, whereas the normal is halfway between x and y.
   const Eigen::Vector3f normal = Eigen::Vector3f(1.0F, 1.0F, 0.0F).normalized();
   const auto facing_normal = [&](const MapCell& /*cell*/, PackedPlane& plane) {
     plane = PackedPlane::of({0.1F, 0.2F, 0.3F}, normal, kCellM);
@@ -282,14 +294,14 @@ TEST_CASE(
     return behind != nullptr && behind->moments.count() == 1 ? 1 : 0;
   };
   CHECK(side_seen_along({1.0F, 0.0F, 0.0F}) == 0);
-  CHECK(side_seen_along({-1.0F, 0.0F, 0.0F}) == 0);  // without a plane a cell has one side
+  CHECK(side_seen_along({-1.0F, 0.0F, 0.0F}) == 0);  // a cell without a plane has one side
   REQUIRE(block.refit(all_slots(), facing_normal, scratch));
-  CHECK(side_seen_along({-0.5F, 1.0F, 0.0F}) == 0);   // away from the first observer, but in front
+  CHECK(side_seen_along({-0.5F, 1.0F, 0.0F}) == 0);   // opposite to the first observer, in front of the plane
   CHECK(side_seen_along({-1.0F, 0.95F, 0.0F}) == 0);  // grazing
   MapBlock again = block;
-  CHECK(side_seen_along({0.5F, -1.0F, 0.0F}) == 1);  // before the first observer, but behind
+  CHECK(side_seen_along({0.5F, -1.0F, 0.0F}) == 1);  // on the first observer's side, behind the plane
 
-  // Files of earlier versions hold the way to the first observer, and not whether there is a plane.
+  // Files of earlier versions hold the direction to the first observer, and no has_plane.
   std::vector<MapCell> stored = again.cells();
   for (MapCell& cell : stored) {
     cell.set_facing(Eigen::Vector3f::UnitX());
@@ -300,7 +312,7 @@ TEST_CASE(
   CHECK(side_seen_along({0.5F, -1.0F, 0.0F}) == 1);
 }
 
-TEST_CASE("a cell asks for a fit whenever four times as much is known of it, and when it freezes") {
+TEST_CASE("a cell is due for a fit whenever its points have quadrupled, and when it freezes") {
   MapBlock block;
   std::vector<PackedPlane> scratch;
   const auto no_plane = [](const MapCell&, PackedPlane&) { return false; };
@@ -317,8 +329,7 @@ TEST_CASE("a cell asks for a fit whenever four times as much is known of it, and
   CHECK(asked_at == std::vector{1, 4, 16, 64, 80});
 }
 
-TEST_CASE(
-    "a refit gives the cells that wait their new planes, keeps the others, drops those without a cell") {
+TEST_CASE("a refit fits the waiting cells, keeps the other planes and drops those of removed cells") {
   std::mt19937 random(8);
   std::uniform_int_distribution<int> place(0, isobar::kPlacesPerBlock - 1);
   std::uniform_int_distribution<int> chance(0, 3);
@@ -368,7 +379,7 @@ TEST_CASE(
   CHECK(expected.size() > 20);
 }
 
-TEST_CASE("a tile comes back from its bytes as it was, and goes on as it would have") {
+TEST_CASE("a restored tile equals the stored one and behaves like it from then on") {
   std::mt19937 random(6);
   MapTile tile = random_tile(random);
   const std::vector<std::byte> bytes = bytes_of(tile);
@@ -385,14 +396,14 @@ TEST_CASE("a tile comes back from its bytes as it was, and goes on as it would h
   CHECK(bytes_of(back) == bytes_of(tile));
   std::vector<isobar::MapPoint> here;
   std::vector<isobar::MapPoint> there;
-  isobar::append_points(tile, kCellM, here);
-  REQUIRE(isobar::append_tile_points(bytes_of(back), there));
+  tile.append_points(kCellM, here);
+  REQUIRE(MapTile::append_stored_points(bytes_of(back), there));
   REQUIRE(here.size() == there.size());
   CHECK(here.size() > 500);
   CHECK(here.back().p_map == there.back().p_map);
 }
 
-TEST_CASE("bytes that are not a tile are refused whole, wherever they are cut or changed in length") {
+TEST_CASE("a truncated or extended tile is refused and leaves the tile unchanged, and so does another tile") {
   std::mt19937 random(7);
   const MapTile tile = random_tile(random);
   const std::vector<std::byte> bytes = bytes_of(tile);
@@ -404,12 +415,12 @@ TEST_CASE("bytes that are not a tile are refused whole, wherever they are cut or
   std::vector<std::byte> longer = bytes;
   longer.push_back(std::byte{0});
   CHECK_FALSE(MapTile(tile.key()).restore(longer, kCellM));
-  CHECK_FALSE(MapTile({0, 0, 0}).restore(bytes, kCellM));  // another place
-  CHECK_FALSE(MapTile(tile.key()).restore(bytes, 0.5F));   // other cells
+  CHECK_FALSE(MapTile({0, 0, 0}).restore(bytes, kCellM));  // another key
+  CHECK_FALSE(MapTile(tile.key()).restore(bytes, 0.5F));   // another cell size
 }
 
-TEST_CASE("a cell of 0.25 m costs at most 64 bytes with its plane") {
-  // A wall of 8 x 8 m: what most of a map is.
+TEST_CASE("a cell with its plane takes at most 64 bytes of memory") {
+  // A wall of 8 x 8 m, as most of a map is.
   MapTile tile({0, 0, 0});
   for (int x = 0; x < isobar::kTileCells; ++x) {
     for (int z = 0; z < isobar::kTileCells; ++z) {
@@ -427,9 +438,9 @@ TEST_CASE("a cell of 0.25 m costs at most 64 bytes with its plane") {
     if (MapBlock* block = tile.block(i)) block->refit(all_slots(), wall, scratch);
   }
   tile.publish();
-  CHECK(tile.memory_bytes() <= 64 * tile.cell_count() + 8 * 1024);
-  MESSAGE("bytes a plane cell on a wall: " << static_cast<double>(tile.memory_bytes()) /
-                                                  static_cast<double>(tile.cell_count()));
+  CHECK(memory_bytes_of(tile) <= 64 * tile.cell_count() + 8 * 1024);
+  MESSAGE("bytes per cell with a plane, on a wall: " << static_cast<double>(memory_bytes_of(tile)) /
+                                                            static_cast<double>(tile.cell_count()));
 }
 
 }  // namespace isobar::test::test_map_block

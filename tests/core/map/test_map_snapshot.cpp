@@ -11,6 +11,7 @@
 #include "core/map/map_block.hpp"
 #include "core/map/nearest_plane.hpp"
 #include "core/map/plane_hash.hpp"
+#include "tests/core/map/nearest_match.hpp"
 
 namespace isobar::test::test_map_snapshot {
 
@@ -18,7 +19,6 @@ namespace {
 
 using isobar::CellIndex;
 using isobar::LocalFrame;
-using isobar::MapMatch;
 using isobar::MapSnapshot;
 using isobar::MatchQuery;
 using isobar::NearestPlane;
@@ -30,7 +30,7 @@ using isobar::TileKey;
 using isobar::TileTree;
 
 constexpr float kCellM = 0.25F;
-// Far from the origin, where single precision in map coordinates would show.
+// Far from the origin, where single precision in map coordinates would fail.
 const Eigen::Vector3d kFarAway(8000.0, -5000.0, 0.0);
 
 struct WorldPlane {
@@ -39,7 +39,7 @@ struct WorldPlane {
   CellIndex cell;
 };
 
-// At most one plane a cell, its point in the cell, over several tiles.
+// Planes in several tiles, at most one per cell, with their points inside the cells.
 std::vector<WorldPlane> random_planes(std::mt19937& random, int count) {
   std::uniform_real_distribution<double> place(-11.0, 11.0);
   std::normal_distribution<float> direction;
@@ -115,12 +115,12 @@ const WorldPlane* nearest_of_all(const std::vector<WorldPlane>& planes, const Ei
   return best;
 }
 
-// A plane is stored to 1/2 of 2 m / 2^15 = 31 um an axis.
+// Tolerance of a stored point: the resolution is 2 m / 2^15 = 61 um, so the error is 31 um per axis.
 constexpr double kStoredM = 1e-4;
 
 }  // namespace
 
-TEST_CASE("trees find the nearest facing plane that a search through all finds") {
+TEST_CASE("the k-d trees find the same nearest facing plane as an exhaustive search") {
   std::mt19937 random(7);
   const std::vector<WorldPlane> planes = random_planes(random, 3000);
   const auto snapshot = nearest_plane_of(planes);
@@ -132,21 +132,20 @@ TEST_CASE("trees find the nearest facing plane that a search through all finds")
     const Eigen::Vector3d p = kFarAway + Eigen::Vector3d(place(random), place(random), place(random));
     const Eigen::Vector3d viewpoint = p + Eigen::Vector3d(place(random), place(random), place(random));
     const WorldPlane* best = nearest_of_all(planes, p, viewpoint, kMaxDistance);
-    MapMatch match;
-    const bool any = snapshot->nearest(p, viewpoint, kMaxDistance, match);
-    CHECK(any == (best != nullptr));
-    if (any && best != nullptr) {
+    const auto match = nearest_match(*snapshot, p, viewpoint, kMaxDistance);
+    CHECK(match.has_value() == (best != nullptr));
+    if (match && best != nullptr) {
       ++found;
-      CHECK((match.q_map - best->q).norm() < kStoredM);
-      CHECK(match.normal_map.dot(best->normal) > 0.9999F);
+      CHECK((match->q_map - best->q).norm() < kStoredM);
+      CHECK(match->normal_map.dot(best->normal) > 0.9999F);
     }
   }
   CHECK(found > 200);
 }
 
 TEST_CASE(
-    "the hash gives the plane of the point's own cell if the point lies near it, and else the nearest that "
-    "faces the robot") {
+    "the hash finds the plane of the point's own cell if the point is close to it, and otherwise the nearest "
+    "plane that faces the robot") {
   std::mt19937 random(8);
   const std::vector<WorldPlane> planes = random_planes(random, 30'000);
   const auto snapshot = plane_hash_of(planes);
@@ -175,18 +174,18 @@ TEST_CASE(
     } else {
       around += expected != nullptr ? 1 : 0;
     }
-    MapMatch match;
-    REQUIRE(snapshot->nearest(p, viewpoint, max_distance, match) == (expected != nullptr));
+    const auto match = nearest_match(*snapshot, p, viewpoint, max_distance);
+    REQUIRE(match.has_value() == (expected != nullptr));
     if (expected != nullptr) {
-      CHECK((match.q_map - expected->q).norm() < kStoredM);
-      CHECK(match.normal_map.dot(expected->normal) > 0.9999F);
+      CHECK((match->q_map - expected->q).norm() < kStoredM);
+      CHECK(match->normal_map.dot(expected->normal) > 0.9999F);
     }
   }
   CHECK(own > 100);
   CHECK(around > 500);
 }
 
-TEST_CASE("what a matcher remembers of the last call never changes what it finds") {
+TEST_CASE("the cache of a matcher never changes its result") {
   std::mt19937 random(9);
   const std::vector<WorldPlane> planes = random_planes(random, 30'000);
   for (const auto& snapshot : {plane_hash_of(planes), nearest_plane_of(planes)}) {
@@ -199,29 +198,29 @@ TEST_CASE("what a matcher remembers of the last call never changes what it finds
     for (Eigen::Vector3f& p : points) {
       p = query.frame.to_local(kFarAway) + Eigen::Vector3f(place(random), place(random), place(random));
     }
-    std::vector<PlaneMatch> remembered(points.size());
+    std::vector<PlaneMatch> cached(points.size());
     for (int iteration = 0; iteration < 8; ++iteration) {
       query.max_distance_m = iteration < 3 ? 1.0F : 0.3F;
       std::vector<PlaneMatch> fresh(points.size());
-      snapshot->match(query, points, remembered);
+      snapshot->match(query, points, cached);
       snapshot->match(query, points, fresh);
       for (std::size_t i = 0; i < points.size(); ++i) {
-        REQUIRE(remembered[i].found == fresh[i].found);
+        REQUIRE(cached[i].found == fresh[i].found);
         if (!fresh[i].found) continue;
-        CHECK(remembered[i].q_local == fresh[i].q_local);
-        CHECK(remembered[i].normal == fresh[i].normal);
+        CHECK(cached[i].q_local == fresh[i].q_local);
+        CHECK(cached[i].normal == fresh[i].normal);
       }
       for (Eigen::Vector3f& p : points) p += Eigen::Vector3f(step(random), step(random), step(random));
     }
   }
 }
 
-TEST_CASE("an empty map matches nothing") {
-  MapMatch match;
-  CHECK_FALSE(MapSnapshot().nearest(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 10.0, match));
+TEST_CASE("an empty map matches no point") {
+  const Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  CHECK_FALSE(nearest_match(MapSnapshot(), origin, origin, 10.0).has_value());
   CHECK(MapSnapshot().empty());
-  CHECK_FALSE(plane_hash_of({})->nearest(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 2.0, match));
-  CHECK_FALSE(nearest_plane_of({})->nearest(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 2.0, match));
+  CHECK_FALSE(nearest_match(*plane_hash_of({}), origin, origin, 2.0).has_value());
+  CHECK_FALSE(nearest_match(*nearest_plane_of({}), origin, origin, 2.0).has_value());
 }
 
 }  // namespace isobar::test::test_map_snapshot

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A subscriber of another vendor's DDS (Fast DDS): knows the ROS 2 names of topics and types, and nothing of
-// Isobar. Writes the bytes of each topic's last message, with the encapsulation header, to FOLDER/TOPIC.cdr.
+// Subscriber built on another vendor's DDS (Fast DDS), with only the ROS 2 names of topics and types in
+// common with Isobar. Writes the last message of each topic, with its encapsulation header, to
+// FOLDER/TOPIC.cdr.
 //   foreign_listener FOLDER DOMAIN SECONDS
-// Prints one line a topic: name, number of messages, bytes of the last one, largest gap between two [ms].
+// Prints one line per topic: name, number of messages, size of the last one [bytes], largest gap between two
+// [ms].
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
@@ -50,7 +52,7 @@ constexpr std::array<Expected, 11> kExpected{{
 
 using Bytes = std::vector<unsigned char>;
 
-/// Keeps a message as the bytes that came.
+/// Stores a message as its serialized bytes.
 class RawType : public fast::TopicDataType {
  public:
   explicit RawType(const char* name) {
@@ -145,6 +147,6 @@ int main(int argc, char** argv) {
     recorders[i].finish(argv[1], kExpected[i]);
   }
   std::fflush(stdout);
-  // Its own clean-up takes seconds and is not what is tested.
+  // Without Fast DDS's clean-up, which takes seconds and is not under test.
   std::_Exit(0);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The DDS subscriber that a test is.
+// DDS subscriber of a test.
 #pragma once
 
 #include <chrono>
@@ -11,11 +11,11 @@
 
 namespace isobar::test {
 
-/// A subscriber that waits for messages of one topic.
+/// Subscriber of one topic, with waiting.
 template <class Message>
 class Listener {
  public:
-  /// With a participant of its own: one at a time in a process.
+  /// With its own participant, of which a process may have only one at a time.
   explicit Listener(const dds::DdsTopic<Message>& topic, const std::string& ros_namespace = {})
       : Listener(std::make_shared<dds::Participant>(dds::ParticipantSettings{}), topic, ros_namespace) {}
   Listener(std::shared_ptr<dds::Participant> participant, const dds::DdsTopic<Message>& topic,
@@ -25,10 +25,11 @@ class Listener {
     dds_set_status_mask(reader_.get(), DDS_DATA_AVAILABLE_STATUS);
     dds_waitset_attach(waitset_.get(), reader_.get(), 0);
   }
+  /// Discards the waiting messages.
   void forget() {
     reader_.take([](const Message&) {});
   }
-  /// Waits until `wanted` fitting messages have come.
+  /// Waits until `wanted` messages for which `fits` holds have been received.
   template <class Fits>
   bool receive(int wanted, Fits&& fits, std::chrono::seconds timeout = std::chrono::seconds(20)) {
     const auto deadline = std::chrono::steady_clock::now() + timeout;
@@ -49,7 +50,7 @@ class Listener {
   dds::Entity waitset_;
 };
 
-/// The status of that name ("node: entry"), nullptr if there is none.
+/// The status of that name, "node: entry"; nullptr: none.
 inline const diagnostic_msgs_msg_dds__DiagnosticStatus_* find_status(const dds::DiagnosticsMessage& message,
                                                                      const std::string& name) {
   for (std::uint32_t i = 0; i < message.status._length; ++i) {
@@ -60,13 +61,13 @@ inline const diagnostic_msgs_msg_dds__DiagnosticStatus_* find_status(const dds::
   return nullptr;
 }
 
-/// Does this message hold a status of that name and level?
+/// Whether the message has a status of that name and level.
 inline bool says(const dds::DiagnosticsMessage& message, const std::string& name, int level) {
   const auto* status = find_status(message, name);
   return status != nullptr && status->level == level;
 }
 
-/// What the status of that name says; empty if there is none.
+/// Text of the status of that name; empty: none.
 inline std::string text_of(const dds::DiagnosticsMessage& message, const std::string& name) {
   const auto* status = find_status(message, name);
   return status != nullptr ? status->message : "";

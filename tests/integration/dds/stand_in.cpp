@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stands in for isobard: holds the broker and publishes what stand_in.hpp says, in real time, until SIGTERM.
-// Prints "ready", then once a second how many priors went out, and each base pressure that comes in, with how
-// old it is by the stand-in's own clock: "base PASCAL MILLISECONDS STATION VARIANCE DEGREES".
+// Stand-in for isobard: holds the broker and publishes the data of stand_in.hpp in real time until SIGTERM.
+// Prints "ready", then once a second the number of priors published ("priors N"), and each base-station
+// pressure received, with its age on the stand-in's clock: "base PASCAL MILLISECONDS STATION VARIANCE
+// DEGREES".
 #include <signal.h>  // NOLINT(modernize-deprecated-headers)
 
 #include <chrono>
@@ -16,7 +17,8 @@ namespace {
 
 using namespace isobar;  // NOLINT(google-build-using-namespace): a test's helper
 
-/// Waits for the next prior's time, or for SIGTERM (true).
+/// Waits until `time`, or for SIGTERM.
+/// @return true on SIGTERM
 bool wait_until(std::chrono::steady_clock::time_point time, const sigset_t& stop) {
   const auto left = time - std::chrono::steady_clock::now();
   const auto left_ns = std::max<std::int64_t>(0, left / std::chrono::nanoseconds(1));
@@ -50,12 +52,14 @@ void publish_map(ipc::Publisher<ipc::MapCloud>& maps, const PoseEstimate& pose) 
   maps.publish(map);
 }
 
-void publish_health(ipc::Publisher<ipc::HealthReport>& reports, std::int64_t stamp_ns) {
+void publish_health(ipc::Publisher<ipc::HealthReport>& reports, std::int64_t stamp_ns,
+                    std::int64_t clock_offset_ns) {
   ipc::HealthReport* report = reports.loan();
   if (report == nullptr) {
     return;
   }
   report->stamp_ns = stamp_ns;
+  report->robot_clock_offset_ns = clock_offset_ns;
   static_cast<void>(report->add("lidar/packets", ipc::HealthLevel::kOk, "", 754.0));
   static_cast<void>(report->add("lidar/packets_lost", ipc::HealthLevel::kWarning, "gaps in time", 3.0));
   reports.publish(report);
@@ -76,6 +80,7 @@ int run() {
   const auto start = std::chrono::steady_clock::now();
   const std::int64_t start_ns =
       std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+  const std::int64_t clock_offset_ns = start_ns - start.time_since_epoch() / std::chrono::nanoseconds(1);
   std::puts("ready");
   for (std::uint64_t step = 0;; ++step) {
     priors.send(stand_in::prior_at(start_ns, step));
@@ -85,7 +90,7 @@ int run() {
       publish_scan(scans, pose);
     }
     if (step % 200 == 0) {
-      publish_health(reports, stand_in::prior_at(start_ns, step).stamp_ns);
+      publish_health(reports, stand_in::prior_at(start_ns, step).stamp_ns, clock_offset_ns);
       std::printf("priors %llu\n", static_cast<unsigned long long>(step));
       std::fflush(stdout);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the stand-in for isobard publishes, as functions of time, so that every receiver knows what is right.
+// Data that the stand-in for isobard publishes, as functions of time: the ground truth for every receiver.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@ inline constexpr double kClimbMS = 0.1;
 inline constexpr std::uint32_t kScanPoints = 2000;
 inline constexpr std::uint32_t kMapPoints = 65'536;
 
-/// A straight drive along x of the map that climbs; time zero is the start.
+/// Pose on a straight, climbing drive along the map's x axis, `time_s` after the start.
 inline Eigen::Isometry3d T_map_base(double time_s) {  // NOLINT(readability-identifier-naming)
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.translation() = Eigen::Vector3d(kSpeedMS * time_s, 2.0, kClimbMS * time_s);
@@ -28,7 +28,7 @@ inline Eigen::Isometry3d T_map_base(double time_s) {  // NOLINT(readability-iden
 
 inline double time_of(std::uint64_t step) { return static_cast<double>(step) * 1e-9 * kPriorPeriodNs; }
 
-/// Its wheels are perfect but start somewhere else.
+/// Prior with perfect wheel odometry in a shifted odometry frame.
 inline Prior prior_at(std::int64_t start_ns, std::uint64_t step) {
   Prior prior;
   prior.stamp_ns = start_ns + static_cast<std::int64_t>(step) * kPriorPeriodNs;

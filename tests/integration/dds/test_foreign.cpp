@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// isobar-dds in front of a subscriber of another vendor's DDS in another process. The bytes that it got are
-// left in a folder for decode.js.
+// isobar-dds with a subscriber of another vendor's DDS, in another process. The received bytes stay in a
+// folder for decode.js.
 #include <doctest/doctest.h>
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
@@ -68,7 +68,7 @@ class Message {
   std::unique_ptr<eprosima::fastcdr::Cdr> cdr_;
 };
 
-/// The drive of the stand-in, whenever it started.
+/// Checks that a position lies on the stand-in's drive, independently of its start time.
 void check_position(const Eigen::Vector3d& position, double tolerance_m) {
   CHECK(position.x() > 0.1);
   CHECK(position.y() == doctest::Approx(2.0));
@@ -80,7 +80,7 @@ void check_rotation(const Eigen::Quaterniond& q, double yaw_rad) {
   CHECK(q.angularDistance(wanted) < 1e-7);
 }
 
-/// What the listener says about a topic.
+/// The listener's line about a topic.
 struct Line {
   long count = 0;
   long bytes = 0;
@@ -98,7 +98,7 @@ Line find_line(const std::string& output, const std::string& topic) {
   return {};
 }
 
-/// Runs everything once and returns what the listener printed.
+/// Output of the listener, from one run of all programs shared by all cases.
 const std::string& capture() {
   static const std::string kOutput = [] {
     std::filesystem::remove_all(kFolder);
@@ -107,7 +107,7 @@ const std::string& capture() {
     REQUIRE(stand_in.read_until("ready", 10s));
     ChildProcess bridge({ISOBAR_DDS_PROGRAM});
     REQUIRE(bridge.read_until("attached", 10s));
-    // Late: tf_static, ros_discovery_info and a map have been sent before the listener exists.
+    // A late reader: tf_static, ros_discovery_info and a map are sent before the listener starts.
     CHECK(stand_in.read_until("priors 200", 10s));
     ChildProcess listener({ISOBAR_FOREIGN_LISTENER, kFolder, "0", "5"});
     REQUIRE(listener.wait(30s) == 0);
@@ -122,7 +122,7 @@ const std::string& capture() {
 TEST_CASE("every topic arrives at its rate") {
   const std::string& output = capture();
   INFO(output);
-  // Of five seconds, discovery may take two; the limits leave as much again for a loaded machine.
+  // Discovery may take two of the five seconds; the limits leave another two for a loaded machine.
   CHECK(find_line(output, "rt/odom").count >= 100);
   CHECK(find_line(output, "rt/odom").count <= 510);  // 100 Hz at most
   CHECK(find_line(output, "rt/tf").count >= 100);
@@ -133,14 +133,14 @@ TEST_CASE("every topic arrives at its rate") {
   CHECK(find_line(output, "rt/diagnostics").count >= 1);
 }
 
-TEST_CASE("a reader that comes late gets what is latched") {
+TEST_CASE("a late reader gets the latched topics") {
   const std::string& output = capture();
   CHECK(find_line(output, "rt/tf_static").count == 1);
   CHECK(find_line(output, "ros_discovery_info").count == 1);
   CHECK(find_line(output, "rt/map").count >= 1);
 }
 
-TEST_CASE("odometry has the frames and the values of the drive") {
+TEST_CASE("odometry has the frames and values of the drive") {
   capture();
   Message message("rt.odom");
   CHECK(message.read_header().second == "odom");
@@ -153,7 +153,7 @@ TEST_CASE("odometry has the frames and the values of the drive") {
   CHECK((v_base - stand_in::prior_at(0, 0).v_base_m_s).norm() < 1e-12);
 }
 
-TEST_CASE("the pose has the frame, the values and the covariance of the registration") {
+TEST_CASE("the pose has the frame, values and covariance of the registration") {
   capture();
   Message message("rt.pose");
   CHECK(message.read_header().second == "map");
@@ -167,7 +167,7 @@ TEST_CASE("the pose has the frame, the values and the covariance of the registra
   CHECK(covariance[30] == 0.001);
 }
 
-TEST_CASE("tf holds map to odom to base_link, whose product is the pose; tf_static the mounts") {
+TEST_CASE("tf has map to odom to base_link, with the pose as product; tf_static has the mounts") {
   capture();
   Message tf("rt.tf");
   REQUIRE(tf.read<std::uint32_t>() == 2);
@@ -191,7 +191,7 @@ TEST_CASE("tf holds map to odom to base_link, whose product is the pose; tf_stat
   }
 }
 
-TEST_CASE("clouds come whole") {
+TEST_CASE("clouds arrive complete") {
   capture();
   Message map("rt.map");
   CHECK(map.read_header().second == "map");
@@ -200,7 +200,7 @@ TEST_CASE("clouds come whole") {
   CHECK(find_line(capture(), "rt/map").bytes > 16L * stand_in::kMapPoints);
 }
 
-TEST_CASE("diagnostics name what isobard and the bridge count") {
+TEST_CASE("diagnostics have the entries of isobard and of the bridge") {
   capture();
   Message message("rt.diagnostics");
   message.read_header();

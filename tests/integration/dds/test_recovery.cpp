@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// isobar-dds when things around it die. The test itself is the DDS subscriber.
+// isobar-dds when isobard or the bridge itself is killed, stopped or restarted. The test is the DDS
+// subscriber.
 #include <doctest/doctest.h>
 #include <signal.h>  // NOLINT(modernize-deprecated-headers)
 
@@ -22,7 +23,8 @@ using test::ChildProcess;
 using test::Listener;
 using test::says;
 
-TEST_CASE("without isobard the bridge waits, says so once and in the diagnostics, and ends cleanly") {
+TEST_CASE(
+    "without isobard the bridge waits, logs it once, reports it in the diagnostics, and stops on SIGTERM") {
   Listener<dds::DiagnosticsMessage> listener(dds::topics::kDiagnostics);
   ChildProcess bridge({ISOBAR_DDS_PROGRAM});
   CHECK(listener.receive(2, [](const auto& message) { return says(message, "isobar: bridge/isobard", 2); }));
@@ -36,7 +38,7 @@ TEST_CASE("without isobard the bridge waits, says so once and in the diagnostics
   CHECK(waiting_lines == 1);
 }
 
-TEST_CASE("a killed bridge does not disturb isobard, and a new one goes on") {
+TEST_CASE("a killed bridge does not disturb isobard, and a new one takes over") {
   Listener<dds::OdometryMessage> listener(dds::topics::kOdom);
   ChildProcess stand_in({ISOBAR_STAND_IN});
   REQUIRE(stand_in.read_until("ready", 10s));
@@ -58,7 +60,7 @@ TEST_CASE("a killed bridge does not disturb isobard, and a new one goes on") {
   CHECK(stand_in.wait(10s) == 0);
 }
 
-TEST_CASE("when isobard is killed or stopped and comes again, the bridge comes back by itself") {
+TEST_CASE("when isobard is killed or stopped and starts again, the bridge reconnects by itself") {
   Listener<dds::OdometryMessage> listener(dds::topics::kOdom);
   ChildProcess bridge({ISOBAR_DDS_PROGRAM});
   for (const int ending : {SIGKILL, SIGTERM, SIGKILL}) {
@@ -72,19 +74,19 @@ TEST_CASE("when isobard is killed or stopped and comes again, the bridge comes b
   ChildProcess stand_in({ISOBAR_STAND_IN});
   listener.forget();
   CHECK(listener.receive(20));
-  CHECK(bridge.running());  // the same process all along
+  CHECK(bridge.running());  // the same process throughout
   bridge.signal(SIGTERM);
   CHECK(bridge.wait(10s) == 0);
 }
 
-TEST_CASE("a bridge that was stopped for so long that isobard gave it up comes back") {
+TEST_CASE("a bridge that was stopped for 4 s continues") {
   Listener<dds::OdometryMessage> listener(dds::topics::kOdom);
   ChildProcess stand_in({ISOBAR_STAND_IN});
   REQUIRE(stand_in.read_until("ready", 10s));
   ChildProcess bridge({ISOBAR_DDS_PROGRAM});
   CHECK(listener.receive(20));
   bridge.signal(SIGSTOP);
-  for (int second = 0; second < 4; ++second) {  // iceoryx gives a process up after 1.5 s
+  for (int second = 0; second < 4; ++second) {  // iceoryx's own monitoring would unregister it after 1.5 s
     CHECK(stand_in.read_until("priors", 5s));
   }
   bridge.signal(SIGCONT);
@@ -93,32 +95,31 @@ TEST_CASE("a bridge that was stopped for so long that isobard gave it up comes b
   CHECK(stand_in.running());
 }
 
-TEST_CASE("while the bridge forwards, the end of isobard can be followed at once by its own") {
+/// Exit code of a forwarding bridge that gets SIGTERM right after isobard got `number`.
+int bridge_exit_code_after(int number) {
   Listener<dds::OdometryMessage> listener(dds::topics::kOdom);
-  ChildProcess stand_in({ISOBAR_STAND_IN});
+  const ChildProcess stand_in({ISOBAR_STAND_IN});
   ChildProcess bridge({ISOBAR_DDS_PROGRAM});
   CHECK(listener.receive(20));
-  stand_in.signal(SIGKILL);
+  stand_in.signal(number);
   bridge.signal(SIGTERM);
-  CHECK(bridge.wait(20s) == 0);
+  return bridge.wait(20s);
 }
 
-TEST_CASE("a bridge that is told to end does, though isobard hangs and never answers its farewell") {
-  Listener<dds::OdometryMessage> listener(dds::topics::kOdom);
-  ChildProcess stand_in({ISOBAR_STAND_IN});
-  ChildProcess bridge({ISOBAR_DDS_PROGRAM});
-  CHECK(listener.receive(20));
-  stand_in.signal(SIGSTOP);
-  bridge.signal(SIGTERM);
-  CHECK(bridge.wait(20s) == 0);
+TEST_CASE("the bridge stops on SIGTERM right after isobard was killed") {
+  CHECK(bridge_exit_code_after(SIGKILL) == 0);
 }
 
-TEST_CASE("a base station's pressure reaches isobard on isobard's clock, and nonsense does not") {
+TEST_CASE("the bridge stops on SIGTERM although isobard hangs and does not answer") {
+  CHECK(bridge_exit_code_after(SIGSTOP) == 0);
+}
+
+TEST_CASE("a base station's pressure reaches isobard on the robot clock; implausible pressures do not") {
   ChildProcess stand_in({ISOBAR_STAND_IN});
   REQUIRE(stand_in.read_until("ready", 10s));
   ChildProcess bridge({ISOBAR_DDS_PROGRAM});
   Listener<dds::DiagnosticsMessage> listener(dds::topics::kDiagnostics);
-  REQUIRE(listener.receive(2));  // isobard has told its clock
+  REQUIRE(listener.receive(2));  // the bridge has a health report, and so the robot clock
   const dds::Participant& participant = listener.participant();
   dds::Writer<dds::PressureMessage> writer(participant.get(), dds::topics::kBasePressure, "base");
   dds::PressureMessage message{};
@@ -128,8 +129,7 @@ TEST_CASE("a base station's pressure reaches isobard on isobard's clock, and non
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < 200 && good < 5; ++i) {
     const auto since_start = std::chrono::steady_clock::now() - start;
-    message.header.stamp =
-        dds::to_time(1'000'000'000'000 + since_start / 1ns);  // it believes that it is 1970
+    message.header.stamp = dds::to_time(1'000'000'000'000 + since_start / 1ns);  // a sender's clock in 1970
     message.fluid_pressure = i % 2 == 0 ? 98765.25 : 1e9;
     writer.write(message);
     while (stand_in.read_line(line, 50ms)) {
@@ -138,7 +138,7 @@ TEST_CASE("a base station's pressure reaches isobard on isobard's clock, and non
         long age_ms = 0;
         REQUIRE(std::sscanf(line.c_str(), "base %lf %ld", &pressure_pa, &age_ms) == 2);
         CHECK(pressure_pa == 98765.25);
-        CHECK(std::abs(age_ms) < 1000);  // a loaded machine's delay, and not half a century
+        CHECK(std::abs(age_ms) < 1000);  // the delay of a loaded machine, not half a century
         ++good;
       }
     }
@@ -148,7 +148,7 @@ TEST_CASE("a base station's pressure reaches isobard on isobard's clock, and non
       1, [](const auto& got) { return says(got, "isobar: bridge/received_implausible", 1); }));
 }
 
-TEST_CASE("the configuration file says the namespace and where the sensors sit") {
+TEST_CASE("the configuration file sets the namespace, the frames and the sensor mounts") {
   const std::string file = "/tmp/isobar-bridge-test.toml";
   std::ofstream(file) << "[dds]\nros_namespace = \"robot1\"\nlidar_frame = \"velodyne\"\n"
                          "[lidar]\nxyz_m = [0.1, 0.2, 0.45]\n";
@@ -166,7 +166,7 @@ TEST_CASE("the configuration file says the namespace and where the sensors sit")
   }));
 }
 
-TEST_CASE("what cannot work is refused in words") {
+TEST_CASE("a wrong interface, domain, file or option is refused with the reason") {
   ChildProcess no_interface({ISOBAR_DDS_PROGRAM, "--interface", "nope0"});
   CHECK(no_interface.read_until("nope0", 10s));
   CHECK(no_interface.wait(10s) == 69);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every type through Cyclone DDS's own serializer and back, in one process; and what its bytes begin with.
+// Every message type through Cyclone DDS's serializer and back in one process, and the encapsulation header.
 #include <dds/ddsi/ddsi_serdata.h>
 #include <doctest/doctest.h>
 
@@ -17,11 +17,11 @@ using namespace isobar::dds;
 
 namespace {
 
-/// Writes one message and hands what a reader got to `check`.
+/// Writes one message and calls `check` with the message received.
 template <class Message, class Check>
 void round_trip(const DdsTopic<Message>& topic, const Message& sent, Check&& check) {
   const Participant participant({});
-  // Reliable in both directions, so that the test does not depend on luck.
+  // Reliable and latched, so that no message is lost.
   const DdsTopic<Message> reliable{topic.name, topic.descriptor, Delivery::kLatched, 1, topic.is_global};
   Reader<Message> reader(participant.get(), reliable);
   Writer<Message> writer(participant.get(), reliable);
@@ -125,7 +125,7 @@ TEST_CASE("diagnostics") {
   });
 }
 
-TEST_CASE("messages are XCDR1, which is all that ROS 2 reads") {
+TEST_CASE("messages are XCDR1, the only representation that ROS 2 reads") {
   const Participant participant({});
   Reader<AltitudeMessage> reader(participant.get(), topics::kAltitude);
   Writer<AltitudeMessage> writer(participant.get(), topics::kAltitude);
@@ -143,7 +143,7 @@ TEST_CASE("messages are XCDR1, which is all that ROS 2 reads") {
   CHECK(header[1] == 0x01);
 }
 
-TEST_CASE("the node announcement has the size of the ROS 2 release that it is for") {
+TEST_CASE("the node announcement has the size for the configured ROS 2 release") {
   const auto bytes_of = [](int gid_bytes) {
     const Participant participant({});
     NodeAnnouncement announcement(participant.get(), gid_bytes);

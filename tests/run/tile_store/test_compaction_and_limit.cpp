@@ -24,7 +24,7 @@ std::uint64_t bytes_in(const std::filesystem::path& folder) {
   return sum;
 }
 
-/// Files of this process cannot grow beyond a size while this lives.
+/// Limits the size of files that this process writes, during its lifetime.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : former_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -46,14 +46,15 @@ class FileSizeLimit {
 
 }  // namespace
 
-TEST_CASE("compaction keeps the newest version of every tile and the files below about twice of what lives") {
+TEST_CASE(
+    "compaction keeps the newest version of every tile and the disk space below about twice their size") {
   const Scratch scratch;
   TileStoreLimits limits;
   limits.max_bytes = 16U << 20U;  // segments of 256 KiB
   const auto store = FileTileStore::create(scratch.path(), {}, limits);
   std::mt19937 random(11);
   std::map<TileKey, Bytes> expected;
-  // 400 tiles of 4 kB; 20 of them are put most often, as the places are where the robot goes to and fro.
+  // 400 tiles of 4 kB; 90 % of the puts go to 20 of them, as for a robot that goes to and fro.
   for (std::uint32_t version = 0; version < 12'000; ++version) {
     const int n = static_cast<int>(random() % 10 == 0 ? random() % 400 : random() % 20);
     const TileKey key{n, 0, 0};
@@ -65,7 +66,7 @@ TEST_CASE("compaction keeps the newest version of every tile and the files below
   CHECK(store->counters().forgotten == 0);
   CHECK(store->counters().damaged == 0);
   CHECK(store->disk_bytes() == bytes_in(scratch.path()));
-  // Half of a closed file may be dead, and two files are open: the newest and the one that is emptied.
+  // Half of a closed segment may be superseded; the newest one and the one being compacted come on top.
   CHECK(store->disk_bytes() < 2 * store->live_bytes() + 3 * limits.segment_bytes());
   Bytes bytes;
   const auto again = FileTileStore::open_to_read(scratch.path());
@@ -78,12 +79,12 @@ TEST_CASE("compaction keeps the newest version of every tile and the files below
   }
 }
 
-TEST_CASE("a file that is being emptied loses its damaged tile only") {
+TEST_CASE("compaction of a segment with a damaged tile loses only that tile") {
   const Scratch scratch;
   TileStoreLimits limits;
   limits.max_bytes = 16U << 20U;
   const auto store = FileTileStore::create(scratch.path(), {}, limits);
-  // The first file holds 64 tiles of 4000 bytes and is closed then; the second half of them is superseded.
+  // The first segment is closed with 64 tiles of 4000 bytes; then the tiles from number 20 on are superseded.
   for (int n = 0; n < 66; ++n) REQUIRE(store->put({n, 0, 0}, tile_bytes({n, 0, 0}, 1, 4'000)));
   std::string content = content_of(scratch.path() / "00000000.tiles");
   content[record_bytes(4'000) * 3 + 100] = static_cast<char>(content[record_bytes(4'000) * 3 + 100] ^ 16);
@@ -101,7 +102,7 @@ TEST_CASE("a file that is being emptied loses its damaged tile only") {
   }
 }
 
-TEST_CASE("at the limit the tiles that were put longest ago go, are counted, and the disk never holds more") {
+TEST_CASE("at the limit the oldest tiles are removed and counted, and the disk space never exceeds it") {
   const Scratch scratch;
   TileStoreLimits limits;
   limits.max_bytes = 2U << 20U;
@@ -113,19 +114,19 @@ TEST_CASE("at the limit the tiles that were put longest ago go, are counted, and
   }
   CHECK(store->counters().refused == 0);
   CHECK(store->tile_count() + store->counters().forgotten == kPut);
-  // A file of tiles may be missing from the full measure, not more.
+  // At most one segment less than the limit is used.
   CHECK(store->disk_bytes() > limits.max_bytes - limits.segment_bytes() - 6'000);
   const int oldest = kPut - static_cast<int>(store->tile_count());
   for (int n = 0; n < kPut; ++n) CHECK(store->contains({n, 0, 0}) == (n >= oldest));
 }
 
-TEST_CASE("near the limit superseded versions go before any tile does") {
+TEST_CASE("near the limit superseded versions are removed before any live tile") {
   const Scratch scratch;
   TileStoreLimits limits;
   limits.max_bytes = 2U << 20U;
   const auto store = FileTileStore::create(scratch.path(), {}, limits);
   std::mt19937 random(5);
-  // 1.1 MB live in 2 MB, put over and over.
+  // 1.1 MB of live tiles within 2 MB, put over and over.
   for (std::uint32_t version = 0; version < 6'000; ++version) {
     const TileKey key{static_cast<int>(random() % 220), 0, 0};
     REQUIRE(store->put(key, tile_bytes(key, version, 5'000)));
@@ -134,12 +135,12 @@ TEST_CASE("near the limit superseded versions go before any tile does") {
   CHECK(store->counters().forgotten == 0);
 }
 
-TEST_CASE("a disk that refuses costs the new tile, is counted with its reason, and is tried again") {
+TEST_CASE("a refusal of the disk costs only the new tile, is counted with its reason, and is not permanent") {
   const Scratch scratch;
   const auto store = FileTileStore::create(scratch.path(), {}, {});
   for (int n = 0; n < 10; ++n) REQUIRE(store->put({n, 0, 0}, tile_bytes({n, 0, 0}, 1, 5'000)));
   {
-    const FileSizeLimit full(53'000);  // the eleventh is begun and cannot be ended
+    const FileSizeLimit full(53'000);  // the eleventh tile can be written only in part
     CHECK_FALSE(store->put({10, 0, 0}, tile_bytes({10, 0, 0}, 1, 5'000)));
     CHECK_FALSE(store->put({3, 0, 0}, tile_bytes({3, 0, 0}, 2, 5'000)));
     CHECK(store->counters().refused == 2);
@@ -155,12 +156,12 @@ TEST_CASE("a disk that refuses costs the new tile, is counted with its reason, a
   CHECK(again->tile_count() == 11);
 }
 
-TEST_CASE("an index for which there was no room is made good by the next opening") {
+TEST_CASE("an index that could not be written is rebuilt by the next opening") {
   const Scratch scratch;
   {
     const auto store = FileTileStore::create(scratch.path(), {}, {});
     REQUIRE(store->put({0, 0, 0}, tile_bytes({0, 0, 0}, 1, 10)));
-    std::filesystem::remove(scratch.path() / "00000000.index");  // the descriptor writes into nothing
+    std::filesystem::remove(scratch.path() / "00000000.index");  // the next entry goes to an unlinked file
     REQUIRE(store->put({1, 0, 0}, tile_bytes({1, 0, 0}, 1, 10)));
   }
   CHECK(FileTileStore::open_to_continue(scratch.path(), {}, {})->tile_count() == 2);

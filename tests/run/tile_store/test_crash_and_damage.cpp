@@ -18,7 +18,7 @@ namespace {
 constexpr int kTiles = 6;
 constexpr std::size_t kSize = 75;
 
-/// A map with one file of six tiles; its two files as text.
+/// A map of six tiles in one segment, and the content of its two files.
 struct SmallMap {
   SmallMap() {
     const auto store = FileTileStore::create(scratch.path(), {}, {});
@@ -38,8 +38,8 @@ struct SmallMap {
   std::string index;
 };
 
-/// Which of the six tiles come back whole, as bits. One that comes back wrong fails the test.
-unsigned whole_tiles(TileStore& store) {
+/// Bitmap of the tiles that can be read. A tile with wrong bytes fails the test.
+unsigned whole_tiles(FileTileStore& store) {
   unsigned whole = 0;
   Bytes bytes;
   for (int n = 0; n < kTiles; ++n) {
@@ -53,8 +53,8 @@ unsigned whole_tiles(TileStore& store) {
 constexpr unsigned kAll = (1U << kTiles) - 1;
 constexpr unsigned kAllButLast = (1U << (kTiles - 1)) - 1;
 
-/// The opening to go on finds what is expected and repairs it: the second one finds nothing to complain of,
-/// and a tile that is put then stays.
+/// Opening the map for writing finds `whole` and `torn`, and repairs the map: reopened, it has no faults and
+/// still has the tile that was put after the repair.
 void check_repaired(const SmallMap& map, unsigned whole, std::uint64_t torn) {
   {
     const auto store = FileTileStore::open_to_continue(map.scratch.path(), {}, {});
@@ -71,8 +71,7 @@ void check_repaired(const SmallMap& map, unsigned whole, std::uint64_t torn) {
 
 }  // namespace
 
-TEST_CASE(
-    "cut off at any byte of the last record, a map has all the tiles before it and counts the torn one") {
+TEST_CASE("truncated anywhere in its last record, a map has all tiles before it and counts one torn record") {
   const SmallMap map;
   const std::size_t begin = map.tiles.size() / kTiles * (kTiles - 1);
   for (std::size_t end = begin; end <= map.tiles.size(); ++end) {
@@ -80,7 +79,8 @@ TEST_CASE(
     const bool whole = end == map.tiles.size();
     map.set(map.tiles.substr(0, end), map.index);
     check_repaired(map, whole ? kAll : kAllButLast, whole ? 0 : 1);
-    // The process was killed before it wrote the index: of nothing at all nobody knows.
+    // The process was killed before it wrote the index entry. Without any byte of the record, nothing is
+    // torn.
     map.set(map.tiles.substr(0, end), map.index.substr(0, map.index.size() - sizeof(IndexEntry)));
     check_repaired(map, whole ? kAll : kAllButLast, whole || end == begin ? 0 : 1);
     map.set(map.tiles.substr(0, end), "");
@@ -88,7 +88,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("an index cut off at any byte loses no tile") {
+TEST_CASE("an index truncated at any byte loses no tile") {
   const SmallMap map;
   for (std::size_t end = 0; end <= map.index.size(); ++end) {
     CAPTURE(end);
@@ -97,7 +97,7 @@ TEST_CASE("an index cut off at any byte loses no tile") {
   }
 }
 
-TEST_CASE("a flipped bit anywhere in the tiles is found and counted, and loses that tile only") {
+TEST_CASE("a flipped bit anywhere in the tiles is detected and counted, and loses only that tile") {
   const SmallMap map;
   const std::size_t record = map.tiles.size() / kTiles;
   for (std::size_t at = 0; at < map.tiles.size(); ++at) {
@@ -116,7 +116,7 @@ TEST_CASE("a flipped bit anywhere in the tiles is found and counted, and loses t
   }
 }
 
-TEST_CASE("a damaged record before a torn one goes with it, and is not found again") {
+TEST_CASE("a damaged record just before a torn one is truncated with it and not counted again") {
   const SmallMap map;
   const std::size_t record = map.tiles.size() / kTiles;
   std::string tiles = map.tiles.substr(0, map.tiles.size() - 8);
@@ -125,7 +125,7 @@ TEST_CASE("a damaged record before a torn one goes with it, and is not found aga
   check_repaired(map, kAllButLast >> 1U, 1);
 }
 
-TEST_CASE("a flipped bit anywhere in the index loses nothing") {
+TEST_CASE("a flipped bit anywhere in the index loses no tile") {
   const SmallMap map;
   for (std::size_t at = 0; at < map.index.size(); ++at) {
     CAPTURE(at);
@@ -136,7 +136,7 @@ TEST_CASE("a flipped bit anywhere in the index loses nothing") {
   }
 }
 
-TEST_CASE("damage is named by file, byte, tile and rule") {
+TEST_CASE("the message about damage names file, offset, tile and rule") {
   const SmallMap map;
   std::string flipped = map.tiles;
   flipped[sizeof(RecordHead)] = static_cast<char>(flipped[sizeof(RecordHead)] ^ 1);
@@ -149,7 +149,7 @@ TEST_CASE("damage is named by file, byte, tile and rule") {
   CHECK_FALSE(store->contains(key_number(0)));
 }
 
-TEST_CASE("random noise in place of the files opens, and gives no tile that was not put") {
+TEST_CASE("a map with random bytes in its files can be opened, and has no tile that was not put") {
   const SmallMap map;
   std::mt19937 random(7);
   for (int round = 0; round < 50; ++round) {
@@ -167,30 +167,30 @@ TEST_CASE("random noise in place of the files opens, and gives no tile that was 
   }
 }
 
-TEST_CASE("a process killed while it writes leaves every tile of which it has said that it is there") {
+TEST_CASE("a process killed while it writes loses no tile whose put() had returned") {
   const Scratch scratch;
-  int told[2] = {-1, -1};
-  REQUIRE(pipe(told) == 0);
+  int written[2] = {-1, -1};  // pipe: numbers of the tiles whose put() returned
+  REQUIRE(pipe(written) == 0);
   const pid_t child = fork();
   REQUIRE(child >= 0);
   if (child == 0) {
-    close(told[0]);
+    close(written[0]);
     TileStoreLimits limits;
     limits.max_bytes = 64U << 20U;
     const auto store = FileTileStore::create(scratch.path(), {}, limits);
     for (int n = 0;; ++n) {
       const TileKey key{n % 40, 0, 0};
       if (!store->put(key, tile_bytes(key, static_cast<std::uint32_t>(n), 20'000))) _exit(1);
-      if (write(told[1], &n, sizeof(n)) != sizeof(n)) _exit(1);
+      if (write(written[1], &n, sizeof(n)) != sizeof(n)) _exit(1);
     }
   }
-  close(told[1]);
+  close(written[1]);
   int last = -1;
-  for (int n = 0; n < 500 && read(told[0], &n, sizeof(n)) == sizeof(n);) last = n;
+  for (int n = 0; n < 500 && read(written[0], &n, sizeof(n)) == sizeof(n);) last = n;
   kill(child, SIGKILL);
-  for (int n = 0; read(told[0], &n, sizeof(n)) == sizeof(n);) last = n;
+  for (int n = 0; read(written[0], &n, sizeof(n)) == sizeof(n);) last = n;
   waitpid(child, nullptr, 0);
-  close(told[0]);
+  close(written[0]);
   REQUIRE(last >= 499);
   const auto store = FileTileStore::open_to_continue(scratch.path(), {}, {});
   CHECK(store->counters().damaged == 0);
@@ -198,10 +198,10 @@ TEST_CASE("a process killed while it writes leaves every tile of which it has sa
   for (int n = last - 39; n <= last; ++n) {
     const TileKey key{n % 40, 0, 0};
     REQUIRE(store->take(key, bytes));
-    // The one after the last may have been whole as well.
+    // One more tile may have been written completely before the process could report it.
     const auto version = static_cast<std::uint32_t>(n);
-    const bool as_told = bytes == tile_bytes(key, version, 20'000);
-    CHECK((as_told || (n == last - 39 && bytes == tile_bytes(key, version + 40, 20'000))));
+    const bool as_reported = bytes == tile_bytes(key, version, 20'000);
+    CHECK((as_reported || (n == last - 39 && bytes == tile_bytes(key, version + 40, 20'000))));
   }
 }
 

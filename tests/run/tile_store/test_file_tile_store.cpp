@@ -13,8 +13,8 @@ using namespace isobar;  // NOLINT(google-build-using-namespace): a test
 
 namespace {
 
-/// Puts 4000 tiles of 60 keys in random order and sizes; returns what must be in the store then.
-std::map<TileKey, Bytes> fill(TileStore& store, unsigned seed) {
+/// Puts 4000 tiles with 60 keys in random order and sizes; returns the newest version of each key.
+std::map<TileKey, Bytes> fill(FileTileStore& store, unsigned seed) {
   std::mt19937 random(seed);
   std::map<TileKey, Bytes> expected;
   for (std::uint32_t version = 0; version < 4'000; ++version) {
@@ -26,7 +26,7 @@ std::map<TileKey, Bytes> fill(TileStore& store, unsigned seed) {
   return expected;
 }
 
-void check_holds(TileStore& store, const std::map<TileKey, Bytes>& expected) {
+void check_holds(FileTileStore& store, const std::map<TileKey, Bytes>& expected) {
   std::vector<TileKey> keys;
   Bytes bytes;
   for (const auto& [key, content] : expected) {
@@ -44,9 +44,7 @@ void check_holds(TileStore& store, const std::map<TileKey, Bytes>& expected) {
 
 }  // namespace
 
-TEST_CASE("a store gives back the newest version of every tile, in memory as on disk") {
-  MemoryTileStore memory;
-  check_holds(memory, fill(memory, 1));
+TEST_CASE("a store returns the newest version of every tile") {
   const Scratch scratch;
   const auto store = FileTileStore::create(scratch.path() / "map", {}, {});
   check_holds(*store, fill(*store, 1));
@@ -54,11 +52,10 @@ TEST_CASE("a store gives back the newest version of every tile, in memory as on 
   CHECK(store->counters().refused == 0);
 }
 
-TEST_CASE(
-    "what was put is there after closing and opening, to read and to go on, with and without its index") {
+TEST_CASE("tiles survive closing and reopening, read-only and for writing, with and without the index") {
   const Scratch scratch;
   TileStoreLimits limits;
-  limits.max_bytes = 16U << 20U;  // segments of 256 KiB: several of them
+  limits.max_bytes = 16U << 20U;  // gives segments of 256 KiB, so that the map has several
   std::map<TileKey, Bytes> expected;
   {
     const auto store = FileTileStore::create(scratch.path(), {}, limits);
@@ -87,7 +84,7 @@ TEST_CASE(
   check_holds(*FileTileStore::open_to_read(scratch.path()), expected);
 }
 
-TEST_CASE("a map can be read while another writes it") {
+TEST_CASE("a map can be read while another store writes it") {
   const Scratch scratch;
   const auto writer = FileTileStore::create(scratch.path(), {}, {});
   const auto expected = fill(*writer, 3);
@@ -95,7 +92,7 @@ TEST_CASE("a map can be read while another writes it") {
   CHECK_FALSE(FileTileStore::open_to_read(scratch.path())->put({}, Bytes(10)));
 }
 
-TEST_CASE("an empty tile and one larger than the map may be are refused and counted") {
+TEST_CASE("an empty tile and one larger than half of the disk limit are refused and counted") {
   const Scratch scratch;
   TileStoreLimits limits;
   limits.max_bytes = 1U << 20U;
@@ -107,7 +104,7 @@ TEST_CASE("an empty tile and one larger than the map may be are refused and coun
   CHECK(store->put({}, Bytes(400'000)));
 }
 
-TEST_CASE("a new map takes the place of an old one and leaves alone what is no part of it") {
+TEST_CASE("creating a map deletes the old one and no other file of the folder") {
   const Scratch scratch;
   scratch.write("notes.txt", "mine");
   { REQUIRE(FileTileStore::create(scratch.path(), {}, {})->put({}, Bytes(100))); }

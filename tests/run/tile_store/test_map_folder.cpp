@@ -24,7 +24,7 @@ std::string message_of(Call call) {
 
 }  // namespace
 
-TEST_CASE("the header comes back as it was written") {
+TEST_CASE("a header is read as it was written") {
   const Scratch scratch;
   const MapHeader header{.tile_m = 9.6, .cell_m = 0.3};
   write_map_header(scratch.path(), header);
@@ -33,7 +33,7 @@ TEST_CASE("the header comes back as it was written") {
   CHECK(read_map_header(scratch.path()) == MapHeader{.tile_m = 8.0, .cell_m = 1.0});
 }
 
-TEST_CASE("a header that breaks a rule is refused by file, place, key and rule") {
+TEST_CASE("a header that breaks a rule is refused with file, line, column, key and rule") {
   const Scratch scratch;
   const auto refusal = [&](const std::string& text) {
     scratch.write("map.toml", text);
@@ -57,15 +57,15 @@ TEST_CASE("a header that breaks a rule is refused by file, place, key and rule")
         }).find("holds no map") != std::string::npos);
 }
 
-TEST_CASE("a map of other cells is not gone on with") {
+TEST_CASE("a map with another cell size cannot be continued") {
   const Scratch scratch;
   REQUIRE(FileTileStore::create(scratch.path(), {}, {}) != nullptr);
   CHECK(message_of<DataError>([&] {
           return FileTileStore::open_to_continue(scratch.path(), {.tile_m = 16.0, .cell_m = 0.5}, {});
-        }).find("must be of 16") != std::string::npos);
+        }).find("requires tiles of 16") != std::string::npos);
 }
 
-TEST_CASE("one process at a time writes, and the second is told who the first is") {
+TEST_CASE("only one process can open a map for writing, and the error in a second one names it") {
   const Scratch scratch;
   const std::string pid = "(process " + std::to_string(getpid()) + ")";
   {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tiles whose bytes follow from key and version, so that a test knows what must come back.
+// Tiles with bytes that are a function of key and version, so that a test can check what it reads.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace isobar::test {
 
 using Bytes = std::vector<std::byte>;
 
-/// `size` bytes that no other key or version has.
+/// `size` bytes that differ from those of any other key, version or size.
 inline Bytes tile_bytes(const TileKey& key, std::uint32_t version, std::size_t size) {
   Bytes bytes(size);
   std::uint64_t state = key.hash() ^ (version * 0x9E3779B97F4A7C15ULL) ^ size;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Decodes the bytes that the Fast DDS listener kept, with Foxglove's code and Foxglove's copies of the ROS 2
-// definitions, and compares them with what the stand-in publishes (stand_in.hpp). Knows nothing of Isobar's IDL.
-//   node decode.js FOLDER        exit code 0: all right, 1: not, 77: node_modules or the captured files are missing
+// Decodes the messages captured by the Fast DDS listener with Foxglove's code and Foxglove's copies of the ROS 2
+// definitions, and compares them with the data of the stand-in (stand_in.hpp). Independent of Isobar's IDL.
+//   node decode.js FOLDER        exit code 0: passed, 1: failed, 77: node_modules or the captured files are missing
 "use strict";
 const assert = require("node:assert/strict");
 const fs = require("node:fs");
@@ -18,11 +18,11 @@ try {
   process.exit(77);
 }
 if (!fs.existsSync(path.join(folder, "rt.odom.cdr"))) {
-  console.log("skipped: nothing was captured; run dds_foreign_test first");
+  console.log("skipped: no captured messages; run test_dds_foreign first");
   process.exit(77);
 }
 
-/** The definition of a type with all that it is made of, its own first. */
+/** The definition of a type, followed by those of the types it contains. */
 function withDependencies(name, known) {
   const done = new Map();
   const visit = (type) => {
@@ -61,7 +61,7 @@ function near(actual, wanted, tolerance, what) {
   assert.ok(Math.abs(actual - wanted) <= tolerance, `${what}: ${actual} instead of ${wanted}`);
 }
 
-/** The drive: x = 0.5 t, y = 2, z = 0.1 t, yaw = 0.3. */
+/** The stand-in's drive: x = 0.5 t, y = 2, z = 0.1 t, yaw = 0.3. */
 function checkPosition(position, tolerance, what) {
   assert.ok(position.x > 0.1, `${what}: the robot has moved`);
   near(position.y, 2.0, tolerance, `${what} y`);
@@ -75,7 +75,7 @@ function checkRotation(q, yaw, what) {
   near(q.w, Math.cos(yaw / 2), 1e-9, `${what} qw`);
 }
 
-/** The stamps are times of day: not much older than the files. */
+/** Stamps are wall-clock times, not much older than the files. */
 const writtenAt = fs.statSync(path.join(folder, "rt.odom.cdr")).mtimeMs / 1000;
 function checkStamp(header, what) {
   const age = writtenAt - (header.stamp.sec + header.stamp.nanosec * 1e-9);

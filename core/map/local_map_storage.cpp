@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What leaves the map with the distance, and how it comes back: the part of LocalMap that knows the shelf.
+// The part of LocalMap that moves tiles between memory and the tile storage.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -11,18 +11,18 @@ namespace isobar {
 
 namespace {
 
-// Tiles that come back from the shelf with one update: so many are read in a few milliseconds.
+// Maximum number of tiles that one update reads from the storage: it takes a few milliseconds.
 constexpr std::size_t kTilesPerUpdate = 8;
 
 }  // namespace
 
-// The tile that points go to, back from the shelf if it is there. Null where this update has brought back
-// enough: the next scan sees the place too, and a tile made anew would hide the old one.
+// Tile that a point is added to, read from the storage if it is there. Null if this update has read its
+// maximum: the next scan sees the place as well, whereas a new empty tile would replace the stored one.
 LocalMap::Tile* LocalMap::tile_for_points(const TileKey& key) {
   if (const auto found = tiles_.find(key); found != tiles_.end()) {
     return found->second.get();
   }
-  if (shelf_ != nullptr && shelf_->contains(key)) {
+  if (storage_ != nullptr && storage_->contains(key)) {
     if (restored_ >= kTilesPerUpdate) {
       return nullptr;
     }
@@ -31,39 +31,40 @@ LocalMap::Tile* LocalMap::tile_for_points(const TileKey& key) {
   return tiles_.emplace(key, std::make_unique<Tile>(key)).first->second.get();
 }
 
-// Takes a tile from the shelf; an empty one where it is damaged.
+// Reads a tile from the storage; the tile is empty if it is damaged.
 LocalMap::Tile* LocalMap::restore(const TileKey& key) {
   ++restored_;
   Tile* tile = tiles_.emplace(key, std::make_unique<Tile>(key)).first->second.get();
-  const bool good = shelf_->take(key, bytes_) && tile->cells.restore(bytes_, cell_m_);
-  lost_tile_count_ += good ? 0 : 1;
+  if (storage_->take(key, bytes_)) tile->cells.restore(bytes_, cell_m_);
   return tile;
 }
 
-// Puts a copy of a tile on the shelf.
-void LocalMap::shelve(const TileKey& key) {
+void LocalMap::store(const TileKey& key) {
   tiles_.at(key)->cells.store(cell_m_, bytes_);
-  lost_tile_count_ += shelf_->put(key, bytes_) ? 0 : 1;
+  storage_->put(key, bytes_);
 }
 
+void LocalMap::store_all() {
+  if (storage_ == nullptr) {
+    return;
+  }
+  for (const TileKey& key : TileKey::sorted(tiles_)) store(key);
+}
+
+// Removes the tiles beyond the radius from memory, plus one tile of hysteresis, and stores them.
 void LocalMap::evict(const Eigen::Vector3d& p_map_base) {
-  std::vector<TileKey> far;
-  for (const auto& [key, tile] : tiles_) {
+  for (const TileKey& key : TileKey::sorted(tiles_)) {
     if ((centre_of(key, cell_m_) - p_map_base).norm() > config_.radius_m + tile_m(cell_m_)) {
-      far.push_back(key);
+      if (storage_ != nullptr) store(key);
+      tiles_.erase(key);
     }
   }
-  // In order of place, since the order of a hash table is nobody's promise.
-  std::sort(far.begin(), far.end());
-  for (const TileKey& key : far) {
-    if (shelf_ != nullptr) shelve(key);
-    tiles_.erase(key);
-  }
 }
 
+// Lists the stored tiles within the radius that are not in memory, the farthest first.
 void LocalMap::look_for_stored(const Eigen::Vector3d& p_map_base) {
   stored_.clear();
-  if (shelf_ == nullptr) {
+  if (storage_ == nullptr) {
     return;
   }
   const auto reach = static_cast<std::int32_t>(std::ceil(config_.radius_m / tile_m(cell_m_)));
@@ -74,7 +75,7 @@ void LocalMap::look_for_stored(const Eigen::Vector3d& p_map_base) {
       for (std::int32_t z = at.z - reach; z <= at.z + reach; ++z) {
         const TileKey key{x, y, z};
         if ((centre_of(key, cell_m_) - p_map_base).norm() <= config_.radius_m && !tiles_.contains(key) &&
-            shelf_->contains(key)) {
+            storage_->contains(key)) {
           stored_.push_back(key);
         }
       }
@@ -88,6 +89,7 @@ void LocalMap::look_for_stored(const Eigen::Vector3d& p_map_base) {
   std::sort(stored_.begin(), stored_.end(), farther);
 }
 
+// Reads the nearest of the listed tiles, up to kTilesPerUpdate of them.
 void LocalMap::bring_back_stored() {
   restored_ = 0;
   while (restored_ < kTilesPerUpdate && !stored_.empty()) {

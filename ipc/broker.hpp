@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Lifetime of the shared memory: the process that creates it, and the processes that attach to it.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+
+namespace isobar::ipc {
+
+/// Non-fatal errors reported by the shared-memory library since this process started.
+[[nodiscard]] std::uint64_t library_fault_count() noexcept;
+
+/// Replaces the default reaction to a fatal error of the shared-memory library, which ends the process with
+/// exit code 69. The action must not return and must not call the library; it may replace the process by
+/// exec.
+using FatalAction = void (*)();
+void set_fatal_action(FatalAction action) noexcept;
+
+/// Creates the shared memory and serves the attached processes, in threads of its own.
+class Broker {
+ public:
+  /// @throws ServiceError when another isobard runs on this machine, when /dev/shm is too small (the text
+  ///         gives the MB needed and available), or when the system refuses shared memory
+  Broker();
+  /// Attached processes keep running but receive nothing more. Waits up to 2 s for them to detach.
+  ~Broker();
+  Broker(const Broker&) = delete;
+  Broker& operator=(const Broker&) = delete;
+
+  /// Free space that a Broker needs in /dev/shm [bytes].
+  [[nodiscard]] static std::uint64_t needed_bytes() noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Attaches this process to the shared memory of a running isobard. Once per process: the library cannot
+/// attach a second time.
+class Attachment {
+ public:
+  /// Waits for isobard to run.
+  /// @param name program name, up to 60 characters that are valid in a file name; the process id is appended
+  /// @param timeout longest wait; 0: one attempt
+  /// @throws ServiceError when no isobard runs within the timeout
+  Attachment(const char* name, std::chrono::milliseconds timeout);
+  ~Attachment();
+  Attachment(const Attachment&) = delete;
+  Attachment& operator=(const Attachment&) = delete;
+
+  /// False once the isobard of this attachment has ended, even if another one has started since. From then on
+  /// no message arrives; only a new process can attach again. Call it at least twice a second: an isobard
+  /// that ends waits for its attached processes. Costs a few system calls.
+  [[nodiscard]] bool broker_alive() const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace isobar::ipc

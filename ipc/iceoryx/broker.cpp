@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ipc/broker.hpp"
+
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+
+#include <iceoryx_hoofs/posix_wrapper/posix_access_rights.hpp>
+#include <iceoryx_posh/roudi/iceoryx_roudi_components.hpp>
+#include <iceoryx_posh/runtime/posh_runtime_single_process.hpp>
+#include <iostream>
+#include <string>
+#include <utility>
+
+#include "core/errors.hpp"
+#include "ipc/broker_lock.hpp"
+#include "ipc/iceoryx/library_errors.hpp"
+#include "ipc/iceoryx/roudi.hpp"
+#include "ipc/topics.hpp"
+
+namespace isobar::ipc {
+namespace {
+
+constexpr std::uint64_t kMegabyteBytes = 1ULL << 20;
+/// iceoryx's management segment: 66 MB measured with Debian's 2.0.3, plus 1 MB for page rounding.
+constexpr std::uint64_t kManagementBytes = 67 * kMegabyteBytes;
+/// Upper bound of iceoryx's header in front of each payload and of the rounding of chunk sizes.
+constexpr std::uint64_t kChunkHeaderBytes = 64;
+/// Longest wait for attached processes to detach; they check for the broker twice a second, see
+/// Attachment::broker_alive().
+constexpr auto kDetachTimeout = std::chrono::seconds(2);
+
+/// Discards what the library prints while the broker starts, regardless of its log level.
+class MutedStreams {
+ public:
+  MutedStreams() : out_(std::cout.rdbuf(nullptr)), log_(std::clog.rdbuf(nullptr)) {}
+  ~MutedStreams() {
+    std::cout.rdbuf(out_);
+    std::clog.rdbuf(log_);
+  }
+  MutedStreams(const MutedStreams&) = delete;
+  MutedStreams& operator=(const MutedStreams&) = delete;
+
+ private:
+  std::streambuf* out_;
+  std::streambuf* log_;
+};
+
+auto group_of_process() { return iox::posix::PosixGroup::getGroupOfCurrentProcess().getName(); }
+
+/// Space of the segments that a killed isobard left in /dev/shm [bytes]. The library removes them at the next
+/// start, hence it counts as free.
+std::uint64_t leftover_bytes() {
+  constexpr std::uint64_t kBlockBytes = 512;  // unit of st_blocks, stat(2)
+  std::uint64_t bytes = 0;
+  for (const std::string& name : {std::string("iceoryx_mgmt"), std::string(group_of_process())}) {
+    struct stat status {};
+    if (::stat(("/dev/shm/" + name).c_str(), &status) == 0) {
+      bytes += static_cast<std::uint64_t>(status.st_blocks) * kBlockBytes;
+    }
+  }
+  return bytes;
+}
+
+void require_space() {
+  struct statvfs status {};
+  if (::statvfs("/dev/shm", &status) != 0) {
+    throw ServiceError("/dev/shm: not mounted; shared memory needs it");
+  }
+  const std::uint64_t available_bytes = status.f_bavail * status.f_frsize + leftover_bytes();
+  if (available_bytes < Broker::needed_bytes()) {
+    const std::uint64_t needed_mb = (Broker::needed_bytes() + kMegabyteBytes - 1) / kMegabyteBytes;
+    throw ServiceError("/dev/shm: " + std::to_string(needed_mb) + " MB needed, " +
+                       std::to_string(available_bytes / kMegabyteBytes) +
+                       " MB available; enlarge it (mount -o remount,size=256M /dev/shm)");
+  }
+}
+
+iox::RouDiConfig_t memory_config() {
+  iox::mepoo::MePooConfig pools;
+  for (const ChunkPool& pool : kChunkPools) {
+    pools.addMemPool({pool.chunk_bytes, pool.chunk_count});
+  }
+  const auto group = group_of_process();
+  iox::RouDiConfig_t config;
+  config.m_sharedMemorySegments.push_back({group, group, pools});
+  return config;
+}
+
+}  // namespace
+
+struct Broker::Impl {
+  BrokerLock lock;
+  iox::roudi::IceOryxRouDiComponents components;
+  PidfdRouDi roudi;
+  iox::runtime::PoshRuntimeSingleProcess runtime;
+
+  explicit Impl(BrokerLock&& held)
+      : lock(std::move(held)),
+        components(memory_config()),
+        roudi(components.rouDiMemoryManager, components.portManager),
+        runtime("isobard") {}
+};
+
+Broker::Broker() {
+  prepare_library();
+  BrokerLock lock = BrokerLock::acquire();
+  require_space();
+  const MutedStreams muted;
+  impl_ = std::make_unique<Impl>(std::move(lock));
+  impl_->lock.announce();
+}
+
+Broker::~Broker() { impl_->lock.withdraw(kDetachTimeout); }
+
+std::uint64_t Broker::needed_bytes() noexcept {
+  std::uint64_t bytes = kManagementBytes;
+  for (const ChunkPool& pool : kChunkPools) {
+    bytes += pool.chunk_count * (pool.chunk_bytes + kChunkHeaderBytes);
+  }
+  return bytes;
+}
+
+}  // namespace isobar::ipc

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace isobar::ipc {
+
+/// Silences the library's log and installs this program's error handler for the rest of the process. Call it
+/// before any other use of the library; later calls do nothing.
+void prepare_library();
+
+}  // namespace isobar::ipc
