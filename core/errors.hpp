@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Typed errors of the edges: start-up, files, configuration, devices. Hot paths return a status instead.
+// Typed errors for start-up, files, configuration and devices. Hot paths return a status instead.
 #pragma once
 
 #include <stdexcept>
@@ -7,7 +7,7 @@
 
 namespace isobar {
 
-/// Base of every error that ends a command; the exit code follows sysexits.h.
+/// Base of every error that ends a command. Exit codes are those of sysexits.h.
 class Error : public std::runtime_error {
  public:
   Error(const std::string& what, int exit_code) : std::runtime_error(what), exit_code_(exit_code) {}
@@ -17,25 +17,25 @@ class Error : public std::runtime_error {
   int exit_code_;
 };
 
-/// The command line does not say something that can be done (EX_USAGE, 64).
+/// Invalid command line (EX_USAGE, 64).
 class UsageError : public Error {
  public:
   explicit UsageError(const std::string& what) : Error(what, 64) {}
 };
 
-/// An input file breaks a rule (EX_DATAERR, 65). Say "file:line: rule".
+/// Invalid input file (EX_DATAERR, 65). Text: "file:line: rule".
 class DataError : public Error {
  public:
   explicit DataError(const std::string& what) : Error(what, 65) {}
 };
 
-/// Something outside the program is missing or refuses: network, shared memory, device (EX_UNAVAILABLE, 69).
+/// A network, shared memory or device is missing or refuses (EX_UNAVAILABLE, 69).
 class ServiceError : public Error {
  public:
   explicit ServiceError(const std::string& what) : Error(what, 69) {}
 };
 
-/// The configuration breaks a rule (EX_CONFIG, 78). Say "file:line: key: rule".
+/// Invalid configuration (EX_CONFIG, 78). Text: "file:line: key: rule".
 class ConfigError : public Error {
  public:
   explicit ConfigError(const std::string& what) : Error(what, 78) {}

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the stages of the pipeline hand to each other.
+// Messages between the stages of the pipeline.
 //
-// Frames (REP-103, REP-105): base_link is the robot; odom is where dead reckoning started; map is where the
-// map started. All three are gravity-aligned at the start, z up. The height of base_link is 0 at the start.
+// Frames (REP-103, REP-105): base_link is the robot; odom starts with dead reckoning, map with the map. All
+// three are gravity-aligned at the start, z up. The height of base_link is 0 at the start.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,40 +15,40 @@ namespace isobar {
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// Where a height comes from, best first.
+/// Source of a height, best first.
 enum class HeightSource : std::uint8_t {
   kDifferential,     ///< robot's barometer against a base station's
-  kSingleBarometer,  ///< robot's barometer against its own start: weather moves it
+  kSingleBarometer,  ///< robot's barometer against its own start: drifts with the weather
   kHeld,             ///< barometer lost: dead reckoning since then
   kNone,             ///< never had a barometer
 };
 
-/// What is known before looking at the scan: the state of the prior stage at one IMU sample.
+/// Output of the prior stage at one IMU sample: all that is known before the scan is used.
 struct Prior {
   std::int64_t stamp_ns = 0;
 
   /// Dead reckoning of base_link from IMU and wheels. Roll and pitch from gravity, yaw from the gyro,
-  /// translation from wheels (z too: no barometer in here). Smooth; drifts.
+  /// translation from wheels, z included (no barometer). Continuous; drifts.
   Eigen::Isometry3d T_odom_base = Eigen::Isometry3d::Identity();
 
-  /// Height of base_link above its start from air pressure, lever arm of the port taken out [m].
+  /// Height of base_link above its start from air pressure, corrected for the port's lever arm [m].
   double height_m = 0.0;
   double height_variance_m2 = 0.0;
   HeightSource height_source = HeightSource::kNone;
 
   Eigen::Vector3d v_base_m_s = Eigen::Vector3d::Zero();    ///< velocity of base_link in base_link
-  Eigen::Vector3d w_base_rad_s = Eigen::Vector3d::Zero();  ///< angular rate in base_link, gyro bias taken out
+  Eigen::Vector3d w_base_rad_s = Eigen::Vector3d::Zero();  ///< angular rate in base_link, gyro bias removed
 
   double roll_pitch_variance_rad2 = 0.0;   ///< of roll and of pitch, each
   double yaw_rate_variance_rad2_s2 = 0.0;  ///< of the angular rate about z, bias included
   double velocity_variance_m2_s2 = 0.0;    ///< of each axis of v_base_m_s
 
-  bool attitude_valid = false;  ///< gravity has been found
-  bool velocity_valid = false;  ///< wheels are present and fresh; else v_base_m_s is zero and xy do not move
-  bool standing_still = false;  ///< gyro, accelerometer and wheels agree that nothing moves
+  bool attitude_valid = false;  ///< aligned to gravity
+  bool velocity_valid = false;  ///< wheels present and fresh; else v_base_m_s is zero and xy do not move
+  bool standing_still = false;  ///< gyro, accelerometer and wheels agree on standstill
 };
 
-/// Which of the robot's degrees of freedom the ICP estimates, and where the height comes from.
+/// Degrees of freedom that the ICP estimates, and the source of the height.
 enum class Method : std::uint8_t {
   k6Dof,          ///< full pose
   k4Dof,          ///< x, y, z, yaw; roll and pitch from gravity
@@ -58,22 +58,22 @@ enum class Method : std::uint8_t {
   kOdometry,      ///< dead reckoning alone, no ICP
 };
 
-/// Where a pose comes from.
+/// Source of a pose.
 enum class PoseMode : std::uint8_t {
   kRegistered,    ///< the ICP converged on this scan
   kPriorOnly,     ///< no scan, or the registration was rejected: dead reckoning from the last good pose
-  kInitializing,  ///< first scans: the map is being started
+  kInitializing,  ///< bootstrap: first scans of the map
 };
 
 /// Pose of base_link at the end of a scan (or between scans, with mode kPriorOnly).
 struct PoseEstimate {
   std::int64_t stamp_ns = 0;
-  std::uint32_t sequence = 0;  ///< sequence of the scan; of the last scan if there is none
+  std::uint32_t sequence = 0;  ///< sequence of the scan; between scans of the last one
   PoseMode mode = PoseMode::kInitializing;
-  Method method = Method::k3Dof;            ///< the method that was asked for
-  Method effective_method = Method::k3Dof;  ///< what ran: 3-DOF without any height runs as 4-DOF
+  Method method = Method::k3Dof;            ///< configured method
+  Method effective_method = Method::k3Dof;  ///< method that ran: 3-DOF without any height runs as 4-DOF
   HeightSource height_source = HeightSource::kNone;
-  bool degenerate = false;  ///< the scan did not constrain every free direction; the prior filled it
+  bool degenerate = false;  ///< the scan did not constrain every free direction; there the prior counts
 
   Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_map_odom = Eigen::Isometry3d::Identity();  ///< T_map_base = T_map_odom * T_odom_base
@@ -81,13 +81,13 @@ struct PoseEstimate {
   Matrix6d covariance = Matrix6d::Zero();
 
   std::uint32_t iterations = 0;
-  std::uint32_t sampled_points = 0;  ///< points that took part
-  std::uint32_t matched_pairs = 0;   ///< of them, with an accepted correspondence in the last iteration
+  std::uint32_t sampled_points = 0;  ///< points in the ICP
+  std::uint32_t matched_pairs = 0;   ///< of them, with a correspondence in the last iteration
   double overlap = 0.0;              ///< matched_pairs / sampled_points, 0 … 1
   double residual_rms_m = 0.0;       ///< weighted point-to-plane rms
   Eigen::Vector3d smallest_eigenvalues =
       Eigen::Vector3d::Zero();   ///< of the information matrix per pair, ascending
-  double registration_ms = 0.0;  ///< CPU time of deskew to solve; filled by whoever runs the stage
+  double registration_ms = 0.0;  ///< CPU time of the registration; filled by the thread that runs it
 };
 
 /// A deskewed scan in the base_link frame at the pose's time, thinned for the map.
@@ -95,11 +95,11 @@ struct RegisteredScan {
   static constexpr std::uint32_t kMaxPoints = 70'000;
 
   PoseEstimate pose;
-  std::int64_t handed_over_ns = 0;  ///< when it went on to the map, robot clock; live runs only
+  std::int64_t handed_over_ns = 0;  ///< hand-over to the map, robot clock; live runs only
   std::uint32_t point_count = 0;
   ScanPoint points[kMaxPoints];  // NOLINT(modernize-avoid-c-arrays): p_base, payload in shared memory
 
-  RegisteredScan() {}  // NOLINT: user-written, so that loaning a chunk does not zero a megabyte
+  RegisteredScan() {}  // NOLINT: user-written: loaning a chunk must not zero a megabyte
 };
 
 }  // namespace isobar

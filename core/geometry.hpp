@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Angles in degrees, and mounts of sensors.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <cmath>
+
+#include "core/so3.hpp"
 
 namespace isobar {
 
@@ -11,14 +13,9 @@ inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kRadPerDeg = kPi / 180.0;
 
 /// Rotation of a sensor in base_link from roll, pitch, yaw in degrees about the fixed axes x, y, z of
-/// base_link: R = Rz(yaw) Ry(pitch) Rx(roll), as recording-format.md and URDF define it. The result is p_base
-/// = R p_sensor.
+/// base_link, as the recording format and URDF define it: p_base = R p_sensor.
 inline Eigen::Matrix3d rotation_from_rpy_deg(const Eigen::Vector3d& rpy_deg) {
-  const Eigen::Vector3d rpy_rad = rpy_deg * kRadPerDeg;
-  return (Eigen::AngleAxisd(rpy_rad.z(), Eigen::Vector3d::UnitZ()) *
-          Eigen::AngleAxisd(rpy_rad.y(), Eigen::Vector3d::UnitY()) *
-          Eigen::AngleAxisd(rpy_rad.x(), Eigen::Vector3d::UnitX()))
-      .toRotationMatrix();
+  return rotation_from_rpy(rpy_deg * kRadPerDeg).toRotationMatrix();
 }
 
 /// Where a sensor sits on the robot.
@@ -27,7 +24,7 @@ struct Mount {
   Eigen::Vector3d rpy_deg =
       Eigen::Vector3d::Zero();  ///< fixed-axis roll, pitch, yaw of the sensor in base_link
 
-  /// Takes a point of the sensor's frame to base_link.
+  /// Pose of the sensor in base_link: takes a point of the sensor's frame to base_link.
   [[nodiscard]] Eigen::Isometry3d T_base_sensor() const {  // NOLINT(readability-identifier-naming)
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     T.linear() = rotation_from_rpy_deg(rpy_deg);

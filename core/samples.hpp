@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What sensors measure. Plain values without pointers, so that they travel through shared memory as they are.
+// Samples of the sensors. Trivially copyable values without pointers, as shared memory requires.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,21 +15,21 @@ inline constexpr double kGravity = 9.80665;
 
 /// One inertial sample, in the IMU's own frame. At rest and level accel reads (0, 0, +g).
 struct ImuSample {
-  std::int64_t stamp_ns = 0;                                        ///< when it was measured, robot clock
+  std::int64_t stamp_ns = 0;                                        ///< time of the measurement, robot clock
   Eigen::Vector3d gyro_rad_s = Eigen::Vector3d::Zero();             ///< angular rate
   Eigen::Vector3d accel_m_s2 = Eigen::Vector3d::Zero();             ///< specific force
-  Eigen::Quaterniond q_world_imu = Eigen::Quaterniond::Identity();  ///< the IMU's own attitude, if it has one
-  bool has_attitude = false;                                        ///< q_world_imu was measured
+  Eigen::Quaterniond q_world_imu = Eigen::Quaterniond::Identity();  ///< attitude from the IMU's own filter
+  bool has_attitude = false;                                        ///< q_world_imu is valid
 };
 
 /// One barometer sample, of the robot or of a base station.
 struct PressureSample {
-  std::int64_t stamp_ns = 0;  ///< when it was measured; a base station's is already mapped to the robot clock
-  double pressure_pa = 0.0;   ///< absolute pressure, compensated by the sensor's own coefficients
+  std::int64_t stamp_ns = 0;   ///< time of the measurement, robot clock, also of a base station's sample
+  double pressure_pa = 0.0;    ///< absolute pressure, compensated with the sensor's own coefficients
   double temperature_c = 0.0;  ///< temperature of the sensor, NaN if it has none
-  /// White noise of this sample as its sender knows it [Pa^2], NaN if it does not.
+  /// White noise of this sample as stated by its sender [Pa^2], NaN if unknown.
   double variance_pa2 = std::numeric_limits<double>::quiet_NaN();
-  std::uint8_t station = 0;  ///< of base stations, which one: 0 the first, 1 the second
+  std::uint8_t station = 0;  ///< base station: 0 the first, 1 the second
 };
 
 /// Wheel odometry: twist of base_link in base_link.
@@ -40,8 +40,8 @@ struct WheelSample {
   double wz_rad_s = 0.0;
 };
 
-/// One lidar return in the sensor's frame (x forward, y left, z up). Without initial values: with them every
-/// loan of a chunk for 70 000 points would write a megabyte of zeros.
+/// One lidar return in the sensor's frame (x forward, y left, z up). No default initialisers: they would make
+/// every loan of a chunk for 70 000 points write a megabyte of zeros.
 struct ScanPoint {
   float x_m;
   float y_m;
@@ -55,19 +55,18 @@ static_assert(sizeof(ScanPoint) == 16 && std::is_trivially_default_constructible
 /// Unit of ScanPoint::time_4us [ns].
 inline constexpr std::int64_t kPointTimeUnitNs = 4'000;
 
-/// One revolution of the lidar. 1.1 MiB: holds a full HDL-32E revolution at 10 Hz or a dual-return VLP-16
-/// one.
+/// One revolution of the lidar. 1.1 MiB: a full revolution at 10 Hz of an HDL-32E or a dual-return VLP-16.
 struct Scan {
   static constexpr std::uint32_t kMaxPoints = 70'000;
 
   std::int64_t stamp_ns = 0;       ///< time of the earliest possible point, robot clock
   std::int64_t end_stamp_ns = 0;   ///< time of the latest point, robot clock
-  std::uint32_t sequence = 0;      ///< counts the scans of this run
+  std::uint32_t sequence = 0;      ///< number of the scan in this run
   std::uint32_t point_count = 0;   ///< points[0 … point_count-1] are valid
-  std::uint32_t packets_lost = 0;  ///< packets missing in this revolution, from the gaps in time
+  std::uint32_t packets_lost = 0;  ///< packets missing in this revolution, from gaps in time
   ScanPoint points[kMaxPoints];    // NOLINT(modernize-avoid-c-arrays): payload in shared memory
 
-  Scan() {}  // NOLINT: user-written, so that loaning a chunk does not zero a megabyte
+  Scan() {}  // NOLINT: user-written: loaning a chunk must not zero a megabyte
 };
 
 }  // namespace isobar

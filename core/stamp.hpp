@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Differences of time stamps.
+// Time stamps: differences and plausibility.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ constexpr double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
   return static_cast<double>(to_ns - from_ns) * 1e-9;
 }
 
-/// Stamps within 126 years of the epoch: their differences cannot overflow.
+/// True for stamps within 126 years of the epoch, whose differences cannot overflow.
 constexpr bool plausible_stamp(std::int64_t stamp_ns) {
   constexpr std::int64_t kLimitNs = 4'000'000'000'000'000'000;
   return stamp_ns > -kLimitNs && stamp_ns < kLimitNs;

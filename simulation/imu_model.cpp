@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/geometry.hpp"
+#include "core/so3.hpp"
 
 namespace isobar::simulation {
 
@@ -109,13 +110,10 @@ ImuSample ImuModel::sample(double time_s) {
   sample.accel_m_s2 = errors_.accel_scale * (R_imu_base * a_base) + errors_.accel_bias_m_s2 + accel_wander_ +
                       white(errors_.accel_density_m_s2_rthz * band) + white(shaking * errors_.vibration_m_s2);
   if (errors_.has_attitude) {
-    const Vector3d& tilt = attitude_wander_;
     sample.has_attitude = true;
-    sample.q_world_imu =
-        (Eigen::AngleAxisd(tilt.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(tilt.y(), Vector3d::UnitY()) *
-         Eigen::AngleAxisd(tilt.x(), Vector3d::UnitX()) * state.q_world_base *
-         Eigen::Quaterniond(T_base_imu_.rotation()))
-            .normalized();
+    sample.q_world_imu = (rotation_from_rpy(attitude_wander_) * state.q_world_base *
+                          Eigen::Quaterniond(T_base_imu_.rotation()))
+                             .normalized();
   }
   return sample;
 }

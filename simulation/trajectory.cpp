@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "core/so3.hpp"
+
 namespace isobar::simulation {
 
 using Eigen::Vector3d;
@@ -20,9 +22,7 @@ Channel channel(const std::vector<RawPose>& raw, Get get) {
 /// Sets attitude, body rates and their derivative from roll, pitch, yaw (rotation z-y-x) and their first two
 /// derivatives. Body rates from Euler rates: Diebel, "Representing Attitude" (2006), eq. 60.
 void set_attitude(MotionState& state, const Vector3d& rpy, const Vector3d& rate, const Vector3d& curve) {
-  state.q_world_base = Eigen::AngleAxisd(rpy.z(), Vector3d::UnitZ()) *
-                       Eigen::AngleAxisd(rpy.y(), Vector3d::UnitY()) *
-                       Eigen::AngleAxisd(rpy.x(), Vector3d::UnitX());
+  state.q_world_base = rotation_from_rpy(rpy);
   const double sr = std::sin(rpy.x());
   const double cr = std::cos(rpy.x());
   const double sp = std::sin(rpy.y());

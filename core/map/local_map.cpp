@@ -10,6 +10,7 @@
 #include "core/geometry.hpp"
 #include "core/map/plane_hash.hpp"
 #include "core/map/scan_decimation.hpp"
+#include "core/so3.hpp"
 #include "core/stamp.hpp"
 
 namespace isobar {
@@ -49,7 +50,7 @@ bool LocalMap::wants(const PoseEstimate& pose) const {
   const Eigen::Isometry3d step = last_pose_.T_map_base.inverse() * pose.T_map_base;
   const double elapsed_s = seconds_between(last_pose_.stamp_ns, pose.stamp_ns);
   return step.translation().norm() >= config_.update_distance_m ||
-         Eigen::AngleAxisd(step.linear()).angle() >= config_.update_angle_deg * kRadPerDeg ||
+         rotation_angle_rad(Eigen::Quaterniond(step.linear())) >= config_.update_angle_deg * kRadPerDeg ||
          elapsed_s >= config_.update_interval_s || elapsed_s < 0.0 || pose.overlap < config_.update_overlap;
 }
 

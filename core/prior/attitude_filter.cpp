@@ -4,42 +4,52 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/prior/rotation.hpp"
 #include "core/samples.hpp"
+#include "core/so3.hpp"
 #include "core/squared.hpp"
 
 namespace isobar {
 namespace {
 
+// First row of each part of the error state.
 constexpr int kAngle = 0;
 constexpr int kYaw = 2;
 constexpr int kVelocity = 3;
 constexpr int kGyroBias = 6;
 constexpr int kAccelBiasRow = 9;
 
-constexpr double kWheelGate = 5.0;
-constexpr double kAttitudeGate = 5.0;
-// Wheels that disagree for this long are right about the velocity: the filter's own was off.
+// Gates against outliers; the last is none, for pseudo-measurements that are always true.
+constexpr double kWheelGateSigmas = 5.0;
+constexpr double kBiasGateSigmas = 5.0;
+constexpr double kNoGateSigmas = 1e3;
+// After wheels outside the gate for this long the filter's velocity is taken for wrong, not the wheels.
 constexpr double kGatedLimitS = 1.0;
-// Vibration and sensor noise are white only down to the time over which they were measured.
+// Variance that is then added to the velocity, and the one it starts with: 1 m/s.
+constexpr double kUnknownVelocityM2S2 = 1.0;
+// Correlation time of vibration and sensor noise: white only above it.
 constexpr double kNoiseCorrelationS = 0.005;
-constexpr double kVerticalLoosening = 100.0;
+// Time over which Prior::yaw_rate_variance_rad2_s2 averages the gyro's noise: one scan.
+constexpr double kRateMeanS = 0.1;
+// Rocking of a standing robot, 1 sigma, and how long it lasts.
+constexpr double kRockingRadS = 1e-4;
+constexpr double kRockingS = 1.0;
+// A hanging load is lowered steadily for minutes: its vertical velocity is not zero on average.
+constexpr double kVerticalVarianceFactor = 100.0;
 
 }  // namespace
 
 AttitudeFilter::AttitudeFilter(const AttitudeConfig& config, const Eigen::Vector3d& p_base_imu)
     : config_(config), p_base_imu_(p_base_imu) {}
 
-void AttitudeFilter::start(const Eigen::Vector3d& mean_force_m_s2, double yaw_rad, double sigma_rad) {
-  const Eigen::Quaterniond tilt =
-      Eigen::Quaterniond::FromTwoVectors(mean_force_m_s2, Eigen::Vector3d::UnitZ());
-  const Eigen::Quaterniond turn(Eigen::AngleAxisd(yaw_rad - yaw_of(tilt), Eigen::Vector3d::UnitZ()));
+void AttitudeFilter::start(const Eigen::Vector3d& up_force, double yaw_rad, double sigma_rad) {
+  const Eigen::Quaterniond tilt = Eigen::Quaterniond::FromTwoVectors(up_force, Eigen::Vector3d::UnitZ());
+  const Eigen::Quaterniond turn = exp_so3({0.0, 0.0, yaw_rad - yaw_of(tilt)});
   q_world_base_ = (turn * tilt).normalized();
   velocity_.setZero();
   P_.topRows<6>().setZero();
   P_.leftCols<6>().setZero();
   P_(0, 0) = P_(1, 1) = squared(sigma_rad);
-  P_.diagonal().segment<3>(kVelocity).setConstant(1.0);
+  P_.diagonal().segment<3>(kVelocity).setConstant(kUnknownVelocityM2S2);
   if (!biases_started_) {
     P_.diagonal().segment<3>(kGyroBias).setConstant(squared(config_.gyro_bias_sigma_rad_s));
     P_.diagonal().segment<3>(kAccelBiasRow).setConstant(squared(config_.accel_bias_sigma_m_s2));
@@ -63,9 +73,8 @@ void AttitudeFilter::propagate_covariance(const Eigen::Vector3d& force_world, do
 void AttitudeFilter::predict(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& force_m_s2,
                              double dt_s, double gyro_variance, double accel_variance) {
   rate_rad_s_ = gyro_rad_s - gyro_bias_;
-  force_m_s2_ = force_m_s2 - accel_bias_;
-  const Eigen::Quaterniond half = rotation_of(rate_rad_s_ * (0.5 * dt_s));
-  const Eigen::Vector3d force_world = (q_world_base_ * half) * force_m_s2_;
+  const Eigen::Quaterniond half = exp_so3(rate_rad_s_ * (0.5 * dt_s));
+  const Eigen::Vector3d force_world = (q_world_base_ * half) * (force_m_s2 - accel_bias_);
   propagate_covariance(force_world, dt_s);
   q_world_base_ = (q_world_base_ * half * half).normalized();
   velocity_ += (force_world - Eigen::Vector3d(0.0, 0.0, kGravity)) * dt_s;
@@ -79,11 +88,11 @@ void AttitudeFilter::predict(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vec
   P_.diagonal().segment<3>(kGyroBias).array() += squared(config_.gyro_bias_walk_rad_s_sqrt_s) * dt_s;
   P_.diagonal().segment<3>(kAccelBiasRow).array() += squared(config_.accel_bias_walk_m_s2_sqrt_s) * dt_s;
   turn_world_with_heading();
-  rate_noise_variance_ = gyro_density / 0.1;  // of the mean over one scan
+  rate_noise_variance_ = gyro_density / kRateMeanS;
 }
 
 void AttitudeFilter::turn_world_with_heading() {
-  // In a world turned by the yaw error a, the velocity's error is dv - a (e_z x v), and the yaw's is none.
+  // In a world turned by the yaw error a the velocity error is dv - a (e_z x v) and the yaw error is zero.
   P_.row(kVelocity) += velocity_.y() * P_.row(kYaw);
   P_.row(kVelocity + 1) -= velocity_.x() * P_.row(kYaw);
   P_.col(kVelocity) += velocity_.y() * P_.col(kYaw);
@@ -93,7 +102,7 @@ void AttitudeFilter::turn_world_with_heading() {
 }
 
 void AttitudeFilter::bridge(const Eigen::Vector3d& turn_rad, double dt_s, double turn_sigma_rad) {
-  q_world_base_ = (q_world_base_ * rotation_of(turn_rad)).normalized();
+  q_world_base_ = (q_world_base_ * exp_so3(turn_rad)).normalized();
   P_.diagonal().segment<3>(kAngle).array() += squared(turn_sigma_rad);
   P_.diagonal().segment<3>(kVelocity).array() += squared(std::min(dt_s, 1.0));
   turn_world_with_heading();
@@ -106,23 +115,23 @@ void AttitudeFilter::update_wheels(double vx_m_s, double vy_m_s, double dt_s, bo
   const Eigen::Vector3d variance(squared(config_.wheel_sigma_m_s) + share,
                                  squared(config_.lateral_sigma_m_s) + share,
                                  squared(config_.vertical_sigma_m_s) + share);
-  // A correlated error of variance s^2 and correlation time c is as good as white noise of density 2 c s^2.
+  // A correlated error of variance s^2 and correlation time c has the density of white noise 2 c s^2.
   const double white = std::max(1.0, 2.0 * config_.wheel_correlation_s / dt_s);
   bool agreed = true;
   for (int axis = 0; axis < (use_vertical ? 3 : 2); ++axis) {
-    // v_base = R^T v - rate x r; both change with the updates before.
+    // v_base = R^T v - rate x r, after the updates of the axes before.
     const Eigen::Matrix3d R_now = q_world_base_.toRotationMatrix().transpose();
     const Eigen::Vector3d predicted = R_now * velocity_ - rate_rad_s_.cross(p_base_imu_);
     Row H = Row::Zero();
     H.segment<3>(kAngle) = (R_now * skew(velocity_)).row(axis);
     H.segment<3>(kVelocity) = R_now.row(axis);
     H.segment<3>(kGyroBias) = -skew(p_base_imu_).row(axis);
-    const bool used = update(H, measured[axis] - predicted[axis], variance[axis] * white, kWheelGate);
+    const bool used = update(H, measured[axis] - predicted[axis], variance[axis] * white, kWheelGateSigmas);
     agreed = agreed && (used || axis == 2);
   }
   gated_s_ = agreed ? 0.0 : gated_s_ + dt_s;
   if (gated_s_ > kGatedLimitS) {
-    P_.diagonal().segment<3>(kVelocity).array() += 1.0;
+    P_.diagonal().segment<3>(kVelocity).array() += kUnknownVelocityM2S2;
     gated_s_ = 0.0;
   }
 }
@@ -133,15 +142,14 @@ void AttitudeFilter::update_bounded_velocity(double dt_s) {
   for (int axis = 0; axis < 3; ++axis) {
     Row H = Row::Zero();
     H(kVelocity + axis) = 1.0;
-    // What hangs is lowered steadily for minutes: its vertical velocity is not zero on average.
-    update(H, -velocity_[axis], axis == 2 ? kVerticalLoosening * variance : variance, 1e3);
+    update(H, -velocity_[axis], axis == 2 ? kVerticalVarianceFactor * variance : variance, kNoGateSigmas);
   }
 }
 
 void AttitudeFilter::update_zero_rate(const Eigen::Vector3d& mean_gyro_rad_s, double dt_s,
                                       double gyro_variance_of_mean) {
-  // A standing robot still rocks a little: 1e-4 rad/s that stays for about a second.
-  const double variance = gyro_variance_of_mean + squared(1e-4) * std::max(1.0, 2.0 / dt_s);
+  const double variance =
+      gyro_variance_of_mean + squared(kRockingRadS) * std::max(1.0, 2.0 * kRockingS / dt_s);
   update_gyro_bias(mean_gyro_rad_s, std::sqrt(variance));
 }
 
@@ -149,7 +157,7 @@ void AttitudeFilter::update_gyro_bias(const Eigen::Vector3d& bias_rad_s, double 
   for (int axis = 0; axis < 3; ++axis) {
     Row H = Row::Zero();
     H(kGyroBias + axis) = 1.0;
-    update(H, bias_rad_s[axis] - gyro_bias_[axis], squared(sigma_rad_s), kAttitudeGate);
+    update(H, bias_rad_s[axis] - gyro_bias_[axis], squared(sigma_rad_s), kBiasGateSigmas);
   }
 }
 
@@ -161,7 +169,7 @@ void AttitudeFilter::update_up_direction(const Eigen::Vector3d& up_base, double 
     // up = R^T e_z: an error of angle a changes it by R^T (e_z x a).
     Row H = Row::Zero();
     H.segment<3>(kAngle) = (R_base_world * skew(Eigen::Vector3d::UnitZ())).row(axis);
-    update(H, up_base[axis] - R_base_world(axis, 2), variance, 1e3);
+    update(H, up_base[axis] - R_base_world(axis, 2), variance, kNoGateSigmas);
   }
 }
 
@@ -172,14 +180,14 @@ bool AttitudeFilter::update(const Row& H, double residual, double variance, doub
   const Eigen::Matrix<double, kStates, 1> K = PH / S;
   apply(K * residual);
   P_.noalias() -= K * PH.transpose();
-  // Rounding must not make the matrix lopsided or a variance negative.
+  // Against rounding: symmetric, variances not negative.
   P_ = (0.5 * (P_ + P_.transpose())).eval();
   P_.diagonal() = P_.diagonal().cwiseMax(0.0);
   return true;
 }
 
 void AttitudeFilter::apply(const Eigen::Matrix<double, kStates, 1>& error) {
-  q_world_base_ = (rotation_of(error.segment<3>(kAngle)) * q_world_base_).normalized();
+  q_world_base_ = (exp_so3(error.segment<3>(kAngle)) * q_world_base_).normalized();
   velocity_ += error.segment<3>(kVelocity);
   gyro_bias_ += error.segment<3>(kGyroBias);
   accel_bias_ += error.segment<3>(kAccelBiasRow);

@@ -15,17 +15,16 @@ namespace isobar {
 
 /// State: rotation world <- base, velocity of the IMU's place in the world, bias of gyro and accelerometer.
 ///
-/// Gravity is not compared with single accelerations: the specific force is integrated to a velocity, and
-/// that is compared with the wheels' (rotated by the attitude; lever arm of the IMU included), so that the
-/// accelerations of the motion cancel by themselves. Without wheels the velocity is only known to be bounded,
-/// which a pendulum's is: the tilt then comes from the mean over seconds. All inputs are in base_link's axes,
-/// already rotated from the IMU's.
+/// Measurement of gravity: the specific force is integrated to a velocity, which is compared with the wheels'
+/// (rotated by the attitude; lever arm of the IMU included), so that accelerations of the motion cancel.
+/// Without wheels the pseudo-measurement is zero velocity with the variance of a bounded motion (a pendulum):
+/// the tilt then comes from the mean over seconds. All inputs are in base_link's axes.
 ///
-/// World: z up, yaw 0 at the start, and turning with the error of the yaw: nothing here observes heading, so
-/// the world is *defined* as the one whose heading the filter has. The error of the yaw is thereby zero, that
-/// of the velocity counts in that world, and no update ever turns the heading: it is the gyro's integral and
-/// nothing else, as dead reckoning must be. (A heading in the error state would be correlated with the gyro
-/// bias; the first standstill after minutes of driving would then turn the robot by degrees in one step.)
+/// World: z up, yaw 0 at the start. Heading is unobservable, so the world is *defined* to have the filter's
+/// heading: the yaw error is zero, the velocity error counts in that world, and no update turns the heading,
+/// which is the gyro's integral and nothing else, as dead reckoning must be. (A heading in the error state
+/// would be correlated with the gyro bias; the first standstill after minutes of driving would then turn the
+/// robot by degrees in one step.)
 ///
 /// Error state: [angle (world; its z is 0), velocity (world), gyro bias, accel bias] (base axes).
 class AttitudeFilter {
@@ -33,53 +32,51 @@ class AttitudeFilter {
   static constexpr int kStates = 12;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
-  /// `p_base_imu`: place of the IMU in base_link [m].
+  /// `p_base_imu`: position of the IMU in base_link [m].
   AttitudeFilter(const AttitudeConfig& config, const Eigen::Vector3d& p_base_imu);
 
-  /// Roll and pitch from a mean specific force [m/s^2], yaw as given [rad]; `sigma_rad` of roll and of pitch.
-  /// Keeps the biases and their covariance if it ran before.
-  void start(const Eigen::Vector3d& mean_force_m_s2, double yaw_rad, double sigma_rad);
+  /// Roll and pitch from the direction of a specific force (any scale), yaw as given [rad]; `sigma_rad` of
+  /// roll and of pitch. A restart keeps the biases and their covariance.
+  void start(const Eigen::Vector3d& up_force, double yaw_rad, double sigma_rad);
   [[nodiscard]] bool started() const { return started_; }
-  /// Gravity must be found anew; biases are kept.
+  /// Attitude lost, until the next start(). Keeps the biases.
   void stop() { started_ = false; }
 
-  /// Moves on by `dt_s` (> 0) at the measured rate and specific force. Variances are of one sample, white.
+  /// Prediction over `dt_s` (> 0) from the measured rate and specific force. Variances of one sample, white
+  /// noise [rad^2/s^2, m^2/s^4].
   void predict(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& force_m_s2, double dt_s,
                double gyro_variance, double accel_variance);
 
-  /// Bridges `dt_s` without samples, turning by `turn_rad` (base axes); uncertainty of the turn as given.
+  /// Prediction over a gap of `dt_s` from the turn during it (base axes) and its standard deviation.
   void bridge(const Eigen::Vector3d& turn_rad, double dt_s, double turn_sigma_rad);
 
-  /// Wheel twist of base_link over the last `dt_s`. `use_vertical`: the robot does not leave its x-y plane;
-  /// false where the ground itself may move.
+  /// Wheel velocity of base_link, mean over the last `dt_s`. `use_vertical`: also the non-holonomic
+  /// constraint vz = 0, which does not hold while the ground moves (elevator).
   void update_wheels(double vx_m_s, double vy_m_s, double dt_s, bool use_vertical);
 
-  /// No wheels: velocity zero on average, over the last `dt_s`.
+  /// Without wheels: zero velocity with the variance of a bounded motion, over the last `dt_s`.
   void update_bounded_velocity(double dt_s);
 
-  /// The robot stands: its mean gyro reading over the last `dt_s` is the bias.
+  /// Zero-rate update: the mean gyro reading of a standing robot over the last `dt_s` is the bias.
   void update_zero_rate(const Eigen::Vector3d& mean_gyro_rad_s, double dt_s, double gyro_variance_of_mean);
 
-  /// The IMU's own idea of up, as a unit vector in base axes, over the last `dt_s`.
+  /// Up direction of the IMU's own attitude, unit vector in base axes, over the last `dt_s`.
   void update_up_direction(const Eigen::Vector3d& up_base, double dt_s);
 
-  /// The gyro bias as the IMU's own filter sees it: gyro minus the rate of its attitude [rad/s].
+  /// Measured gyro bias [rad/s].
   void update_gyro_bias(const Eigen::Vector3d& bias_rad_s, double sigma_rad_s);
 
   [[nodiscard]] const Eigen::Quaterniond& q_world_base() const { return q_world_base_; }
-  [[nodiscard]] const Eigen::Vector3d& rate_rad_s() const { return rate_rad_s_; }  ///< bias taken out
-  [[nodiscard]] const Eigen::Vector3d& force_m_s2() const { return force_m_s2_; }  ///< bias taken out
+  [[nodiscard]] const Eigen::Vector3d& rate_rad_s() const { return rate_rad_s_; }  ///< bias removed
   [[nodiscard]] const Eigen::Vector3d& gyro_bias_rad_s() const { return gyro_bias_; }
-  [[nodiscard]] const Eigen::Vector3d& accel_bias_m_s2() const { return accel_bias_; }
-  [[nodiscard]] const Eigen::Vector3d& velocity_m_s() const { return velocity_; }
   [[nodiscard]] double roll_pitch_variance_rad2() const { return 0.5 * (P_(0, 0) + P_(1, 1)); }
-  [[nodiscard]] double yaw_rate_variance() const { return P_(8, 8) + rate_noise_variance_; }
+  [[nodiscard]] double yaw_rate_variance_rad2_s2() const { return P_(8, 8) + rate_noise_variance_; }
   [[nodiscard]] double gyro_bias_variance(int axis) const { return P_(6 + axis, 6 + axis); }
 
  private:
   using Row = Eigen::Matrix<double, 1, kStates>;
 
-  /// Scalar measurement `residual` = H x + noise. False if it lies outside the gate.
+  /// Kalman update with the scalar measurement `residual` = H x + noise. False if it lies outside the gate.
   bool update(const Row& H, double residual, double variance, double gate_sigma);
   void apply(const Eigen::Matrix<double, kStates, 1>& error);
   void turn_world_with_heading();
@@ -92,10 +89,9 @@ class AttitudeFilter {
   Eigen::Vector3d gyro_bias_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel_bias_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d rate_rad_s_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d force_m_s2_ = Eigen::Vector3d::Zero();
   Covariance P_ = Covariance::Zero();
   double rate_noise_variance_ = 0.0;
-  double gated_s_ = 0.0;  // time for which the wheels have disagreed
+  double gated_s_ = 0.0;  // how long the wheels have been outside the gate
   bool started_ = false;
   bool biases_started_ = false;
 };

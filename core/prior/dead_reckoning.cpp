@@ -9,24 +9,25 @@
 namespace isobar {
 namespace {
 
-// A jump of speed is believed once this many samples insist on it.
-constexpr int kInsisting = 5;
-// Jump of the speed that quantised encoders make without any acceleration [m/s].
-constexpr double kSpeedNoise = 0.5;
+// A jump of speed is accepted with the fifth consecutive sample that shows it.
+constexpr int kConfirmingSamples = 5;
+// Jump of the speed from the quantisation of encoders, without any acceleration.
+constexpr double kSpeedNoiseMS = 0.5;
 
 Eigen::Vector2d velocity(const WheelSample& sample) { return {sample.vx_m_s, sample.vy_m_s}; }
 
 }  // namespace
 
 bool WheelOdometer::plausible(const WheelSample& sample, double dt_s) {
-  // Written so that NaN fails.
+  // With <= so that NaN fails.
   const bool in_range = velocity(sample).norm() <= config_.max_speed_m_s &&
                         std::abs(sample.wz_rad_s) <= config_.max_turn_rate_rad_s;
   if (!in_range) return false;
   const double jump = (velocity(sample) - velocity(last_)).norm();
-  const bool smooth = !started_ || jump <= kSpeedNoise + config_.max_acceleration_m_s2 * std::min(dt_s, 1.0);
+  const bool smooth =
+      !started_ || jump <= kSpeedNoiseMS + config_.max_acceleration_m_s2 * std::min(dt_s, 1.0);
   refused_in_a_row_ = smooth ? 0 : refused_in_a_row_ + 1;
-  return smooth || refused_in_a_row_ >= kInsisting;
+  return smooth || refused_in_a_row_ >= kConfirmingSamples;
 }
 
 WheelStatus WheelOdometer::add(const WheelSample& sample) {
@@ -35,9 +36,9 @@ WheelStatus WheelOdometer::add(const WheelSample& sample) {
   if (started_ && dt_s <= 0.0) return WheelStatus::kBadTime;
   if (!plausible(sample, dt_s)) return WheelStatus::kBadValue;
   if (started_ && dt_s <= config_.wheel_timeout_s) {
-    rolled_ += 0.5 * dt_s * (velocity(last_) + velocity(sample));
+    rolled_m_ += 0.5 * dt_s * (velocity(last_) + velocity(sample));
   } else {
-    rolled_ = taken_;  // what was rolled in a gap is not known
+    rolled_m_ = taken_m_;  // unknown distance over a gap: none
   }
   interval_s_ = started_ ? dt_s : 0.0;
   last_ = sample;
@@ -51,9 +52,9 @@ bool WheelOdometer::valid(std::int64_t stamp_ns) const {
 
 Eigen::Vector2d WheelOdometer::take_displacement(std::int64_t stamp_ns) {
   if (!valid(stamp_ns)) return Eigen::Vector2d::Zero();
-  const Eigen::Vector2d here = rolled_ + velocity(last_) * seconds_between(last_.stamp_ns, stamp_ns);
-  Eigen::Vector2d displacement = here - taken_;
-  taken_ = here;
+  const Eigen::Vector2d here = rolled_m_ + velocity(last_) * seconds_between(last_.stamp_ns, stamp_ns);
+  Eigen::Vector2d displacement = here - taken_m_;
+  taken_m_ = here;
   return displacement;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Position by wheels and attitude.
+// Wheel odometry: distance rolled, as a function of time.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,23 +11,24 @@
 
 namespace isobar {
 
-/// What became of a wheel sample.
+/// Use of a wheel sample.
 enum class WheelStatus : std::uint8_t { kAccepted, kBadValue, kBadTime };
 
-/// Distance rolled, as a function of time. Keeps the account straight when samples arrive late: what was
-/// extrapolated too far or too short is made good with the next step.
+/// Integrates wheel speeds (trapezoids). Between samples the distance is extrapolated; the next sample
+/// corrects the error of the extrapolation, so that late samples lose no distance.
 class WheelOdometer {
  public:
   explicit WheelOdometer(const DeadReckoningConfig& config) : config_(config) {}
 
   WheelStatus add(const WheelSample& sample);
 
-  /// Displacement in base_link since the call before, up to `stamp_ns` [m]; zero where wheels are not valid.
+  /// Displacement in base_link since the last call, up to `stamp_ns` [m]; zero where the wheels are not
+  /// valid.
   Eigen::Vector2d take_displacement(std::int64_t stamp_ns);
 
   /// Wheels are present and fresh at `stamp_ns`.
   [[nodiscard]] bool valid(std::int64_t stamp_ns) const;
-  /// The last accepted sample, only where valid().
+  /// The last accepted sample. Precondition: valid().
   [[nodiscard]] const WheelSample& last() const { return last_; }
   /// Time between the last two samples [s].
   [[nodiscard]] double interval_s() const { return interval_s_; }
@@ -37,8 +38,8 @@ class WheelOdometer {
 
   DeadReckoningConfig config_;
   WheelSample last_;
-  Eigen::Vector2d rolled_ = Eigen::Vector2d::Zero();  // up to last_
-  Eigen::Vector2d taken_ = Eigen::Vector2d::Zero();
+  Eigen::Vector2d rolled_m_ = Eigen::Vector2d::Zero();  // up to last_
+  Eigen::Vector2d taken_m_ = Eigen::Vector2d::Zero();   // by take_displacement()
   double interval_s_ = 0.0;
   int refused_in_a_row_ = 0;
   bool started_ = false;

@@ -10,14 +10,14 @@
 namespace isobar {
 namespace {
 
-// Less than this is never called a step [m]: three floors' worth of air is not that still.
+// Smallest step: less is within what still air does over three floors.
 constexpr double kLeastStepM = 0.3;
-// Vertical speed that accelerometer and wheels may have missed, beyond what the filter thinks of them [m/s]:
-// HeightFilter has seen every faster lift start.
-constexpr double kUnfeltSpeed = 0.05;
+// Vertical speed that accelerometer and wheels can miss, beyond the filter's own uncertainty: HeightFilter
+// detects the start of every faster lift.
+constexpr double kUnfeltSpeedMS = 0.05;
 constexpr double kUnfeltSigmas = 4.0;
-// A pressure that ran away is believed to be back when it has been steady for this long: a broken sensor
-// passes by now and then, and so does the back swing of a door.
+// How long a pressure must be steady to count as returned: a broken sensor crosses the old level now and
+// then, and so does the back swing of a door.
 constexpr double kBackS = 0.7;
 
 }  // namespace
@@ -34,8 +34,9 @@ bool DisturbanceJudge::outran_motion(const Evidence& evidence) const {
   if (!has_used_) return false;
   const double since_s = std::max(0.0, seconds_between(used_ns_, evidence.stamp_ns));
   const double limit_m = std::max(kLeastStepM, noise_limit_m(evidence)) +
-                         (kUnfeltSpeed + kUnfeltSigmas * evidence.climb_sigma_m_s) * since_s;
-  // Both: a shock to the accelerometer moves the prediction, a fast lift the pressure; neither is a step.
+                         (kUnfeltSpeedMS + kUnfeltSigmas * evidence.climb_sigma_m_s) * since_s;
+  // Innovation and height both: a shock to the accelerometer moves only the prediction, a fast lift only the
+  // pressure; neither is a step.
   return std::abs(evidence.innovation.value - used_m_) > limit_m &&
          std::abs(evidence.height_m - used_height_m_) > limit_m;
 }
@@ -64,7 +65,7 @@ void DisturbanceJudge::watch_steadiness(const Evidence& evidence) {
 }
 
 DisturbanceJudge::Verdict DisturbanceJudge::back(const Evidence& evidence, bool here) {
-  // What comes by is neither a step nor a motion: they stay.
+  // Steps and motions do not return: their wait starts anew.
   gated_since_ns_ = evidence.stamp_ns;
   if (!is_back_) back_since_ns_ = evidence.stamp_ns;
   is_back_ = true;
@@ -88,10 +89,11 @@ DisturbanceJudge::Verdict DisturbanceJudge::judge(const Evidence& evidence) {
   is_back_ = false;
   moved_m_ = evidence.innovation.value - first_m_;
   if (seconds_between(gated_since_ns_, evidence.stamp_ns) < evidence.wait_s) return Verdict::kWait;
-  if (unfelt_ && seconds_between(steady_since_ns_, evidence.stamp_ns) < evidence.wait_s)
+  if (unfelt_ && seconds_between(steady_since_ns_, evidence.stamp_ns) < evidence.wait_s) {
     return Verdict::kWait;
+  }
   accept(evidence);
-  // What is left of the innovation goes where the verdict says.
+  // The verdict's state absorbs the innovation.
   used_m_ = 0.0;
   return unfelt_ ? Verdict::kStep : Verdict::kMotion;
 }

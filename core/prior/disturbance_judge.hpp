@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Is it the robot that moves, or the pressure?
+// Innovation monitoring of the pressure: does the robot move, or the pressure?
 #pragma once
 
 #include <cstdint>
@@ -9,49 +9,49 @@
 
 namespace isobar {
 
-/// Looks at pressures that are too far from what acceleration and wheels predict, and tells from how they
-/// came there and what they do then what they are:
+/// Classifies pressures whose innovation is outside the gate, by how fast they left the prediction and what
+/// they do next:
 ///
-/// - *A pulse* (door, gust, a fault of some seconds) comes back to the prediction: it is never used.
-/// - *A step* (another ventilation zone, a hatch, a fault) went there faster than anything can have climbed
-///   unfelt by accelerometer and wheels. Once it is steady it is known for what it is: the pressure's own.
-/// - *A motion* crept away no faster than the prediction itself may be wrong: it is the prediction's fault.
+/// - *Pulse* (door, gust, a fault of some seconds): returns to the prediction; never used.
+/// - *Step* (another ventilation zone, a hatch, a fault): left faster than a climb that accelerometer and
+///   wheels could have missed, and is steady since: a change of the pressure without motion.
+/// - *Motion*: left no faster than the prediction may drift: the prediction is wrong.
 ///
-/// What neither is steady nor comes back (a broken sensor) is waited for without end.
+/// A pressure that neither settles nor returns (a broken sensor) stays gated.
 class DisturbanceJudge {
  public:
   enum class Verdict : std::uint8_t {
-    kFits,      ///< to be used
-    kWait,      ///< not to be used, nothing is decided
-    kStep,      ///< the pressure has stepped and is steady now
+    kFits,      ///< inside the gate: use it
+    kWait,      ///< outside the gate, undecided: do not use it
+    kStep,      ///< the pressure has stepped and is steady
     kReturned,  ///< the step is over: the pressure is back at its old level
-    kMotion,    ///< the height is not where it was predicted
+    kMotion,    ///< the predicted height is wrong
   };
 
   struct Evidence {
     std::int64_t stamp_ns = 0;
-    double height_m = 0.0;                    ///< as the pressure has it
-    double noise_variance_m2 = 0.0;           ///< of it
+    double height_m = 0.0;                    ///< from the pressure
+    double noise_variance_m2 = 0.0;           ///< of height_m
     VerticalFilter::Innovation innovation;    ///< against the prediction
-    bool step_open = false;                   ///< the prediction counts on a step …
-    VerticalFilter::Innovation without_step;  ///< … and this would be the innovation if that were over
+    bool step_open = false;                   ///< the prediction contains a step
+    VerticalFilter::Innovation without_step;  ///< the innovation without that step
     double climb_sigma_m_s = 0.0;             ///< of the predicted vertical speed
-    double wait_s = 0.0;                      ///< how long to wait before anything is believed
+    double wait_s = 0.0;                      ///< time from leaving the gate to kStep or kMotion
   };
 
   explicit DisturbanceJudge(double gate_sigma) : gate_sigma_(gate_sigma) {}
 
   Verdict judge(const Evidence& evidence);
 
-  /// A gap: what was predicted before it says nothing.
+  /// After a gap: forgets the prediction's history.
   void restart() { *this = DisturbanceJudge(gate_sigma_); }
 
-  /// Pressures are being left out.
+  /// Pressures are being rejected.
   [[nodiscard]] bool gated() const { return gated_; }
-  /// They went faster than anything can have climbed unfelt.
+  /// They left faster than a climb that accelerometer and wheels could have missed.
   [[nodiscard]] bool unfelt() const { return gated_ && unfelt_; }
   [[nodiscard]] std::int64_t gated_since_ns() const { return gated_since_ns_; }
-  /// By how much the innovation has moved since the first pressure that was left out [m].
+  /// Change of the innovation since the first rejected pressure [m].
   [[nodiscard]] double moved_m() const { return moved_m_; }
 
  private:
@@ -64,14 +64,14 @@ class DisturbanceJudge {
   void watch_steadiness(const Evidence& evidence);
 
   double gate_sigma_;
-  double used_m_ = 0.0;  // innovation of the last pressure that was used, and its height
-  double used_height_m_ = 0.0;
-  double first_m_ = 0.0;  // innovation of the first one left out
-  double level_m_ = 0.0;  // innovation at which the pressure has been steady …
+  double used_m_ = 0.0;         // innovation of the last used pressure
+  double used_height_m_ = 0.0;  // its height
+  double first_m_ = 0.0;        // innovation of the first rejected pressure
+  double level_m_ = 0.0;        // innovation at which the pressure is steady since steady_since_ns_
   double moved_m_ = 0.0;
   std::int64_t used_ns_ = 0;
   std::int64_t gated_since_ns_ = 0;
-  std::int64_t steady_since_ns_ = 0;  // … since then
+  std::int64_t steady_since_ns_ = 0;
   std::int64_t back_since_ns_ = 0;
   bool has_used_ = false;
   bool gated_ = false;

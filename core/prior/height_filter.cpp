@@ -10,43 +10,45 @@
 namespace isobar {
 namespace {
 
-// Each fork lives this long; the older of the two is always between one and two halves old.
+// Forks. Lifetime: the older of the two is always between half of it and all of it old.
 constexpr double kForkLifeS = 3.0;
-// A fork younger than this has not left the filter yet.
+// A younger fork is still too close to the filter to compare.
 constexpr double kForkMinAgeS = 0.5;
-// The wheels must disagree for this long before the ground is said to move: longer than a bump.
+// Wheels and fork must disagree for this long before the ground counts as moving: longer than a bump.
 constexpr double kDisagreementS = 0.08;
-// In a ride the pressure goes with the fork, not with the wheels. A fork that fits it worse than the wheels
-// do by more than this was shaken away from them.
+// In a ride the pressure fits the fork, not the wheels. A fork whose innovation is larger than the filter's
+// by more than this was shaken by vibration.
 constexpr double kForkMisfitM = 0.15;
-// Low-pass of the vertical acceleration that tells the end of a ride, and what counts as none.
+
+// End of a ride: low-pass of the vertical acceleration, and the value below which it counts as zero.
 constexpr double kAccelSmoothingS = 0.3;
-constexpr double kQuietAccel = 0.12;
-// Vertical speed of something that is neither on wheels nor measured, 1 sigma, and how long it lasts.
-constexpr double kBoundedSpeed = 0.3;
-constexpr double kBoundedSpeedS = 2.0;
-// A ride during a gap: vertical speed 1 sigma.
-constexpr double kRideSpeed = 0.7;
-// In a ride nothing but pressure holds the vertical speed: a door leaves it off by 0.3 m/s, so the gate opens
-// sooner.
+constexpr double kQuietAccelMS2 = 0.12;
+// Vertical speed without wheels and pressure: 1 sigma and correlation time.
+constexpr double kBoundedSpeedMS = 0.3;
+constexpr double kBoundedSpeedTimeS = 2.0;
+// Vertical speed of an unobserved ride during a gap, 1 sigma.
+constexpr double kRideSpeedMS = 0.7;
+// Longest gating in a ride: only pressure holds the vertical speed then, and a door leaves it off by 0.3 m/s.
 constexpr double kRideGateS = 1.0;
-// Wheels that have been heard within this hold the vertical speed.
+// Wheels hold the vertical speed for this long after their last update.
 constexpr double kHeldS = 0.5;
-// Wheels tell weather from climb less well than the filter thinks, their errors last: this share of the
-// weather is doubted in what is reported.
+
+// Share of the weather added to the reported variance: the wheels' correlated errors separate weather from
+// climb less well than the filter believes.
 constexpr double kWeatherDoubt = 0.5;
-// Delay of a pressure sample that is still compensated for.
+// Largest delay of a pressure sample that is compensated.
 constexpr double kMaxDelayS = 1.0;
-// A pressure that kept moving by more than this share of its offset is a ramp, not a step.
+// A pressure that kept moving by more than this, as a share of its innovation and in metres, is a ramp, not a
+// step.
 constexpr double kRampShare = 0.5;
 constexpr double kRampMinM = 0.3;
-// How much of a step is left after the prediction has been taken for it, 1 sigma: far more than the
-// prediction is ever wrong by.
+
+// Prior of a step's size, 1 sigma, after the prediction has been subtracted: far above any error of it.
 constexpr double kOpenStepSigmaM = 30.0;
-// A step of more than this is no door, which would come back in a second or two: the wait is shorter.
+// A larger step is no door, which would be over in a second or two: the wait is shorter.
 constexpr double kAbsurdM = 20.0;
 constexpr double kAbsurdWaitS = 0.3;
-// Pressures after a fault of any size has been taken off stay positive.
+// Lower bound of the pressure ratio after subtracting a fault: it stays positive.
 constexpr double kLeastRatio = 0.05;
 
 }  // namespace
@@ -88,23 +90,24 @@ void HeightFilter::predict(double up_accel_m_s2, double dt_s, double accel_densi
   }
   Fork& older = older_fork();
   if (older.age_s < kForkLifeS) return;
-  // The other one is half as old from now on: together they always offer a past before a ride's start.
+  // The other one counts as half as old from now on: one fork always dates from before a ride's start.
   older = {filter_, 0.0};
   Fork& other = older_fork();
   other.age_s = std::min(other.age_s, 0.5 * kForkLifeS);
 }
 
 void HeightFilter::bridge(double dt_s) {
-  filter_.inflate(VerticalFilter::kZ, squared(kRideSpeed * dt_s));
-  filter_.inflate(VerticalFilter::kVz, squared(std::min(kRideSpeed, kRideSpeed * dt_s)));
+  filter_.inflate(VerticalFilter::kZ, squared(kRideSpeedMS * dt_s));
+  filter_.inflate(VerticalFilter::kVz, squared(std::min(kRideSpeedMS, kRideSpeedMS * dt_s)));
   restart_forks();
   judge_.restart();
 }
 
-void HeightFilter::update_climb(double climb_m_s, double forward_m_s, double dt_s, double attitude_variance) {
-  // Errors that last for a while, as white noise of the same effect: density 2 tau sigma^2.
-  const double slope_variance =
-      squared(config_.slope_error_rad) + std::max(0.0, attitude_variance - squared(config_.slope_sigma_rad));
+void HeightFilter::update_climb(double climb_m_s, double forward_m_s, double dt_s,
+                                double attitude_variance_rad2) {
+  // Correlated errors as white noise of the same density: 2 tau sigma^2.
+  const double slope_variance = squared(config_.slope_error_rad) +
+                                std::max(0.0, attitude_variance_rad2 - squared(config_.slope_sigma_rad));
   const double speed_variance =
       slope_variance * squared(forward_m_s) + squared(config_.slip_share * climb_m_s);
   const double density = 2.0 * config_.slope_error_correlation_s * slope_variance * squared(forward_m_s) +
@@ -135,7 +138,7 @@ void HeightFilter::watch_ground(double climb_m_s, double forward_m_s, double dt_
   }
   const auto innovation = filter_.climb_innovation(climb_m_s, forward_m_s, speed_variance);
   const double limit = config_.ground_stopped_speed_m_s + 2.0 * std::sqrt(innovation.variance);
-  const bool agree = std::abs(innovation.value) < limit && std::abs(accel_m_s2_) < kQuietAccel;
+  const bool agree = std::abs(innovation.value) < limit && std::abs(accel_m_s2_) < kQuietAccelMS2;
   agreeing_s_ = agree ? agreeing_s_ + dt_s : 0.0;
   if (agreeing_s_ < config_.ground_stopped_time_s) return;
   ground_moves_ = false;
@@ -143,7 +146,7 @@ void HeightFilter::watch_ground(double climb_m_s, double forward_m_s, double dt_
 }
 
 void HeightFilter::update_bounded_speed(double dt_s) {
-  filter_.update_climb(0.0, 0.0, squared(kBoundedSpeed) * std::max(1.0, 2.0 * kBoundedSpeedS / dt_s));
+  filter_.update_climb(0.0, 0.0, squared(kBoundedSpeedMS) * std::max(1.0, 2.0 * kBoundedSpeedTimeS / dt_s));
 }
 
 double HeightFilter::variance_m2() const {
@@ -158,13 +161,14 @@ void HeightFilter::handle_event(const AltimeterReading& reading) {
   const auto apply = [&](VerticalFilter& filter) {
     if (reading.event == ReferenceEvent::kBaseLost) filter.release_weather();
     if (reading.event == ReferenceEvent::kBaseJoined) filter.fold_weather_into_offset();
-    // The height reading moved by minus the weather that had crept into it.
+    // The reading has jumped by minus the weather since the base station was lost.
     if (reading.event == ReferenceEvent::kBaseReturned) {
       filter.settle_weather(-reading.weather_shift_m, reading.noise_variance_m2);
     }
   };
-  if (reading.event == ReferenceEvent::kBaseReturned || reading.event == ReferenceEvent::kBaseSwitched)
+  if (reading.event == ReferenceEvent::kBaseReturned || reading.event == ReferenceEvent::kBaseSwitched) {
     slew_.begin();
+  }
   apply(filter_);
   for (Fork& fork : forks_) apply(fork.filter);
 }
@@ -176,7 +180,7 @@ PressureUse HeightFilter::update_pressure(const AltimeterReading& reading, doubl
   handle_event(reading);
   const double delay_s = std::clamp(seconds_between(reading.stamp_ns, now_ns), 0.0, kMaxDelayS);
   const PressureUse use = use_pressure(reading, lever_m, delay_s);
-  // Where only pressure holds the vertical speed nothing of it may wait, but for the event itself.
+  // Without wheels only the correction of the event itself is held back: all others are motion.
   const bool event =
       reading.event == ReferenceEvent::kBaseReturned || reading.event == ReferenceEvent::kBaseSwitched;
   const bool held = !ground_moves_ && since_climb_s_ < kHeldS;
@@ -217,16 +221,18 @@ DisturbanceJudge::Evidence HeightFilter::evidence_of(const AltimeterReading& rea
   evidence.step_open = filter_.step_open();
   evidence.without_step =
       filter_.innovation_without_step(reading.height_m - lever_m, delay_s, reading.noise_variance_m2);
-  // The fork's, too: the wheels may be what is wrong with the prediction.
+  // Also the fork's, which is larger: the error of the prediction may come from the wheels.
   evidence.climb_sigma_m_s = std::sqrt(
       std::max(filter_.variance(VerticalFilter::kVz), older_fork().filter.variance(VerticalFilter::kVz)));
   evidence.wait_s = ground_moves_ ? std::min(kRideGateS, config_.gate_time_s) : config_.gate_time_s;
-  if (std::abs(evidence.innovation.value) > kAbsurdM)
+  if (std::abs(evidence.innovation.value) > kAbsurdM) {
     evidence.wait_s = std::min(kAbsurdWaitS, evidence.wait_s);
+  }
   return evidence;
 }
 
-// A step adds pascals, not metres: thousands of metres off, the same climb is a different ratio of pressures.
+// Height with an open step subtracted. A step adds pascals, not metres: it is subtracted from the ratio of
+// pressures, since for large steps the same climb is a different ratio.
 double HeightFilter::without_fault_m(const AltimeterReading& reading) const {
   if (fault_share_ == 0.0) return reading.height_m;
   const double ratio = std::exp(-reading.height_m / reading.scale_m) - fault_share_;
@@ -236,7 +242,7 @@ double HeightFilter::without_fault_m(const AltimeterReading& reading) const {
 void HeightFilter::open_step(const AltimeterReading& reading, const DisturbanceJudge::Evidence& evidence) {
   const double expected_m = evidence.height_m - evidence.innovation.value;
   fault_share_ = std::exp(-reading.height_m / reading.scale_m) - std::exp(-expected_m / reading.scale_m);
-  // What the pressure would say if the robot were where it is predicted is the beginning of a new offset.
+  // fault_share_ absorbs the step as predicted; the filter's step state starts with the remaining error.
   filter_.open_step(kOpenStepSigmaM);
 }
 
@@ -252,8 +258,8 @@ void HeightFilter::compare_fork(const AltimeterReading& reading, double lever_m,
   fork_misfit_m_ = std::abs(of_fork.value) - std::abs(innovation_m);
 }
 
-// In a ride nothing but pressure holds the vertical speed, so what a disturbance did to it before it was seen
-// would stay. A fork has taken no pressure since it was made, one to three seconds ago.
+// In a ride only pressure holds the vertical speed: an error from the first samples of a disturbance would
+// stay. The older fork has used no pressure since it was split off, before the disturbance.
 void HeightFilter::roll_back() {
   filter_ = older_fork().filter;
   rolled_back_ = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Policy around the vertical filter: which measurement is believed when.
+// Policy around the vertical filter: which measurement is used when.
 #pragma once
 
 #include <array>
@@ -13,29 +13,29 @@
 
 namespace isobar {
 
-/// What became of a pressure.
+/// Use of a pressure.
 enum class PressureUse : std::uint8_t {
   kUsed,
-  kGated,  ///< too far off, and not yet understood
-  kStep,   ///< too far off for so long that the height was moved to it, or the pressure's own step
+  kGated,  ///< rejected: outside the gate and undecided
+  kStep,   ///< used after a long gating: the height or the pressure's own step was moved to it
 };
 
-/// Height of the IMU's place from acceleration, wheels and pressure.
+/// Height of the IMU from acceleration, wheels and pressure.
 ///
-/// Wheels and attitude tell the climb well over seconds, pressure tells the height well over minutes; each
-/// enters with its own noise. Two things break the model, and are watched for:
+/// Wheels and attitude measure the climb well over seconds, pressure measures the height well over minutes;
+/// each enters with its own noise. Two events break the model and are detected:
 ///
-/// - *The ground moves* (elevator): the wheels stand, the robot rises. Two copies of the filter run along
-/// without the
-///   wheels, forked one to three seconds ago. Where such a fork's vertical speed leaves the wheels', the fork
-///   becomes the filter (it has not been held down since before the ride began) and the wheels are left out
-///   until both agree again.
-/// - *The pressure jumps* (door, gust, ventilation zone, fault): DisturbanceJudge tells from acceleration and
-/// wheels what it is.
-///   A pulse is left out. A step becomes a state of its own: the height stays, the pressure goes on telling
-///   changes, and when the step is undone the height is as sure as before it. Only what crept away is
-///   followed: by a step of the height, or by a vertical speed where it ramps (a ride whose start was not
-///   felt).
+/// - *Moving ground* (elevator): the wheels stand, the robot rises. Two forks of the filter, split off one to
+///   three seconds ago, run along without the wheels. Where the older fork's vertical speed leaves the
+///   wheels', that fork becomes the filter (the wheels have not held it down since before the ride began),
+///   and the wheels are left out until both agree again.
+/// - *Disturbed pressure* (door, gust, ventilation zone, fault): DisturbanceJudge classifies it from
+///   acceleration and wheels.
+///     pulse    rejected
+///     step     becomes a state of its own: the height stays, later pressures still measure changes, and
+///              after the step the height is as certain as before it
+///     motion   followed: by a step of the height, or by a vertical speed where it is a ramp (a ride whose
+///              start was not felt)
 class HeightFilter {
  public:
   explicit HeightFilter(const HeightConfig& config);
@@ -46,29 +46,28 @@ class HeightFilter {
   /// `accel_density`: noise of the vertical acceleration [m^2/s^3].
   void predict(double up_accel_m_s2, double dt_s, double accel_density);
 
-  /// Nothing was known for `dt_s`: the height may have moved.
+  /// A gap of `dt_s`: adds the variance of an unobserved ride.
   void bridge(double dt_s);
 
-  /// Mean climb speed of the IMU's place over the last `dt_s` as the wheels have it [m/s]; `forward_m_s`
-  /// along the ground; `attitude_variance` of pitch [rad^2].
-  void update_climb(double climb_m_s, double forward_m_s, double dt_s, double attitude_variance);
+  /// Mean climb speed of the IMU over the last `dt_s` from wheels and attitude; `forward_m_s` along the
+  /// ground; variance of roll and pitch.
+  void update_climb(double climb_m_s, double forward_m_s, double dt_s, double attitude_variance_rad2);
 
-  /// Neither wheels nor pressure over the last `dt_s`: the vertical speed is only known to be bounded.
+  /// Without wheels and pressure: zero vertical speed with the variance of a bounded one, over the last
+  /// `dt_s`.
   void update_bounded_speed(double dt_s);
 
-  /// `lever_m`: height of the pressure port above the IMU's place. `now_ns`: time of the last predict().
+  /// `lever_m`: height of the pressure port above the IMU. `now_ns`: time of the last predict().
   PressureUse update_pressure(const AltimeterReading& reading, double lever_m, std::int64_t now_ns);
 
-  /// As reported: corrections by a reference that came back are taken in slowly.
+  /// Reported height: corrections by a reference that came back enter at a limited rate.
   [[nodiscard]] double z_m() const { return filter_.value(VerticalFilter::kZ) + slew_.rest_m(); }
-  [[nodiscard]] double vz_m_s() const { return filter_.value(VerticalFilter::kVz); }
   [[nodiscard]] double variance_m2() const;
   [[nodiscard]] bool ground_moves() const { return ground_moves_; }
-  /// What the pressure is disturbed by, if it is.
+  /// State of the innovation monitor.
   [[nodiscard]] const DisturbanceJudge& disturbance() const { return judge_; }
-  /// The pressure is off by more than any air: a fault, and so far taken off.
+  /// The pressure is further off than any weather or ventilation: a sensor fault, at present subtracted.
   [[nodiscard]] bool pressure_faulty() const { return faulty_; }
-  [[nodiscard]] const VerticalFilter& filter() const { return filter_; }
 
  private:
   struct Fork {
@@ -97,14 +96,14 @@ class HeightFilter {
   VerticalFilter filter_;
   std::array<Fork, 2> forks_;
   double accel_m_s2_ = 0.0;  // vertical, low-passed
-  double agreeing_s_ = 0.0;  // how long wheels and filter have agreed again
+  double agreeing_s_ = 0.0;  // in a ride: how long wheels and filter have agreed again
   double disagreeing_s_ = 0.0;
-  double fork_misfit_m_ = 0.0;  // how much worse the older fork fitted the last pressure that was used
+  double fork_misfit_m_ = 0.0;  // |innovation| of the last used pressure: older fork minus filter
   DisturbanceJudge judge_;
-  double fault_share_ = 0.0;  // pressure that an open step adds, as a share of the reference pressure
+  double fault_share_ = 0.0;  // pressure that an open step adds, over the reference pressure
   Slew slew_;
-  double since_climb_s_ = 1e9;  // since the wheels were heard
-  double alone_s_ = 0.0;        // how long there has been no base station
+  double since_climb_s_ = 1e9;  // since the last update by the wheels
+  double alone_s_ = 0.0;        // time without a base station
   bool faulty_ = false;
   bool rolled_back_ = false;  // in this disturbance
   bool ground_moves_ = false;

@@ -9,13 +9,13 @@
 namespace isobar {
 namespace {
 
-// A jump of the clock is believed when a second sample follows the first within this time [s].
+// A jump of the clock is confirmed by a second sample within this time after the first.
 constexpr double kConfirmationS = 1.0;
 
 }  // namespace
 
 bool ImuGate::plausible(const ImuSample& sample) const {
-  // Written so that NaN fails: maxCoeff() alone may lose it.
+  // allFinite() first: maxCoeff() may ignore NaN.
   const bool finite = sample.gyro_rad_s.allFinite() && sample.accel_m_s2.allFinite();
   if (!finite || sample.gyro_rad_s.cwiseAbs().maxCoeff() > limits_.max_gyro_rad_s) return false;
   return sample.accel_m_s2.cwiseAbs().maxCoeff() <= limits_.max_accel_m_s2;

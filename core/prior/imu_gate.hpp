@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which IMU samples are fit to be used, and what the time between them means.
+// Validation of IMU samples: value, time, gaps and jumps of the clock.
 #pragma once
 
 #include <cstdint>
@@ -10,20 +10,21 @@
 namespace isobar {
 
 enum class ImuStatus : std::uint8_t {
-  kFirst,     ///< there was none before
-  kNext,      ///< follows the one before
-  kGap,       ///< follows after a gap
-  kRestart,   ///< the clock jumped, and a second sample agrees
-  kBadValue,  ///< refused
-  kBadTime,   ///< refused
+  kFirst,     ///< first sample
+  kNext,      ///< follows the sample before
+  kGap,       ///< follows after more than PriorLimits::imu_gap_s
+  kRestart,   ///< the clock has jumped, confirmed by a second sample
+  kBadValue,  ///< refused: not finite or beyond the sensor's range
+  kBadTime,   ///< refused: not newer, or an unconfirmed jump
 };
 
+/// Checks one sample after the other.
 class ImuGate {
  public:
   explicit ImuGate(const PriorLimits& limits) : limits_(limits) {}
 
   ImuStatus check(const ImuSample& sample);
-  /// Seconds since the sample before; 0 with kFirst and after a jump back.
+  /// Time since the sample before; 0 with kFirst and after a jump back.
   [[nodiscard]] double dt_s() const { return dt_s_; }
   [[nodiscard]] bool started() const { return started_; }
   [[nodiscard]] std::int64_t stamp_ns() const { return stamp_ns_; }
@@ -33,7 +34,7 @@ class ImuGate {
 
   PriorLimits limits_;
   std::int64_t stamp_ns_ = 0;
-  std::int64_t candidate_ns_ = 0;  // time of a refused sample far away, waiting for a second one
+  std::int64_t candidate_ns_ = 0;  // time of the last refused jump, until a second sample confirms it
   double dt_s_ = 0.0;
   bool has_candidate_ = false;
   bool started_ = false;

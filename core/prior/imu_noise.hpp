@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How noisy the IMU is right now, vibration included.
+// Online estimate of the IMU's noise, vibration included.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,12 +11,11 @@
 
 namespace isobar {
 
-/// White noise of gyro, accelerometer and vertical acceleration, each from its own second differences over
-/// about 10 ms.
+/// White noise of gyro, accelerometer and vertical acceleration, from second differences over about 10 ms.
 class ImuNoise {
  public:
   void add_sample(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& force_m_s2, double dt_s) {
-    interval_s_ += (dt_s - interval_s_) * 0.02;
+    interval_s_ += (dt_s - interval_s_) * kIntervalGain;
     const auto lag = static_cast<std::size_t>(std::max(1.0, std::round(kLagS / interval_s_)));
     for (int axis = 0; axis < 3; ++axis) {
       gyro_[axis].set_lag(lag);
@@ -28,7 +27,7 @@ class ImuNoise {
   }
   void add_up_accel(double up_accel_m_s2) { up_accel_.add(up_accel_m_s2); }
 
-  /// Differences across a gap mean nothing.
+  /// After a gap: no differences across it.
   void restart() {
     for (auto& axis : gyro_) axis.restart();
     for (auto& axis : accel_) axis.restart();
@@ -43,16 +42,19 @@ class ImuNoise {
   [[nodiscard]] double accel_variance() const {
     return (accel_[0].variance() + accel_[1].variance() + accel_[2].variance()) / 3.0;
   }
-  /// Spectral density of the vertical acceleration [m^2/s^3]: white down to 5 ms, where an anti-alias filter
-  /// ends it.
+  /// Spectral density of the vertical acceleration [m^2/s^3]: white down to 5 ms, the bandwidth of an
+  /// anti-alias filter.
   [[nodiscard]] double up_accel_density(double dt_s) const {
-    return up_accel_.variance() * std::max(dt_s, 0.005);
+    return up_accel_.variance() * std::max(dt_s, kBandwidthS);
   }
 
  private:
   static constexpr double kLagS = 0.01;
-  // Vibration starts within a step of the robot: learnt in some tenths of a second, and shocks are part of
-  // it.
+  static constexpr double kBandwidthS = 0.005;
+  // Low-pass of the sample interval: over 50 samples.
+  static constexpr double kIntervalGain = 0.02;
+  // Vibration starts with the first step of the robot: a memory of some tenths of a second. Shocks are part
+  // of it, so no sample is clipped.
   static constexpr double kMemorySamples = 150.0;
   static constexpr double kNoClip = 1e30;
   static constexpr NoiseEstimator::Options kGyro{0.005, 0.0, 10.0, kMemorySamples, kNoClip};

@@ -8,10 +8,10 @@
 namespace isobar {
 namespace {
 
-// A longer step between accelerations is a gap [s]; what may have happened in it is a ride at this speed.
+// A longer step between accelerations is a gap, with an unobserved ride at this vertical speed, 1 sigma.
 constexpr double kGapS = 0.1;
-constexpr double kUnseenSpeed = 0.7;
-// A height further from the acceleration's time than this is not used [s].
+constexpr double kUnseenSpeedMS = 0.7;
+// Largest difference between the times of a height and of the last acceleration.
 constexpr double kMaxHeightDelayS = 1.0;
 
 }  // namespace
@@ -31,9 +31,9 @@ InertialAltimeter::Status InertialAltimeter::add_acceleration(std::int64_t stamp
   const double density = config_.accel_noise_m_s_sqrt_s * config_.accel_noise_m_s_sqrt_s;
   filter_.predict(gap ? accel_bias_m_s2() : up_m_s2, dt_s, density, weather_moves_);
   if (!gap) return Status::kUsed;
-  const double unseen_m = kUnseenSpeed * dt_s;
+  const double unseen_m = kUnseenSpeedMS * dt_s;
   filter_.inflate(VerticalFilter::kZ, unseen_m * unseen_m);
-  filter_.inflate(VerticalFilter::kVz, kUnseenSpeed * kUnseenSpeed);
+  filter_.inflate(VerticalFilter::kVz, kUnseenSpeedMS * kUnseenSpeedMS);
   return Status::kUsed;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The low-pass that does not lag: heights from pressure, carried between samples by vertical acceleration.
+// Inertial-barometric altimeter: a low-pass of pressure heights without lag.
 #pragma once
 
 #include <cstdint>
@@ -9,36 +9,34 @@
 
 namespace isobar {
 
-/// VerticalFilter alone: no wheels, no gates, no policy. For a platform of which only a barometer and an IMU
-/// are known, and the counterpart of PressureFilter: that one trades noise for lag; here the acceleration
-/// tells the start and the end of an elevator's ride or of a flight of stairs at once, and the pressure only
-/// has to hold the slow errors of the acceleration. HeightFilter is the same with wheels, for robots.
+/// VerticalFilter alone, without wheels, gates or policy: for a platform with only a barometer and an IMU.
+/// The counterpart of PressureFilter, which trades noise for lag: here the acceleration shows start and end
+/// of an elevator's ride or of a flight of stairs at once, and the pressure only corrects the slow errors of
+/// the acceleration. HeightFilter is the same with wheels, for robots.
 ///
-/// Heights are those of the barometer's port, relative to the start. Use it in the order of stamps of the
-/// acceleration; heights may come up to a second late.
+/// Heights of the barometer's port, relative to the start. Accelerations come in order of stamps; heights may
+/// come up to a second late.
 class InertialAltimeter {
  public:
-  /// `vz_sigma_m_s`: how fast it may be rising at the start.
+  /// `vz_sigma_m_s`: vertical speed at the start, 1 sigma.
   explicit InertialAltimeter(const HeightConfig& config, double vz_sigma_m_s = 0.05);
 
   enum class Status : std::uint8_t {
     kUsed,
-    kBadValue,  ///< not finite, or a variance that is not positive
-    kBadTime,   ///< not newer than the one before; a height more than a second from the acceleration
+    kBadValue,  ///< not finite, or variance not positive
+    kBadTime,   ///< not newer than the last one; height more than a second from the acceleration
   };
 
-  /// Acceleration upwards without gravity [m/s^2], mean since the one before. After a gap (0.1 s) the height
-  /// is carried on at constant speed and becomes as uncertain as a ride unseen.
+  /// Upward acceleration without gravity [m/s^2], mean since the last one. Over a gap (0.1 s) the height is
+  /// predicted at constant speed, with the variance of an unobserved ride.
   Status add_acceleration(std::int64_t stamp_ns, double up_m_s2);
-  /// Uses `reading` in the state of its own time. Heights before the first acceleration are kBadTime.
+  /// Update with `reading` at its own time. Heights before the first acceleration are kBadTime.
   Status add_height(const AltimeterReading& reading);
 
-  /// At the last acceleration.
+  /// At the time of the last acceleration.
   [[nodiscard]] double height_m() const { return filter_.value(VerticalFilter::kZ); }
-  [[nodiscard]] double speed_m_s() const { return filter_.value(VerticalFilter::kVz); }
   [[nodiscard]] double variance_m2() const { return filter_.variance(VerticalFilter::kZ); }
   [[nodiscard]] double accel_bias_m_s2() const { return filter_.value(VerticalFilter::kAccelBias); }
-  [[nodiscard]] std::int64_t stamp_ns() const { return stamp_ns_; }
 
  private:
   HeightConfig config_;

@@ -8,7 +8,7 @@
 namespace isobar {
 namespace {
 
-/// The sample as the calibrated sensor would have measured it; what is not as it was calibrated is counted.
+// The sample after compensation with the sensor's calibration; counts samples outside of its range.
 PressureSample compensated(PressureSample sample, SensorCompensation& compensation, std::uint64_t& outside,
                            std::uint64_t& without_temperature) {
   switch (compensation.apply(sample)) {
@@ -57,7 +57,7 @@ bool PriorEstimator::add_imu(const ImuSample& sample, Prior& out) {
   } else if (dt_s > 0.0) {
     if (s.attitude.started()) {
       const bool moved_before = s.height.ground_moves();
-      s.move(gyro, force, dt_s, gap);
+      s.step(gyro, force, dt_s, gap);
       if (s.height.ground_moves() && !moved_before) ++s.counters.moving_ground;
       s.use_device_attitude(sample, gyro, dt_s);
     } else {
@@ -67,7 +67,7 @@ bool PriorEstimator::add_imu(const ImuSample& sample, Prior& out) {
   s.gyro_before = gyro;
   s.altimeter.set_time(sample.stamp_ns);
   s.watch_barometers();
-  s.fill(sample, out);
+  out = s.prior_at(sample);
   return true;
 }
 

@@ -3,21 +3,20 @@
 
 #include <algorithm>
 
-#include "core/prior/rotation.hpp"
+#include "core/pose_carrying.hpp"
 #include "core/stamp.hpp"
 
 namespace isobar {
 namespace {
 
-// Within this a constant twist tells well enough where the robot was.
+// Longest gap between two priors that counts as dense: over it a constant twist is still a good model.
 constexpr std::int64_t kLongestBlindNs = 500'000'000;
 
 double lerp(double a, double b, double f) { return a + f * (b - a); }
 
 Eigen::Vector3d lerp(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double f) { return a + f * (b - a); }
 
-}  // namespace
-
+// Prior at `stamp_ns` between two priors.
 Prior interpolate(const Prior& before, const Prior& after, std::int64_t stamp_ns) {
   const std::int64_t span_ns = after.stamp_ns - before.stamp_ns;
   const double f =
@@ -43,20 +42,23 @@ Prior interpolate(const Prior& before, const Prior& after, std::int64_t stamp_ns
   return out;
 }
 
+// Prior carried on to `stamp_ns` at constant twist. The height's variance grows with the velocity's.
 Prior extrapolate(const Prior& from, std::int64_t stamp_ns, double height_rate_m_s) {
   const double dt_s = seconds_between(from.stamp_ns, stamp_ns);
+  const Eigen::Vector3d half_turn_rad = from.w_base_rad_s * (0.5 * dt_s);
+  const Eigen::Quaterniond half_turn = exp_so3(half_turn_rad);
   Prior out = from;
   out.stamp_ns = stamp_ns;
-  // Constant twist, exact in rotation; translation with the orientation half-way (second order).
-  const Eigen::Quaterniond half_turn = rotation_of(from.w_base_rad_s * (0.5 * dt_s));
-  const Eigen::Vector3d step = from.T_odom_base.linear() * (half_turn * (from.v_base_m_s * dt_s));
-  out.T_odom_base.translation() += step;
-  const Eigen::Quaterniond turn = (half_turn * half_turn).normalized();
-  out.T_odom_base.linear() = from.T_odom_base.linear() * turn.toRotationMatrix();
+  out.T_odom_base.translation() +=
+      midpoint_step(Eigen::Quaterniond(from.T_odom_base.linear()), half_turn_rad, from.v_base_m_s * dt_s);
+  out.T_odom_base.linear() =
+      from.T_odom_base.linear() * (half_turn * half_turn).normalized().toRotationMatrix();
   out.height_m += height_rate_m_s * dt_s;
   out.height_variance_m2 += dt_s * dt_s * from.velocity_variance_m2_s2;
   return out;
 }
+
+}  // namespace
 
 PriorHistory::PriorHistory(std::size_t capacity, std::int64_t max_extrapolation_ns)
     : ring_(std::max<std::size_t>(capacity, 2)),
@@ -74,7 +76,7 @@ void PriorHistory::add(const Prior& prior) {
 }
 
 double PriorHistory::height_rate_m_s() const {
-  // Over some tens of milliseconds: single steps carry the corrections by the barometer.
+  // Mean over 50 ms: single steps contain the barometer's corrections.
   constexpr std::int64_t kSpanNs = 50'000'000;
   for (std::size_t back = 2; back <= count_; ++back) {
     const Prior& before = nth(count_ - back);
@@ -86,16 +88,11 @@ double PriorHistory::height_rate_m_s() const {
   return 0.0;
 }
 
-void PriorHistory::clear() {
-  first_ = 0;
-  count_ = 0;
-}
-
 bool PriorHistory::covers(std::int64_t stamp_ns) const {
   return count_ > 0 && stamp_ns >= oldest().stamp_ns && stamp_ns - newest().stamp_ns <= max_extrapolation_ns_;
 }
 
-// First prior that is later than stamp_ns, where one is and it is not the oldest.
+// Binary search: the first prior later than stamp_ns, 1 … count_ - 1. Needs oldest <= stamp_ns < newest.
 std::size_t PriorHistory::first_after(std::int64_t stamp_ns) const {
   std::size_t low = 1;
   std::size_t high = count_ - 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The last seconds of priors, to be asked for at any time between two of them (deskew, registration).
+// Ring buffer of the priors of the last seconds, with interpolation; deskewing and registration query it.
 #pragma once
 
 #include <cstddef>
@@ -10,45 +10,34 @@
 
 namespace isobar {
 
-/// State between two priors, `fraction` of the way (0 … 1): rotation by slerp; translation, height, twist and
-/// variances linearly. Flags hold only where both hold; the height source is the worse of the two.
-Prior interpolate(const Prior& before, const Prior& after, std::int64_t stamp_ns);
-
-/// Prior carried on to `stamp_ns` at constant twist; the height at `height_rate_m_s`, which is not the
-/// twist's where the ground moves (elevator). The height's variance grows with the velocity's.
-Prior extrapolate(const Prior& from, std::int64_t stamp_ns, double height_rate_m_s);
-
-/// Ring buffer of fixed capacity, oldest forgotten first. Allocates in its constructor only. One thread.
+/// Ring buffer of fixed capacity, overwrites the oldest. Allocates in its constructor only. Not thread-safe.
 class PriorHistory {
  public:
   /// `capacity`: number of priors kept, at least 2; 4096 holds 5 s at 800 Hz and 20 s at 200 Hz (1.3 MB).
-  /// `max_extrapolation_ns`: how far past the newest prior at() may go; 0.1 s is a few IMU samples of delay.
+  /// `max_extrapolation_ns`: how far past the newest prior at() extrapolates; 0.1 s covers the IMU's delay.
   explicit PriorHistory(std::size_t capacity = 4096, std::int64_t max_extrapolation_ns = 100'000'000);
 
-  /// Takes a prior. One that is not newer than the newest is ignored: the history stays sorted.
+  /// Appends a prior. Ignores one that is not newer than the newest: the history stays sorted.
   void add(const Prior& prior);
 
-  /// Forgets everything, keeps the memory.
-  void clear();
-
-  /// True where at() would succeed.
-  [[nodiscard]] bool covers(std::int64_t stamp_ns) const;
-
-  /// False where the priors next to `stamp_ns` are so far apart, or so long ago, that the motion between them
-  /// is not known: the IMU was silent.
+  /// False where the priors around `stamp_ns` are more than 0.5 s apart, or at() would fail: the IMU was
+  /// silent and the motion is unknown.
   [[nodiscard]] bool dense_at(std::int64_t stamp_ns) const;
 
-  /// State at `stamp_ns`, interpolated, or extrapolated at the newest end. False, and `out` untouched, before
-  /// the oldest or too far after the newest. O(log n), no allocation.
+  /// Prior at `stamp_ns`. Between two priors: rotation by slerp; translation, height, twist and variances
+  /// linearly; a flag is set only where both have it; the height source is the worse of the two. Beyond the
+  /// newest: constant twist, and the height at its own mean rate, which differs from the twist's vertical
+  /// speed where the ground moves (elevator). False, and `out` unchanged, before the oldest and more than
+  /// `max_extrapolation_ns` after the newest. O(log n), no allocation.
   bool at(std::int64_t stamp_ns, Prior& out) const;
 
-  [[nodiscard]] std::size_t size() const { return count_; }
   [[nodiscard]] bool empty() const { return count_ == 0; }
-  /// Only where !empty().
+  /// Precondition of both: !empty().
   [[nodiscard]] const Prior& oldest() const { return nth(0); }
   [[nodiscard]] const Prior& newest() const { return nth(count_ - 1); }
 
  private:
+  [[nodiscard]] bool covers(std::int64_t stamp_ns) const;
   [[nodiscard]] double height_rate_m_s() const;
   [[nodiscard]] std::size_t first_after(std::int64_t stamp_ns) const;
   [[nodiscard]] const Prior& nth(std::size_t age_order) const {

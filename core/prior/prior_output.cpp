@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the state of the prior stage says: the prior itself, and how the barometers are.
+// PriorEstimator: the Prior and the health of the barometers, from the state of the stage.
 #include <algorithm>
 #include <cmath>
 
 #include "core/prior/prior_state.hpp"
+#include "core/so3.hpp"
 #include "core/squared.hpp"
 
 namespace isobar {
 namespace {
 
-// Within this a robot may have left the ventilated zone in which it started.
+// Time constant with which a robot leaves the ventilated zone in which it started.
 constexpr double kZoneTimeS = 30.0;
-// A pressure that is no height for longer than a door is a fault.
+// A disturbance of the pressure for longer than this is a fault: a door lasts less.
 constexpr double kWrongS = 1.5;
 
 }  // namespace
@@ -23,34 +24,13 @@ HeightSource PriorEstimator::State::source(std::int64_t stamp_ns) const {
   return reading_source;
 }
 
-void PriorEstimator::State::fill(const ImuSample& sample, Prior& out) const {
-  out = Prior{};
+Prior PriorEstimator::State::prior_at(const ImuSample& sample) const {
+  Prior out;
   out.stamp_ns = sample.stamp_ns;
-  const bool on_wheels = wheels.valid(sample.stamp_ns);
   out.T_odom_base.translation() = p_odom_base;
-  out.attitude_valid = attitude.started();
-  if (attitude.started()) {
-    out.T_odom_base.linear() = attitude.q_world_base().toRotationMatrix();
-    out.w_base_rad_s = attitude.rate_rad_s();
-    out.roll_pitch_variance_rad2 = attitude.roll_pitch_variance_rad2();
-    out.yaw_rate_variance_rad2_s2 = attitude.yaw_rate_variance();
-  } else {
-    out.T_odom_base.linear() = Eigen::AngleAxisd(yaw_before_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    out.w_base_rad_s = R_base_imu * sample.gyro_rad_s;
-    out.roll_pitch_variance_rad2 = 1.0;
-    out.yaw_rate_variance_rad2_s2 = squared(config.attitude.gyro_bias_sigma_rad_s);
-  }
-  if (height.started()) {
-    out.height_m = height.z_m() - above_base(p_base_imu);
-    const double on_for_s = std::max(0.0, seconds_between(height_start_ns, sample.stamp_ns));
-    const double warm_up_m =
-        config.height.warm_up_sigma_m * -std::expm1(-on_for_s / config.height.warm_up_time_s);
-    const double zone_m = config.height.zone_sigma_m * -std::expm1(-on_for_s / kZoneTimeS);
-    out.height_variance_m2 = height.variance_m2() + squared(zone_m) +
-                             squared(altimeter.scale_uncertainty() * out.height_m) + squared(warm_up_m);
-  }
-  out.height_source = height.started() ? source(sample.stamp_ns) : HeightSource::kNone;
-  out.velocity_valid = on_wheels && attitude.started();
+  fill_attitude(sample, out);
+  fill_height(sample.stamp_ns, out);
+  out.velocity_valid = wheels.valid(sample.stamp_ns) && attitude.started();
   out.velocity_variance_m2_s2 = squared(config.attitude.free_velocity_sigma_m_s);
   if (out.velocity_valid) {
     out.v_base_m_s = {wheels.last().vx_m_s, wheels.last().vy_m_s, 0.0};
@@ -58,6 +38,34 @@ void PriorEstimator::State::fill(const ImuSample& sample, Prior& out) const {
                                   squared(config.attitude.wheel_sigma_share) * out.v_base_m_s.squaredNorm();
   }
   out.standing_still = out.velocity_valid && standstill.standing() && !height.ground_moves();
+  return out;
+}
+
+void PriorEstimator::State::fill_attitude(const ImuSample& sample, Prior& out) const {
+  out.attitude_valid = attitude.started();
+  if (attitude.started()) {
+    out.T_odom_base.linear() = attitude.q_world_base().toRotationMatrix();
+    out.w_base_rad_s = attitude.rate_rad_s();
+    out.roll_pitch_variance_rad2 = attitude.roll_pitch_variance_rad2();
+    out.yaw_rate_variance_rad2_s2 = attitude.yaw_rate_variance_rad2_s2();
+  } else {
+    out.T_odom_base.linear() = rotation_about_z(yaw_before_rad);
+    out.w_base_rad_s = R_base_imu * sample.gyro_rad_s;
+    out.roll_pitch_variance_rad2 = 1.0;
+    out.yaw_rate_variance_rad2_s2 = squared(config.attitude.gyro_bias_sigma_rad_s);
+  }
+}
+
+void PriorEstimator::State::fill_height(std::int64_t stamp_ns, Prior& out) const {
+  if (!height.started()) return;
+  out.height_m = height.z_m() - above_base(p_base_imu);
+  const double on_for_s = std::max(0.0, seconds_between(height_start_ns, stamp_ns));
+  const double warm_up_m =
+      config.height.warm_up_sigma_m * -std::expm1(-on_for_s / config.height.warm_up_time_s);
+  const double zone_m = config.height.zone_sigma_m * -std::expm1(-on_for_s / kZoneTimeS);
+  out.height_variance_m2 = height.variance_m2() + squared(zone_m) +
+                           squared(altimeter.scale_uncertainty() * out.height_m) + squared(warm_up_m);
+  out.height_source = source(stamp_ns);
 }
 
 bool PriorEstimator::State::disturbed_for(double seconds) const {
@@ -72,13 +80,13 @@ BarometerFault PriorEstimator::State::robot_fault() const {
 }
 
 void PriorEstimator::State::watch_barometers() {
-  const auto take = [](BarometerFault& known, BarometerFault now, std::uint64_t& count) {
+  const auto update = [](BarometerFault& known, BarometerFault now, std::uint64_t& count) {
     if (now != known && now != BarometerFault::kOk && known == BarometerFault::kOk) ++count;
     known = now;
   };
-  take(barometers.robot, robot_fault(), counters.robot_faults);
+  update(barometers.robot, robot_fault(), counters.robot_faults);
   for (std::size_t station = 0; station < barometers.base.size(); ++station) {
-    take(barometers.base[station], altimeter.base_fault(station), counters.base_faults);
+    update(barometers.base[station], altimeter.base_fault(station), counters.base_faults);
     barometers.base_heard[station] =
         barometers.base_heard[station] || barometers.base[station] != BarometerFault::kOff;
   }

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Corrections that a map could not bear at once.
+// Rate limiter for corrections of the height: the map tolerates no jump.
 #pragma once
 
 #include <algorithm>
 
 namespace isobar {
 
-/// Holds back corrections of a height and lets them through at a bounded speed.
+/// Holds back corrections of a height and releases them at a bounded speed.
 class Slew {
  public:
-  /// `rate_m_s` > 0; of more than `bound_m` the rest goes through at once.
+  /// `rate_m_s` > 0. The part of a correction beyond `bound_m` passes at once.
   Slew(double rate_m_s, double bound_m) : rate_m_s_(rate_m_s), bound_m_(bound_m) {}
 
-  /// Corrections are to be held back for the next kOpenS.
+  /// Starts holding back corrections, for kOpenS.
   void begin() { open_s_ = kOpenS; }
   [[nodiscard]] bool open() const { return open_s_ > 0.0; }
 
-  /// The height has just been corrected by `step_m`.
+  /// Holds back a correction by `step_m` that the height has just taken.
   void hold_back(double step_m) { rest_m_ = std::clamp(rest_m_ - step_m, -bound_m_, bound_m_); }
 
   void advance(double dt_s) {
@@ -27,12 +27,11 @@ class Slew {
 
   void restart() { open_s_ = rest_m_ = 0.0; }
 
-  /// To be added to the corrected height [m].
+  /// Remainder, to be added to the corrected height [m].
   [[nodiscard]] double rest_m() const { return rest_m_; }
 
  private:
-  // A filter takes a correction in over some pressures. Longer, and corrections of the motion itself would
-  // wait.
+  // The filter absorbs a correction over several pressures; longer would delay corrections of the motion.
   static constexpr double kOpenS = 3.0;
 
   double rate_m_s_;

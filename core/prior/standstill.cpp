@@ -8,7 +8,11 @@ namespace isobar {
 namespace {
 
 // A single sample this many times beyond the rms limit ends the standstill at once.
-constexpr double kBreak = 6.0;
+constexpr double kBreakFactor = 6.0;
+// Tolerance of the mean rate for the error of the gyro bias.
+constexpr double kBiasSigmas = 3.0;
+// Fewer samples give no useful variance.
+constexpr double kLeastSamples = 8.0;
 
 }  // namespace
 
@@ -43,9 +47,11 @@ void StandstillDetector::add_imu(const Eigen::Vector3d& gyro_rad_s, const Eigen:
   force_square_sum_ += force_m_s2.cwiseAbs2();
   elapsed_s_ += dt_s;
   count_ += 1.0;
-  const double limit = kBreak * config_.max_gyro_rms_rad_s + config_.max_rate_rad_s + 3.0 * bias_sigma_rad_s;
+  const double limit =
+      kBreakFactor * config_.max_gyro_rms_rad_s + config_.max_rate_rad_s + kBiasSigmas * bias_sigma_rad_s;
   if ((gyro_rad_s - gyro_bias_rad_s).cwiseAbs().maxCoeff() > limit) standing_ = false;
-  if (elapsed_s_ >= config_.window_s && count_ >= 8.0) close_window(gyro_bias_rad_s, bias_sigma_rad_s);
+  if (elapsed_s_ >= config_.window_s && count_ >= kLeastSamples)
+    close_window(gyro_bias_rad_s, bias_sigma_rad_s);
 }
 
 void StandstillDetector::close_window(const Eigen::Vector3d& gyro_bias_rad_s, double bias_sigma_rad_s) {
@@ -56,7 +62,7 @@ void StandstillDetector::close_window(const Eigen::Vector3d& gyro_bias_rad_s, do
   const double rate = (gyro_mean - gyro_bias_rad_s).cwiseAbs().maxCoeff();
   standing_ = !wheels_moved_ && gyro_variance <= config_.max_gyro_rms_rad_s * config_.max_gyro_rms_rad_s &&
               force_variance <= config_.max_accel_rms_m_s2 * config_.max_accel_rms_m_s2 &&
-              rate <= config_.max_rate_rad_s + 3.0 * bias_sigma_rad_s;
+              rate <= config_.max_rate_rad_s + kBiasSigmas * bias_sigma_rad_s;
   window_ready_ = standing_;
   window_mean_gyro_ = gyro_mean;
   window_gyro_variance_ = std::max(0.0, gyro_variance) / count_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Does the robot stand still? Gyro, accelerometer and wheels must all say so. Without wheels nobody can tell:
-// a sphere on a rope is lowered and turns as evenly as if it lay on the ground.
+// Standstill detection: gyro, accelerometer and wheels must agree. Without wheels it is undecidable: a sphere
+// on a rope is lowered and turns as evenly as if it lay on the ground.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,23 +9,23 @@
 
 namespace isobar {
 
-/// Looks at windows that follow each other; the answer of a full window holds until a sample contradicts it.
+/// Judges consecutive windows; the result of a window holds until a sample contradicts it.
 class StandstillDetector {
  public:
   explicit StandstillDetector(const StandstillConfig& config) : config_(config) {}
 
-  /// `bias_sigma_rad_s`: how well the gyro bias is known. Base axes. `force` may rotate freely: only its
-  /// spread counts.
+  /// One IMU sample, base axes. `bias_sigma_rad_s`: standard deviation of the gyro bias. Of `force_m_s2` only
+  /// the variance within a window counts.
   void add_imu(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& gyro_bias_rad_s,
                double bias_sigma_rad_s, const Eigen::Vector3d& force_m_s2, double dt_s);
   void add_wheel(double speed_m_s, double turn_rate_rad_s);
-  /// A gap: nothing is known of what happened in it.
+  /// After a gap: not standing until the next full window.
   void restart();
 
   [[nodiscard]] bool standing() const { return standing_; }
-  /// True once for each full quiet window: mean_gyro() and window_s() are then those of that window.
+  /// True once per quiet window; mean_gyro_rad_s(), window_s() and gyro_variance_of_mean() are that window's.
   bool take_window();
-  [[nodiscard]] const Eigen::Vector3d& mean_gyro() const { return window_mean_gyro_; }
+  [[nodiscard]] const Eigen::Vector3d& mean_gyro_rad_s() const { return window_mean_gyro_; }
   [[nodiscard]] double window_s() const { return window_length_s_; }
   [[nodiscard]] double gyro_variance_of_mean() const { return window_gyro_variance_; }
 

@@ -8,10 +8,9 @@
 namespace isobar {
 namespace {
 
-// Nothing is known of the offset between two barometers before the first sample: DPS310 differ by up to 100
-// Pa, 8 m.
+// Offset between two barometers before the first sample, 1 sigma: DPS310 differ by up to 100 Pa, 8 m.
 constexpr double kOffsetSigmaM = 10.0;
-// The height at the start is zero by definition.
+// Height at the start, 1 sigma: exact by definition, but not singular.
 constexpr double kStartSigmaM = 1e-3;
 
 }  // namespace
@@ -64,7 +63,7 @@ void VerticalFilter::drift_weather(double dt_s) {
   P_.row(kWeather) += dt_s * P_.row(kWeatherRate);
   P_.col(kWeather) += dt_s * P_.col(kWeatherRate);
   P_(kWeather, kWeather) += squared(config_.weather_walk_m_sqrt_s) * dt_s;
-  // Gauss-Markov of the rate: a front goes by, and another comes.
+  // First-order Gauss-Markov process of the rate: fronts pass.
   const double keep = std::exp(-dt_s / kWeatherRateTimeS);
   x_[kWeatherRate] *= keep;
   P_.row(kWeatherRate) *= keep;
@@ -76,7 +75,7 @@ void VerticalFilter::age_offset(double dt_s) {
   if (offset_age_s_ >= config_.offset_learning_s) return;
   offset_age_s_ += dt_s;
   if (offset_age_s_ < config_.offset_learning_s) return;
-  // From here on height is counted from where the pressure says it began: z + (b_p - its estimate).
+  // From here on the offset is fixed and its error becomes one of the height: z + (b_p - its estimate).
   P_.row(kZ) += P_.row(kOffset);
   P_.col(kZ) += P_.col(kOffset);
   P_.row(kOffset).setZero();
@@ -139,8 +138,8 @@ void VerticalFilter::release_weather() {
   P_(kWeatherRate, kWeatherRate) = squared(config_.weather_rate_m_s);
 }
 
-// The gain is that of a Kalman filter but for the motion, which the weather of minutes has nothing to say
-// about: what it was thought to be by is the walk's doing. Joseph's form holds for any gain.
+// Schmidt-Kalman: zero gain on vz, bias, slope, about which minutes of weather carry no information; Joseph
+// form stays valid for any gain.
 void VerticalFilter::settle_weather(double weather_m, double variance_m2) {
   Vector h = Vector::Zero();
   h[kWeather] = 1.0;
@@ -178,7 +177,7 @@ void VerticalFilter::update(const Vector& h, double measured, double variance) {
   const Vector K = Ph / S;
   x_ += K * (measured - h.dot(x_));
   P_.noalias() -= K * Ph.transpose();
-  // Rounding must not make the matrix lopsided or a variance negative.
+  // Against rounding: symmetric, variances not negative.
   P_ = (0.5 * (P_ + P_.transpose())).eval();
   P_.diagonal() = P_.diagonal().cwiseMax(0.0);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The vertical Kalman filter itself: equations without policy.
+// The vertical Kalman filter: equations without policy.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,26 +8,26 @@
 
 namespace isobar {
 
-/// Height of one point of the robot (the IMU's) in a gravity-aligned world.
+/// Height of the IMU in a gravity-aligned world.
 ///
 /// States: z [m], vz [m/s], b_a bias of the vertical acceleration [m/s^2], s slope error of the wheels [rad],
 /// b_p offset between the barometers [m], n slow local pressure noise (Gauss-Markov) [m],
-/// w weather since the base station was lost [m] and r its rate [m/s], q a step of the pressure that is no
-/// height (ventilation zone, fault) [m].
+/// w weather since the base station was lost [m] and r its rate [m/s], q a step of the pressure without
+/// motion (ventilation zone, fault) [m].
 ///
 ///   dz/dt = vz,  dvz/dt = a_up - b_a,  dw/dt = r (+ walk),  wheels' climb = vz - s v_forward
 ///   barometer = z + b_p + n + w + q (+ lever arm)
 class VerticalFilter {
  public:
   enum State { kZ, kVz, kAccelBias, kSlope, kOffset, kTurbulence, kWeather, kWeatherRate, kStep, kStates };
-  /// How long a front moves the pressure one way: correlation time of the weather's rate [s].
+  /// Correlation time of the weather's rate [s]: how long a front moves the pressure one way.
   static constexpr double kWeatherRateTimeS = 7'200.0;
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Matrix = Eigen::Matrix<double, kStates, kStates>;
 
   explicit VerticalFilter(const HeightConfig& config);
 
-  /// Starts at height `z_m`, exactly, with the vertical speed known to `vz_sigma_m_s`.
+  /// Starts at height `z_m`, exactly, with a vertical speed of 0, 1 sigma `vz_sigma_m_s`.
   void start(double z_m, double vz_sigma_m_s);
 
   /// `accel_density`: [m^2/s^3], spectral density of the acceleration's noise. `weather_moves`: no base
@@ -39,27 +39,27 @@ class VerticalFilter {
     double variance = 1.0;
   };
 
-  /// A barometer's height of the IMU's place, measured `delay_s` ago.
+  /// Innovation of a barometric height of the IMU, measured `delay_s` ago.
   [[nodiscard]] Innovation pressure_innovation(double height_m, double delay_s, double variance_m2) const;
-  /// The same if the step were over.
+  /// The same without the step q: as if it were over.
   [[nodiscard]] Innovation innovation_without_step(double height_m, double delay_s, double variance_m2) const;
   void update_pressure(double height_m, double delay_s, double variance_m2);
 
-  /// Vertical speed as wheels and attitude see it, at forward speed `forward_m_s`.
+  /// Innovation of the vertical speed from wheels and attitude, at forward speed `forward_m_s`.
   [[nodiscard]] Innovation climb_innovation(double climb_m_s, double forward_m_s, double variance) const;
   void update_climb(double climb_m_s, double forward_m_s, double variance);
 
-  /// The base station is lost: from here on nothing is known of the weather but how fast it can be.
+  /// The base station is lost: the weather's rate becomes unknown, with its a-priori variance.
   void release_weather();
-  /// The weather since the base station was lost is known now: `weather_m`. The state is zero afterwards.
+  /// Measurement of the weather since the base station was lost. The state w is zero afterwards.
   void settle_weather(double weather_m, double variance_m2);
-  /// The weather so far becomes part of the constant offset (a base station has joined).
+  /// A base station has joined: the weather so far becomes part of the constant offset.
   void fold_weather_into_offset();
 
-  /// The pressure has stepped, by nobody knows how much: `sigma_m` is far more than that. The next pressure
-  /// tells. What was known of the offset is kept, for when the step is over.
+  /// The pressure has stepped by an unknown amount, which the next update finds; `sigma_m` is far larger. The
+  /// offset's estimate is kept for the end of the step.
   void open_step(double sigma_m);
-  /// The pressure is back where it was before the step.
+  /// The step is over: the pressure is back at its old level.
   void close_step();
   [[nodiscard]] bool step_open() const { return step_open_; }
 

@@ -18,7 +18,7 @@ void Correspondences::start(const MapSnapshot& map, const Eigen::Vector3d& p_map
 std::span<const Pair> Correspondences::find(const MapSnapshot& map, std::span<const Eigen::Vector3f> p_base,
                                             std::size_t stride, const Eigen::Isometry3d& T_map_base,
                                             const Eigen::Vector3d& p_base_lidar, double max_distance_m) {
-  // In single precision: 10 um at 100 m.
+  // Single precision: 10 um at 100 m.
   const Eigen::Matrix3f R_map_base = T_map_base.linear().cast<float>();
   const Eigen::Vector3f t_local = frame_.to_local(T_map_base.translation());
   std::size_t count = 0;
@@ -44,10 +44,10 @@ std::span<const Pair> Correspondences::find(const MapSnapshot& map, std::span<co
 }
 
 void Correspondences::keep_matches_of_common_points(std::size_t stride, std::size_t count) {
-  const bool among_them = stride_ != 0 && stride_ % stride == 0;
-  const std::size_t ratio = among_them ? stride_ / stride : 1;
-  for (std::size_t i = count; i-- > 0;) {  // from the last: what is read lies before what is written
-    matches_[i] = among_them && i % ratio == 0 ? matches_[i / ratio] : PlaneMatch{};
+  const bool nested = stride_ != 0 && stride_ % stride == 0;
+  const std::size_t ratio = nested ? stride_ / stride : 1;
+  for (std::size_t i = count; i-- > 0;) {  // in place, backwards: reads lie before writes
+    matches_[i] = nested && i % ratio == 0 ? matches_[i / ratio] : PlaneMatch{};
   }
   stride_ = stride;
 }

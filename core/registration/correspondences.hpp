@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which plane of the map each sampled point of the scan belongs to. How it is found is the map's matcher's
-// choice.
+// Correspondences: the plane of the map for each sampled point of the scan. The search itself is the map's.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -19,30 +18,30 @@ struct Pair {
   float residual_m;         ///< n^T (p - q), from the plane to the point
 };
 
-/// Finds pairs into memory of fixed size.
+/// Finds correspondences into memory of fixed size. Not thread-safe.
 class Correspondences {
  public:
-  /// `capacity`: points at most.
+  /// `capacity`: largest number of points.
   explicit Correspondences(std::size_t capacity);
 
-  /// Begins with a new scan or a new map near `p_map_base`.
+  /// Begins a new scan or a new map, with the local frame at `p_map_base` [m].
   void start(const MapSnapshot& map, const Eigen::Vector3d& p_map_base);
 
-  /// Matches every `stride`-th of `p_base` placed at `T_map_base`, seen from `p_base_lidar`, to planes whose
-  /// point is within `max_distance_m`. `map` and `p_base` as at start(). The result is valid until the next
-  /// call.
+  /// Matches every `stride`-th of `p_base`, placed at `T_map_base` and seen from `p_base_lidar`, to planes
+  /// whose point is within `max_distance_m`. `map` as at start(), `p_base` the same in all calls since. The
+  /// result is valid until the next call.
   std::span<const Pair> find(const MapSnapshot& map, std::span<const Eigen::Vector3f> p_base,
                              std::size_t stride, const Eigen::Isometry3d& T_map_base,
                              const Eigen::Vector3d& p_base_lidar, double max_distance_m);
 
  private:
-  /// Makes matches_ those of every `stride`-th point, `count` of them: where the ones before were every
-  /// sixth, say, and these are every second, each third has its match already.
+  /// Rearranges matches_ for a new stride with `count` points: points of both strides keep their last match
+  /// as a starting guess (from every sixth to every second point: each third has one).
   void keep_matches_of_common_points(std::size_t stride, std::size_t count);
 
   LocalFrame frame_;
   std::size_t stride_ = 0;                // of the last find(); 0 after start()
-  std::vector<Eigen::Vector3f> p_robot_;  // sizes are fixed in the constructor
+  std::vector<Eigen::Vector3f> p_robot_;  // sizes fixed in the constructor
   std::vector<Eigen::Vector3f> p_local_;
   std::vector<PlaneMatch> matches_;
   std::vector<Pair> pairs_;

@@ -2,7 +2,9 @@
 #include "core/registration/deskew.hpp"
 
 #include <algorithm>
-#include <cmath>
+
+#include "core/pose_carrying.hpp"
+#include "core/stamp.hpp"
 
 #include "core/stamp.hpp"
 
@@ -10,8 +12,8 @@ namespace isobar {
 
 namespace {
 
-// The prior is asked every 2.048 ms, finer than an IMU's samples; between, matrices are blended linearly: at
-// 10 rad/s the error is below 1e-4. A knot every 256 us is off by half of it at most: 0.13 mrad at 1 rad/s.
+// One prior every 2.048 ms, finer than an IMU's samples; matrices between them are interpolated linearly,
+// error below 1e-4 at 10 rad/s. One knot every 256 us: at most 128 us off, 0.13 mrad at 1 rad/s.
 constexpr std::int64_t kUnitsPerKnot = 64;
 constexpr std::int64_t kKnotsPerPrior = 8;
 constexpr std::int64_t kPriorStepNs = kUnitsPerKnot * kKnotsPerPrior * kPointTimeUnitNs;
@@ -31,7 +33,9 @@ Eigen::Isometry3d Deskewer::T_end_base(std::int64_t stamp_ns, const PriorHistory
   if (!history.at(stamp_ns, prior) && !history.empty() && stamp_ns <= history.oldest().stamp_ns) {
     prior = history.oldest();
   }
-  Eigen::Isometry3d T = motion.end.T_odom_base.inverse() * prior.T_odom_base;
+  // The frame of the scan's end takes the place of the map.
+  const PoseAnchor end(Eigen::Isometry3d::Identity(), motion.end.T_odom_base);
+  Eigen::Isometry3d T = end.carried_to(prior.T_odom_base);
   if (!motion.from_wheels) {
     T.translation() = motion.v_base_m_s * seconds_between(motion.end.stamp_ns, stamp_ns);
   }
@@ -48,7 +52,7 @@ void Deskewer::start(const Scan& scan, const PriorHistory& history, const ScanMo
     const std::int64_t after_ns = scan.stamp_ns + (step + 1) * kPriorStepNs;
     const Eigen::Isometry3d T_after = T_end_base(after_ns, history, motion) * T_base_lidar_;
     for (std::int64_t k = 0; k < kKnotsPerPrior && knot_count_ < knots_.size(); ++k) {
-      // At the middle of the knot's span.
+      // Motion at the middle of the knot's 256 us.
       const double after = (static_cast<double>(k) + 0.5) / static_cast<double>(kKnotsPerPrior);
       Knot& knot = knots_[knot_count_++];
       const Eigen::Matrix4f T = (T_before.matrix() * (1.0 - after) + T_after.matrix() * after).cast<float>();
@@ -70,13 +74,6 @@ std::size_t Deskewer::move(std::span<const ScanPoint> points, ScanPoint* out) co
     out[kept++] = {p_base.x(), p_base.y(), p_base.z(), point.time_4us, point.ring, point.intensity};
   }
   return kept;
-}
-
-void Deskewer::deskew(const Scan& scan, const PriorHistory& history, const ScanMotion& motion,
-                      RegisteredScan& out) {
-  start(scan, history, motion);
-  const std::uint32_t count = std::min(scan.point_count, Scan::kMaxPoints);
-  out.point_count = static_cast<std::uint32_t>(move({scan.points, count}, out.points));
 }
 
 }  // namespace isobar

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Moves every point of a scan to where it would have been measured at the scan's end.
+// Deskewing: motion compensation of a scan to the time of its end.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -13,34 +13,31 @@
 
 namespace isobar {
 
-/// What moves the robot during the scan, beside the rotation, which is always the prior's.
+/// Motion of the robot during a scan. The rotation is always the prior's.
 struct ScanMotion {
   Prior end;                ///< prior at the scan's end
-  bool from_wheels = true;  ///< translation from dead reckoning; else at constant velocity
+  bool from_wheels = true;  ///< true: translation from dead reckoning; false: from v_base_m_s
   Eigen::Vector3d v_base_m_s =
-      Eigen::Vector3d::Zero();  ///< that velocity, axes of base_link at the scan's end
+      Eigen::Vector3d::Zero();  ///< constant velocity, axes of base_link at the scan's end
 };
 
-/// Motion sampled at a fixed number of times, so that the cost a point is one matrix product.
+/// Samples the motion at fixed steps of time, so that each point costs one matrix product. Allocates in its
+/// constructor only. Not thread-safe.
 class Deskewer {
  public:
-  /// `T_base_lidar`: pose of the lidar in base_link. Returns outside of min … max_range_m (from the sensor)
-  /// are dropped, as are numbers that are not finite.
+  /// `T_base_lidar`: pose of the lidar in base_link. Points outside of min … max_range_m (from the sensor)
+  /// and points that are not finite are dropped.
   Deskewer(const Eigen::Isometry3d& T_base_lidar, double min_range_m, double max_range_m);
 
-  /// Takes in how the lidar moved during `scan`: what move() needs. Times that `history` does not reach use
-  /// its nearest prior.
+  /// Samples the motion of the lidar during `scan`, for move(). Times outside of `history` use its nearest
+  /// prior.
   void start(const Scan& scan, const PriorHistory& history, const ScanMotion& motion);
-  /// Writes those of `points`, a part of that scan, which are in range, as p_base at scan.end_stamp_ns, to
-  /// `out`; returns their number. `out` may be where `points` begin.
+  /// Writes the points in range, moved to p_base at scan.end_stamp_ns, to `out` and returns their number.
+  /// `points` are a part of the scan of start(). `out` holds as many points and may be `points.data()`.
   std::size_t move(std::span<const ScanPoint> points, ScanPoint* out) const;
 
-  /// Writes the points of `scan`, as p_base at scan.end_stamp_ns, to out.points and their number to
-  /// out.point_count.
-  void deskew(const Scan& scan, const PriorHistory& history, const ScanMotion& motion, RegisteredScan& out);
-
  private:
-  // Columns of T_end_lidar, each padded to a register of four floats.
+  // Columns of T_end_lidar, each padded to four floats: one SSE register.
   struct Knot {
     Eigen::Vector4f x;
     Eigen::Vector4f y;

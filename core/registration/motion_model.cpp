@@ -5,44 +5,38 @@
 #include <cmath>
 
 #include "core/geometry.hpp"
+#include "core/pose_carrying.hpp"
 #include "core/stamp.hpp"
 
 namespace isobar {
 
 namespace {
 
-// What a lost robot may be off by at most: beyond this the search would cover everything.
+// Upper bound of the predicted error of a lost robot: beyond it the search would cover everything.
 constexpr double kLargestDeviationM = 2.0;
 constexpr double kLargestDeviationRad = 0.5;
-// Share of a velocity's surprise that is believed. Half follows a swinging rope and halves the noise.
+// Gain of the velocity's alpha filter, horizontal and vertical. Half follows a swinging rope and halves the
+// noise.
 constexpr double kVelocityGain = 0.5;
 constexpr double kVerticalVelocityGain = 0.3;
+// Registrations further apart give no velocity: between them it has changed.
 constexpr double kLongestVelocityStepS = 0.5;
+// Smallest error of a step without wheels: what a velocity from registrations is off by.
 constexpr double kFreeMotionFloorM = 0.02;
-// How fast a robot turns of which the IMU says nothing, 1 sigma [rad/s].
+// Turn rate of a robot whose IMU is silent, 1 sigma.
 constexpr double kUnseenRateRadS = 0.5;
+
+double non_negative_root(double x) { return std::sqrt(std::max(x, 0.0)); }
 
 }  // namespace
 
-Eigen::Matrix3d yaw_only(const Eigen::Matrix3d& rotation) {
-  // Maximises the trace of yaw^T rotation.
-  const double yaw = std::atan2(rotation(1, 0) - rotation(0, 1), rotation(0, 0) + rotation(1, 1));
-  return Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-}
-
 void MotionModel::start(const Prior& prior) {
-  Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
   const Eigen::Matrix3d& R = prior.T_odom_base.linear();
-  const double yaw = std::atan2(R(1, 0), R(0, 0));
-  T_map_base.linear() = Eigen::AngleAxisd(-yaw, Eigen::Vector3d::UnitZ()) * R;
-  T_map_base.translation().z() = prior.height_source == HeightSource::kNone ? 0.0 : prior.height_m;
-  start_at(prior, T_map_base);
-}
-
-void MotionModel::start_at(const Prior& prior, const Eigen::Isometry3d& T_map_base) {
+  T_map_base_.setIdentity();
+  T_map_base_.linear() = rotation_about_z(-std::atan2(R(1, 0), R(0, 0))) * R;
+  T_map_base_.translation().z() = prior.height_source == HeightSource::kNone ? 0.0 : prior.height_m;
   started_ = true;
   last_ = prior;
-  T_map_base_ = T_map_base;
   v_map_m_s_.setZero();
   confirmed_ns_ = prior.stamp_ns;
   unconfirmed_m_ = 0.0;
@@ -52,65 +46,75 @@ double MotionModel::travel_s(const Prior& now) const {
   return std::max(0.0, seconds_between(last_.stamp_ns, now.stamp_ns));
 }
 
-Eigen::Vector3d MotionModel::velocity_at(double since_s) const {
-  return v_map_m_s_ * std::exp(-since_s / config_.velocity_memory_s);
+double MotionModel::since_confirmed_s(std::int64_t stamp_ns) const {
+  return std::max(0.0, seconds_between(confirmed_ns_, stamp_ns));
 }
 
-Eigen::Vector3d MotionModel::translation_step_map(const Prior& now) const {
-  if (now.velocity_valid && last_.velocity_valid) {
-    const Eigen::Matrix3d R_map_odom = T_map_base_.linear() * last_.T_odom_base.linear().transpose();
-    return R_map_odom * (now.T_odom_base.translation() - last_.T_odom_base.translation());
-  }
-  // The velocity dies away: its integral from the last confirmed scan on.
-  const double dt = travel_s(now);
+Eigen::Vector3d MotionModel::velocity_at(std::int64_t stamp_ns) const {
+  return v_map_m_s_ * std::exp(-since_confirmed_s(stamp_ns) / config_.velocity_memory_s);
+}
+
+Eigen::Vector3d MotionModel::step_at_velocity_map(const Prior& now) const {
+  // Integral of the decaying velocity from the last scan to now.
   const double tau = config_.velocity_memory_s;
-  const double since = std::max(0.0, seconds_between(confirmed_ns_, last_.stamp_ns));
-  return velocity_at(since) * tau * (1.0 - std::exp(-dt / tau));
+  return velocity_at(last_.stamp_ns) * tau * (1.0 - std::exp(-travel_s(now) / tau));
 }
 
 Prediction MotionModel::predict(const Prior& now, const MethodTraits& method) const {
-  Prediction prediction;
-  // Between priors of which one is unknown there is no turn: the scan finds it.
+  // The turn between two priors is only known where both are; else it is zero and the scan finds it.
   const bool followed = now.attitude_valid && last_.attitude_valid;
-  const Eigen::Matrix3d& R_odom_base = followed ? last_.T_odom_base.linear() : now.T_odom_base.linear();
-  const Eigen::Matrix3d R_map_odom_full = T_map_base_.linear() * R_odom_base.transpose();
+  const bool on_wheels = now.velocity_valid && last_.velocity_valid;
+  const Eigen::Isometry3d& T_odom_before = followed ? last_.T_odom_base : now.T_odom_base;
+  const PoseAnchor anchor(T_map_base_, T_odom_before);
   const Eigen::Matrix3d R_map_odom =
-      method.attitude_from_gravity ? yaw_only(R_map_odom_full) : R_map_odom_full;
-  const Eigen::Vector3d step = translation_step_map(now);
+      method.attitude_from_gravity ? nearest_rotation_about_z(anchor.R_map_odom()) : anchor.R_map_odom();
+  const Eigen::Vector3d step_map_m =
+      on_wheels ? anchor.step_map_m(now.T_odom_base) : step_at_velocity_map(now);
+
+  Prediction prediction;
   prediction.T_map_base.linear() =
       Eigen::Quaterniond(R_map_odom * now.T_odom_base.linear()).normalized().toRotationMatrix();
-  prediction.T_map_base.translation() = T_map_base_.translation() + step;
+  prediction.T_map_base.translation() = T_map_base_.translation() + step_map_m;
   if (method.z_prediction == ZPrediction::kAltimeter) {
     prediction.T_map_base.translation().z() = now.height_m;
   }
   prediction.T_map_odom = prediction.T_map_base * now.T_odom_base.inverse();
 
-  const double dt = std::max(travel_s(now), seconds_between(confirmed_ns_, now.stamp_ns));
-  double translation = config_.step_translation_floor_m;
-  if (now.velocity_valid && last_.velocity_valid) {
-    const double way = unconfirmed_m_ + step.norm();
-    const double rate = now.standing_still ? 0.0 : std::sqrt(std::max(now.velocity_variance_m2_s2, 0.0));
-    translation += rate * dt + config_.step_distance_error * way;
-  } else {
-    translation += kFreeMotionFloorM + 0.5 * config_.free_acceleration_m_s2 * dt * dt;
-  }
-  const double turn = Eigen::AngleAxisd(R_odom_base.transpose() * now.T_odom_base.linear()).angle();
-  const double rate_error =
-      std::max(std::sqrt(std::max(now.yaw_rate_variance_rad2_s2, 0.0)), followed ? 0.0 : kUnseenRateRadS);
-  const double rotation =
-      config_.step_rotation_floor_deg * kRadPerDeg + config_.step_rotation_share * turn + rate_error * dt;
-  prediction.deviation.head<3>().setConstant(std::min(rotation, kLargestDeviationRad));
-  prediction.deviation.tail<3>().setConstant(std::min(translation, kLargestDeviationM));
+  const double dt_s = std::max(travel_s(now), seconds_between(confirmed_ns_, now.stamp_ns));
+  const double turn_rad =
+      rotation_angle_rad(Eigen::Quaterniond(T_odom_before.linear().transpose() * now.T_odom_base.linear()));
+  const double rate_rad_s =
+      std::max(non_negative_root(now.yaw_rate_variance_rad2_s2), followed ? 0.0 : kUnseenRateRadS);
+  const double translation_m = on_wheels ? wheel_error_m(now, step_map_m.norm(), dt_s) : free_error_m(dt_s);
+  prediction.deviation.head<3>().setConstant(
+      std::min(rotation_error_rad(turn_rad, rate_rad_s, dt_s), kLargestDeviationRad));
+  prediction.deviation.tail<3>().setConstant(std::min(translation_m, kLargestDeviationM));
   if (method.z_prediction == ZPrediction::kAltimeter) {
     prediction.deviation(5) = config_.altitude_prior_error_m;
   }
   return prediction;
 }
 
+double MotionModel::wheel_error_m(const Prior& now, double step_m, double dt_s) const {
+  const double way_m = unconfirmed_m_ + step_m;
+  const double speed_error_m_s = now.standing_still ? 0.0 : non_negative_root(now.velocity_variance_m2_s2);
+  return config_.step_translation_floor_m + (speed_error_m_s * dt_s + config_.step_distance_error * way_m);
+}
+
+double MotionModel::free_error_m(double dt_s) const {
+  return config_.step_translation_floor_m +
+         (kFreeMotionFloorM + 0.5 * config_.free_acceleration_m_s2 * dt_s * dt_s);
+}
+
+double MotionModel::rotation_error_rad(double turn_rad, double rate_rad_s, double dt_s) const {
+  return config_.step_rotation_floor_deg * kRadPerDeg + config_.step_rotation_share * turn_rad +
+         rate_rad_s * dt_s;
+}
+
 void MotionModel::correct(const Prior& now, const Eigen::Isometry3d& T_map_base) {
-  const double dt = travel_s(now);
-  if (dt > 1e-3 && dt < kLongestVelocityStepS) {
-    const Eigen::Vector3d measured = (T_map_base.translation() - T_map_base_.translation()) / dt;
+  const double dt_s = travel_s(now);
+  if (dt_s > 1e-3 && dt_s < kLongestVelocityStepS) {
+    const Eigen::Vector3d measured = (T_map_base.translation() - T_map_base_.translation()) / dt_s;
     const Eigen::Vector3d gain(kVelocityGain, kVelocityGain, kVerticalVelocityGain);
     v_map_m_s_ += gain.cwiseProduct(measured - v_map_m_s_);
   } else {
@@ -132,8 +136,7 @@ ScanMotion MotionModel::scan_motion(const Prior& end, const Prediction& predicti
   ScanMotion motion;
   motion.end = end;
   motion.from_wheels = end.velocity_valid;
-  const double since = std::max(0.0, seconds_between(confirmed_ns_, end.stamp_ns));
-  motion.v_base_m_s = prediction.T_map_base.linear().transpose() * velocity_at(since);
+  motion.v_base_m_s = prediction.T_map_base.linear().transpose() * velocity_at(end.stamp_ns);
   return motion;
 }
 

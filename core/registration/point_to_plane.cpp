@@ -9,23 +9,22 @@ namespace isobar {
 
 namespace {
 
-// Pairs are taken by chunks, one row a pair, so that every operation runs down a column, four or more pairs
-// at a time. Sums within a chunk are in single precision, from chunk to chunk in double: 64 addends lose no
-// more than four millionths.
+// Structure of arrays: chunks of 64 pairs, one row each, so that operations run down columns with SIMD. Sums
+// within a chunk are in single precision (64 addends lose 4e-6 at most), over chunks in double.
 constexpr int kChunk = 64;
 using Column = Eigen::Array<float, kChunk, 1>;
 
-// 1.4826 times the median of absolute values is the standard deviation of a normal distribution.
+// Standard deviation of a normal distribution over the median of its absolute values.
 constexpr float kDeviationPerMedian = 1.4826F;
+// Width c of the loss: residuals beyond three standard deviations are outliers.
 constexpr float kLossPerDeviation = 3.0F;
 
 struct Chunk {
   Eigen::Array<float, kChunk, 6> jacobian;
   Column residual_m;
   Column squared_lever_m2;
-  // Of a residual in units of the noise's: 1 where the fixed directions are not felt.
-  Column variance;
-  int count = 0;  // rows behind these are zero
+  Column variance;  // of a residual over noise_m^2: 1 where it does not depend on the fixed directions
+  int count = 0;    // rows in use; the others are zero
 };
 
 void load(std::span<const Pair> pairs, const PairNoise& noise, Chunk& chunk) {
@@ -44,7 +43,7 @@ void load(std::span<const Pair> pairs, const PairNoise& noise, Chunk& chunk) {
     }
     chunk.residual_m[i] = pair.residual_m;
   }
-  // point_to_plane_jacobian(), column by column.
+  // J = (p x n, n), column by column.
   const auto n = chunk.jacobian.rightCols<3>();
   chunk.jacobian.col(0) = p.col(1) * n.col(2) - p.col(2) * n.col(1);
   chunk.jacobian.col(1) = p.col(2) * n.col(0) - p.col(0) * n.col(2);
@@ -59,7 +58,7 @@ void load(std::span<const Pair> pairs, const PairNoise& noise, Chunk& chunk) {
   }
 }
 
-// Calls `use` with all pairs, chunk by chunk.
+// Calls `use(chunk)` for all pairs.
 template <typename Use>
 void for_each_chunk(std::span<const Pair> pairs, const PairNoise& noise, Use&& use) {
   Chunk chunk;
@@ -79,7 +78,7 @@ float residual_scale_m(std::span<const Pair> pairs, const PairNoise& noise, floa
   for_each_chunk(pairs, noise, [&](const Chunk& chunk) {
     const Column bins =
         (chunk.residual_m.abs() / chunk.variance.sqrt() * bins_per_m).min(static_cast<float>(kBins - 1));
-    // A floor says nothing to a solver that cannot move up: neither do its residuals.
+    // Weight by the normal's free part: where z is fixed, a floor's residuals carry no information.
     const Column share = chunk.jacobian.col(3).square() * noise.free[3] +
                          chunk.jacobian.col(4).square() * noise.free[4] +
                          chunk.jacobian.col(5).square() * noise.free[5];

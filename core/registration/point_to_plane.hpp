@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The point-to-plane error, equation (8) of the paper, its Jacobian and its robust sum.
+// Point-to-plane error, equation (8) of the paper: Jacobian, robust scale and normal equations.
+//
+//     e = n^T (exp(omega) p + r - d),   J = de/d(omega, r) at omega = r = 0 = (p x n, n),   p from the robot
+//
+// Rows 2, 3, 4 of J are a_k of equation (10), since n^T (omega_z x p) = omega_z . (p x n).
 #pragma once
 
 #include <Eigen/Core>
@@ -10,29 +14,21 @@
 
 namespace isobar {
 
-/// Jacobian of e = n^T (exp(omega) p + r - d) at omega = r = 0, with p from the robot: (p x n, n). Its rows
-/// 2, 3, 4 are a_k of equation (10), since n^T (omega_z x p) = omega_z . (p x n).
-inline Eigen::Matrix<float, 6, 1> point_to_plane_jacobian(const Pair& pair) {
-  Eigen::Matrix<float, 6, 1> jacobian;
-  jacobian << pair.p_robot.cross(pair.normal), pair.normal;
-  return jacobian;
-}
-
-/// How sure a residual is apart from the scan's and the map's noise.
+/// Noise model of a residual.
 struct PairNoise {
-  /// Variance of the directions that the solver may not move: pairs that feel an error of height or of
-  /// gravity's attitude count less. Twist coordinates; zero in the free directions.
+  /// Variance of the fixed directions, twist coordinates [rad^2, m^2], zero in the free directions: pairs
+  /// that depend on the fixed height or on gravity's attitude get a smaller weight.
   Eigen::Matrix<float, 6, 1> fixed_variance = Eigen::Matrix<float, 6, 1>::Zero();
-  /// One where the solver is free to move, else zero. Residuals count by their translation's share of it.
+  /// 1 in the free directions, 0 in the fixed ones. The scale weights residuals by their normal's free part.
   Eigen::Matrix<float, 6, 1> free = Eigen::Matrix<float, 6, 1>::Ones();
-  float noise_m = 0.02F;  ///< of scan and map, smallest scale of the loss
+  float noise_m = 0.02F;  ///< standard deviation of scan and map together; smallest scale of the loss
 };
 
-/// Robust standard deviation of the residuals: 1.4826 times their weighted median, at least noise_m and at
-/// most `largest_m`.
+/// Robust standard deviation of the residuals [m]: 1.4826 times the weighted median of their absolute values
+/// (MAD), noise_m … `largest_m`.
 float residual_scale_m(std::span<const Pair> pairs, const PairNoise& noise, float largest_m);
 
-/// Sums the pairs with Geman and McClure's weights 1 / (1 + (e/c)^2)^2, c three times the scale.
+/// Normal equations of all pairs with the weights of Geman and McClure, 1 / (1 + (e/c)^2)^2, c = 3 scale_m.
 NormalEquations accumulate(std::span<const Pair> pairs, const PairNoise& noise, float scale_m);
 
 }  // namespace isobar

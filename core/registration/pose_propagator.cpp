@@ -4,16 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/registration/method.hpp"
 #include "core/stamp.hpp"
 
 namespace isobar {
 namespace {
 
-/// Faster than any robot of ours: two poses that differ by more are not one motion.
+// Upper bound of a plausible velocity between two registered poses; more is a relocalisation, not a motion.
 constexpr double kMaxSpeedMS = 15.0;
-/// Scans further apart than this say nothing about the velocity now.
+// Longest time between two scans over which their velocity is constant enough.
 constexpr double kMaxScanGapS = 0.5;
-/// A pose may be this much younger than the last prior that was seen and still take its height.
+// A pose up to this much newer than the last prior uses that prior's height.
 constexpr double kMaxHeightAgeS = 0.1;
 
 bool is_finite(const Prior& prior) {
@@ -26,10 +27,8 @@ bool is_finite(const PoseEstimate& pose) {
          pose.covariance.allFinite();
 }
 
-/// Is the height of this pose the altimeter's?
 bool height_from_altimeter(const PoseEstimate& pose) {
-  return pose.height_source != HeightSource::kNone && pose.effective_method != Method::k6Dof &&
-         pose.effective_method != Method::k4Dof;
+  return traits_of(pose.effective_method, pose.height_source).z_prediction == ZPrediction::kAltimeter;
 }
 
 }  // namespace
@@ -42,6 +41,7 @@ void PosePropagator::add_pose(const PoseEstimate& pose) {
   }
   Anchor next;
   next.pose = pose;
+  next.carried = PoseAnchor(pose.T_map_base, pose.T_map_odom.inverse() * pose.T_map_base);
   next.follows_altimeter = height_from_altimeter(pose) && height_at(pose.stamp_ns, next.height_m);
   const bool needs_velocity = has_prior_ && !last_prior_.velocity_valid && !last_prior_.standing_still;
   if (needs_velocity) {
@@ -63,7 +63,7 @@ bool PosePropagator::propagate(const Prior& prior, Odometry& out) {
   }
   const Eigen::Isometry3d best = best_pose(prior);
   if (has_odometry_) {
-    // Both ends of the motion with the same anchor: a new registration does not show up as motion.
+    // Both ends of the step use the same anchor: a new registration is a correction, not a motion.
     T_odom_base_ = T_odom_base_ * best_pose(last_prior_).inverse(Eigen::Isometry) * best;
     slew_towards(best, seconds_between(last_prior_.stamp_ns, prior.stamp_ns));
   } else {
@@ -84,12 +84,12 @@ bool PosePropagator::propagate(const Prior& prior, Odometry& out) {
 }
 
 Eigen::Isometry3d PosePropagator::best_pose(const Prior& prior) const {
-  Eigen::Isometry3d best = anchor_.pose.T_map_odom * prior.T_odom_base;
+  Eigen::Isometry3d best = anchor_.carried.carried_to(prior.T_odom_base);
   const double ahead_s =
       std::clamp(seconds_between(anchor_.pose.stamp_ns, prior.stamp_ns), 0.0, config_.max_extrapolation_s);
   best.translation() += anchor_.v_map_m_s * ahead_s;
   if (anchor_.follows_altimeter) {
-    // In an elevator the wheels stand still and the height does not.
+    // In an elevator only the altimeter sees the motion.
     best.translation().z() = anchor_.pose.T_map_base.translation().z() + prior.height_m - anchor_.height_m;
   }
   return best;
@@ -161,7 +161,7 @@ void PosePropagator::fill_twist(const Prior& prior, Odometry& out) const {
 }
 
 void PosePropagator::fill_covariance(const Prior& prior, Odometry& out) const {
-  // What the registration knew, and the errors of dead reckoning since, as if they were constant meanwhile.
+  // Covariance of the registration plus dead reckoning's errors since, as constant rates over the age.
   const double age2_s2 = out.age_s * out.age_s;
   out.pose_covariance = anchor_.pose.covariance;
   auto variances = out.pose_covariance.diagonal();

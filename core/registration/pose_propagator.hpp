@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pose of base_link between scans, in the two frames of REP-105: odom, in which it never jumps, and map,
-// in which it is as right as is known.
+// Pose of base_link between scans, in the two frames of REP-105: odom, continuous, and map, the best
+// estimate, which jumps at corrections.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,66 +10,67 @@
 #include <cstdint>
 
 #include "core/estimates.hpp"
+#include "core/pose_carrying.hpp"
 
 namespace isobar {
 
 struct PosePropagatorConfig {
-  /// Time constant with which a correction of the registration enters the odom frame [s]. Two of
-  /// them, 0.2 s, are two scans: odometry follows the registered pose closely, and one bad scan is smoothed.
+  /// Time constant of the low-pass through which corrections of the registration enter the odom frame [s].
+  /// Twice the default, 0.2 s, is two scans: odometry follows the registered pose closely, and one bad scan
+  /// is smoothed.
   double slew_time_s = 0.1;
-  /// Fastest correction of position [m/s]. Controllers see a correction as motion: it stays at walking
-  /// pace.
+  /// Rate limit of corrections of position [m/s]. Controllers see a correction as motion: walking pace.
   double max_slew_m_s = 1.0;
-  /// Fastest correction of orientation [rad/s].
+  /// Rate limit of corrections of orientation [rad/s].
   double max_slew_rad_s = 1.0;
-  /// Without wheels the velocity between the last scans is taken on for this long at most [s].
+  /// Without wheels: how long the velocity between the last scans is extrapolated [s].
   double max_extrapolation_s = 0.5;
 };
 
-/// What navigation needs at one time.
+/// Poses, twist and covariances for navigation at one time.
 struct Odometry {
   std::int64_t stamp_ns = 0;
-  Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();   ///< best estimate; jumps at corrections
+  Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();   ///< jumps at corrections
   Eigen::Isometry3d T_odom_base = Eigen::Isometry3d::Identity();  ///< continuous
   Eigen::Isometry3d T_map_odom = Eigen::Isometry3d::Identity();   ///< T_map_base = T_map_odom * T_odom_base
   Eigen::Vector3d v_base_m_s = Eigen::Vector3d::Zero();           ///< velocity of base_link in base_link
   Eigen::Vector3d w_base_rad_s = Eigen::Vector3d::Zero();         ///< angular rate in base_link
   Matrix6d pose_covariance = Matrix6d::Zero();   ///< of (x, y, z, roll, pitch, yaw), axes of the map
   Matrix6d twist_covariance = Matrix6d::Zero();  ///< of (v, w), axes of base_link
-  double age_s = 0.0;                            ///< time since the scan that it rests on
+  double age_s = 0.0;                            ///< since the last registered pose
 };
 
-/// Carries the last registered pose on with the priors, which come many times between two scans.
+/// Carries the last registered pose on with the priors, which come many times between two scans. z follows
+/// the altimeter or dead reckoning, whichever predicts z in the pose's effective method (traits_of()).
 ///
-/// The odom frame of the result is not that of Prior::T_odom_base, which drifts without bound: it takes in
-/// the registration's corrections, but gradually. Allocates nothing.
+/// The odom frame of the result is not that of Prior::T_odom_base, which drifts without bound: the
+/// registration's corrections enter it, low-passed and rate-limited. Allocates nothing. Not thread-safe.
 class PosePropagator {
  public:
   explicit PosePropagator(const PosePropagatorConfig& config = {});
 
-  /// A new result of the registration. Poses that are not finite, or not younger than the last, are ignored.
+  /// Takes a result of the registration. Ignores poses that are not finite or not newer than the last.
   void add_pose(const PoseEstimate& pose);
 
-  /// The pose at the time of this prior.
-  /// @return false, and `out` is untouched: there has been no pose yet, the prior is not finite or not
-  /// younger
-  ///         than the last one
+  /// Pose at the time of `prior`. False, and `out` unchanged, where no pose has come yet or the prior is not
+  /// finite or not newer than the last.
   bool propagate(const Prior& prior, Odometry& out);
 
  private:
-  /// The registered pose that priors carry on, with all that decides how, so that between two registrations
-  /// the motion has no break.
+  /// The registered pose that priors carry on, and how. Fixed between two registrations: the motion between
+  /// them is continuous.
   struct Anchor {
     PoseEstimate pose;
-    double height_m = 0.0;  ///< altimeter at the pose's time
+    PoseAnchor carried{Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity()};
+    double height_m = 0.0;  // altimeter at the pose's time
     bool follows_altimeter = false;
-    Eigen::Vector3d v_map_m_s = Eigen::Vector3d::Zero();  ///< taken on where there are no wheels
+    Eigen::Vector3d v_map_m_s = Eigen::Vector3d::Zero();  // extrapolated without wheels
   };
   struct Height {
     std::int64_t stamp_ns = 0;
     double height_m = 0.0;
   };
-  /// Priors of the last 1.28 s at 400 Hz; a registration that takes longer has lost its scans.
+  // Heights of the last 1.28 s at 400 Hz: more than the delay of any registered pose.
   static constexpr std::size_t kHeights = 512;
 
   [[nodiscard]] Eigen::Isometry3d best_pose(const Prior& prior) const;

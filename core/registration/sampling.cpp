@@ -7,6 +7,7 @@
 namespace isobar {
 
 namespace {
+// Bounds of the adaptive voxel. Finer than 5 cm resolves the lidar's noise, coarser than 3 m misses objects.
 constexpr float kFinestVoxelM = 0.05F;
 constexpr float kCoarsestVoxelM = 3.0F;
 }  // namespace
@@ -41,8 +42,8 @@ void Sampler::add(std::span<const ScanPoint> points, RegisteredScan& out) {
 }
 
 void Sampler::add_part(std::span<const ScanPoint> points, RegisteredScan& out) {
-  // Near the sensor one laser hits a voxel many times in a row: most points end here, before the table, and
-  // without a jump, since none could foresee which: && would be one.
+  // Near the sensor one laser hits a voxel many times in a row: this rejects most points before the hash
+  // table. Branch-free: the outcome is unpredictable and && would mispredict.
   std::size_t arrivals = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::uint64_t voxel = map_grid_.voxel_of(points[i]);
@@ -64,23 +65,16 @@ void Sampler::add_part(std::span<const ScanPoint> points, RegisteredScan& out) {
 }
 
 void Sampler::finish() {
-  // Evenly through the candidates, which stand in order of azimuth.
+  // Every n-th candidate: they are in order of azimuth.
   sample_.clear();
   const std::size_t wanted = std::min(sample_points_, candidates_.size());
   for (std::size_t i = 0; i < wanted; ++i) {
     sample_.push_back(candidates_[i * candidates_.size() / wanted]);
   }
-  // Points lie on surfaces: their number falls with the square of the voxel's edge.
+  // Edge for the next scan. Points lie on surfaces, so their number is inversely proportional to its square.
   const float ratio = static_cast<float>(candidates_.size() + 1) / static_cast<float>(sample_points_);
   sample_voxel_m_ = std::clamp(sample_voxel_m_ * std::clamp(std::sqrt(ratio), 0.7F, 1.4F), finest_voxel_m_,
                                kCoarsestVoxelM);
-}
-
-void Sampler::thin(RegisteredScan& out) {
-  const std::span<const ScanPoint> all(out.points, out.point_count);
-  start(out);
-  add(all, out);
-  finish();
 }
 
 }  // namespace isobar

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Density control: which points of a scan go to the map and which take part in the ICP.
+// Downsampling: which points of a scan go to the map and which take part in the ICP.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,33 +14,30 @@
 
 namespace isobar {
 
-/// Chooses points well spread in space, near and far. A scan may come whole, to thin(), or in parts:
+/// Voxel-grid downsampling, even in space near and far. A scan comes in parts:
 ///
 ///     sampler.start(out);
 ///     for (each part) sampler.add(part, out);
 ///     sampler.finish();
 class Sampler {
  public:
-  /// `map_voxel_m`: at most one point of the map a voxel; `sample_points`: at most so many take part.
+  /// `map_voxel_m`: edge of the voxels, one point each for the map. `sample_points`: upper bound of sample().
   Sampler(double map_voxel_m, std::size_t sample_points);
 
-  /// Begins a scan: out.point_count becomes 0.
+  /// Begins a scan: sets out.point_count to 0.
   void start(RegisteredScan& out);
-  /// Appends to out.points the first of `points` (p_base) in each voxel that is empty yet. `points` may lie
+  /// Appends to out.points the first of `points` (p_base) in each voxel that is still empty. `points` may lie
   /// in out.points itself. All parts of a scan together: at most RegisteredScan::kMaxPoints.
   void add(std::span<const ScanPoint> points, RegisteredScan& out);
-  /// Picks the sample from the points that were kept.
+  /// Draws the sample from the points that were kept.
   void finish();
-
-  /// All of it, in place on out.points.
-  void thin(RegisteredScan& out);
 
   /// The sample of the last scan, p_base.
   [[nodiscard]] std::span<const Eigen::Vector3f> sample() const { return sample_; }
 
  private:
   static constexpr std::size_t kPart = 512;
-  /// A point in another voxel than the one before it on its ring.
+  /// A point whose voxel differs from that of the point before it on its ring.
   struct Arrival {
     std::uint64_t voxel;
     std::size_t index;  // in its part
@@ -51,7 +48,7 @@ class Sampler {
   VoxelGrid map_grid_;
   std::size_t sample_points_;
   float finest_voxel_m_;
-  float sample_voxel_m_;  // follows the scene, so that the sample's size stays near sample_points_
+  float sample_voxel_m_;  // adapts to the scene, so that the sample's size stays near sample_points_
   VoxelGrid sample_grid_;
   VoxelFilter map_filter_;
   VoxelFilter sample_filter_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From a scan as it was measured to the points that are worth registering, in one pass over it.
+// Deskewing and downsampling of a scan in one pass.
 #pragma once
 
 #include "core/registration/deskew.hpp"
@@ -7,8 +7,8 @@
 
 namespace isobar {
 
-/// Deskewer::deskew() and then Sampler::thin(), to the bit, but in parts that stay in the processor's first
-/// cache: what is not kept is never written to `out`.
+/// Deskews `scan` and downsamples it into `out` and sampler.sample(). Works in parts of 8 kB that stay in the
+/// L1 cache: dropped points are never written to `out`. The result is that of one single part, bit for bit.
 void prepare_scan(const Scan& scan, const PriorHistory& history, const ScanMotion& motion, Deskewer& deskewer,
                   Sampler& sampler, RegisteredScan& out);
 

@@ -13,9 +13,10 @@ namespace {
 using MatrixK = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
 using VectorK = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
 
+// Lower bound of the lever: points at the robot's position would divide by zero.
 constexpr double kShortestLeverM = 0.1;
 
-// Length that makes rotations comparable with translations: the points' root mean square distance.
+// Length that makes rotations comparable with translations: root mean square distance of the points.
 double lever_m(const NormalEquations& equations) {
   return std::max(std::sqrt(equations.squared_lever_sum / equations.weight_sum), kShortestLeverM);
 }
@@ -25,7 +26,7 @@ struct Information {
   VectorK gradient;
 };
 
-// Information of the scan in the free directions, less what errors of the normals fake there.
+// Information of the scan in the free directions, minus the spurious part from errors of the normals.
 Information true_information(const NormalEquations& equations, const Basis& basis,
                              const SolverWeights& weights, Step& step) {
   const Eigen::Index k = basis.cols();
@@ -36,7 +37,7 @@ Information true_information(const NormalEquations& equations, const Basis& basi
   }
   Vector6d unit = Vector6d::Ones();
   unit.head<3>().setConstant(1.0 / lever_m(equations));
-  // Columns scaled to metres at the lever's end.
+  // Basis scaled to metres at the lever's end.
   const Basis scaled = unit.asDiagonal() * basis;
   const MatrixK per_pair = scaled.transpose() * equations.hessian * scaled / equations.weight_sum;
   const VectorK gradient = scaled.transpose() * equations.gradient;
@@ -49,7 +50,7 @@ Information true_information(const NormalEquations& equations, const Basis& basi
   const MatrixK& V = eigen.eigenvectors();
   const MatrixK hessian =
       V * (eigen.eigenvalues().cwiseProduct(kept) * equations.weight_sum).asDiagonal() * V.transpose();
-  // Back to the basis' own units: basis = unit^-1 scaled, so that d_scaled = (B^T unit^-1 B) d.
+  // Back to the units of the basis: basis = unit^-1 scaled, hence d_scaled = (B^T unit^-1 B) d.
   const MatrixK to_scaled = basis.transpose() * unit.cwiseInverse().asDiagonal() * basis;
   information.hessian = to_scaled.transpose() * hessian * to_scaled;
   information.gradient = to_scaled.transpose() * (V * kept.asDiagonal() * V.transpose() * gradient);

@@ -8,9 +8,9 @@ namespace isobar {
 
 namespace {
 
-constexpr std::size_t kFewestSlots = 1024;
+constexpr std::size_t kFewestSlots = 1024;  // 4 kB
 
-/// Spreads neighbouring voxels: multiplication by the golden ratio (Knuth, volume 3, 6.4).
+// Fibonacci hashing: multiplication by the golden ratio (Knuth, volume 3, 6.4).
 std::uint64_t hash_of(std::uint64_t voxel) {
   const std::uint64_t product = voxel * 0x9E3779B97F4A7C15ULL;
   return product ^ product >> 32U;
@@ -29,7 +29,7 @@ VoxelFilter::VoxelFilter(std::size_t max_voxels)
 }
 
 void VoxelFilter::start() {
-  // As large as the last pass needed; one that needs more grows on the way.
+  // The last pass's size; grows on demand.
   const std::size_t slots = std::max(std::bit_ceil(2 * voxels_.size()), kFewestSlots);
   voxels_.clear();
   resize(std::min(slots, table_.size()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One point a voxel: which voxel a point lies in, and whether it is the first there.
+// Voxel grid and hash set of voxels: the first point of each voxel is kept.
 #pragma once
 
 #include <cmath>
@@ -14,10 +14,10 @@ namespace isobar {
 /// A grid of cubes that reaches 500 m from the origin.
 class VoxelGrid {
  public:
-  /// What voxel_of() says of points beyond the grid's reach or not finite.
+  /// Result of voxel_of() for points beyond the grid's reach or not finite.
   static constexpr std::uint64_t kNowhere = ~std::uint64_t{0};
 
-  /// `edge_m`: of a voxel, > 0. Finer than 3 cm is taken as 3 cm.
+  /// `edge_m`: edge of a voxel, > 0; at least 3 cm are used.
   explicit VoxelGrid(float edge_m);
 
   /// Number of the voxel that holds the point; equal for two points if and only if they share one.
@@ -30,7 +30,7 @@ class VoxelGrid {
   static constexpr float kReachM = 500.0F;
   static constexpr unsigned kBitsPerAxis = 15;
 
-  // By way of 32 bits with a sign, which is one instruction.
+  // Through signed 32 bits: one instruction (cvttss2si).
   [[nodiscard]] std::uint64_t cell(float along_m) const {
     return static_cast<std::uint64_t>(static_cast<std::int32_t>((along_m + kReachM) * voxels_per_m_));
   }
@@ -38,28 +38,28 @@ class VoxelGrid {
   float voxels_per_m_;
 };
 
-/// A set of voxels. Memory of fixed size, of which a pass touches no more than its voxels need: the table of
-/// a usual scan stays in the processor's second cache.
+/// Hash set of voxels. Memory of fixed size; a pass uses a table of the size that its voxels need, so that
+/// the table of a usual scan stays in the L2 cache.
 class VoxelFilter {
  public:
-  /// `max_voxels`: in one pass, at most 131 000.
+  /// `max_voxels`: capacity, at most 131 000.
   explicit VoxelFilter(std::size_t max_voxels);
 
-  /// Starts a pass with an empty set.
+  /// Empties the set.
   void start();
-  /// True if `voxel` is new since start(). Once max_voxels are there, none is.
+  /// Inserts `voxel`. True if it is new since start(); false always once the set is full.
   bool first(std::uint64_t voxel);
 
  private:
-  // An entry of the table: the place in voxels_ plus one, then bits of the hash that tell most other voxels
-  // apart without a look at voxels_. Zero: empty.
+  // Entry of the table: index in voxels_ plus one, then kTagBits bits of the hash, which reject most other
+  // voxels without reading voxels_. Zero: empty slot.
   static constexpr unsigned kTagBits = 15;
 
   void resize(std::size_t slots);
   void insert(std::uint64_t voxel, std::size_t place);
 
   std::vector<std::uint64_t> voxels_;  // in order of arrival
-  std::vector<std::uint32_t> table_;   // the first slot_mask_ + 1 are in use, at most half of them filled
+  std::vector<std::uint32_t> table_;   // slots 0 … slot_mask_ are in use, at most half of them filled
   std::size_t max_voxels_;
   std::size_t slot_mask_ = 0;
 };

@@ -42,7 +42,9 @@ std::span<const ScanPoint> StageProbe::deskew(const Scan& scan, Prior& end) {
   ScanMotion motion;
   if (!history_.at(scan.end_stamp_ns, motion.end)) motion.end = history_.newest();
   motion.from_wheels = motion.end.velocity_valid;
-  deskewer_.deskew(scan, history_, motion, *scratch_);
+  deskewer_.start(scan, history_, motion);
+  const std::uint32_t count = std::min(scan.point_count, Scan::kMaxPoints);
+  scratch_->point_count = static_cast<std::uint32_t>(deskewer_.move({scan.points, count}, scratch_->points));
   end = motion.end;
   return {scratch_->points, scratch_->point_count};
 }
@@ -55,7 +57,10 @@ StageCosts StageProbe::split(const Scan& scan, const MapSnapshot& map, const Reg
   deskew(scan, end);
   costs.deskew_ms = deskewing.elapsed_ms();
   const CpuTimer sampling;
-  sampler_.thin(*scratch_);
+  const std::span<const ScanPoint> deskewed(scratch_->points, scratch_->point_count);
+  sampler_.start(*scratch_);
+  sampler_.add(deskewed, *scratch_);
+  sampler_.finish();
   costs.sample_ms = sampling.elapsed_ms();
 
   const double match_ms = time_match(map, registered.pose);

@@ -4,8 +4,7 @@
 #include <algorithm>
 
 #include "core/altitude/hypsometry.hpp"
-#include "core/prior/rotation.hpp"
-#include "tests/core/altitude/isothermal_air.hpp"
+#include "core/so3.hpp"
 
 namespace isobar::test {
 namespace {
@@ -33,7 +32,7 @@ struct Generator {
     accel_bias = e.accel_bias * vector();
     Eigen::Vector3d tilt = e.misalignment * vector();
     tilt.z() = 0.0;
-    mount_error = rotation_of(tilt);
+    mount_error = exp_so3(tilt);
     wheel_scale = 1.0 + e.wheel_scale * draw();
     warm_up = e.warm_up * draw();
     offset_pa = 50.0 * draw();
@@ -61,7 +60,7 @@ struct Generator {
     const Pose pose = robot.motion(t);
     const Eigen::Vector3d a = (place(t + kStep) - 2.0 * place(t) + place(t - kStep)) / (kStep * kStep);
     const Eigen::Vector3d rate =
-        angle_of(robot.motion(t - kStep).q.conjugate() * robot.motion(t + kStep).q) / (2.0 * kStep);
+        log_so3(robot.motion(t - kStep).q.conjugate() * robot.motion(t + kStep).q) / (2.0 * kStep);
     const Eigen::Quaterniond to_imu = mount_error * Eigen::Quaterniond(robot.T_base_imu.linear()).conjugate();
     const double speed =
         (robot.motion(t + kStep).p - robot.motion(t - kStep).p).head<2>().norm() / (2.0 * kStep);
@@ -76,14 +75,14 @@ struct Generator {
 
   WheelSample wheel(double t) {
     const SensorErrors& e = robot.errors;
-    // The cabin of a lift carries the robot without turning its wheels.
+    // A lift moves the robot without turning its wheels.
     const Pose pose = robot.motion(t);
     const Eigen::Vector3d v = (robot.motion(t + kStep).p - robot.motion(t - kStep).p) / (2.0 * kStep);
     const double horizontal = v.head<2>().norm();
     const double pitch = pitch_of(pose.q.toRotationMatrix());
     const double slip = std::abs(pitch) > 0.17 ? 1.0 + e.stairs_slip : 1.0;
     const Eigen::Vector3d rate =
-        angle_of(robot.motion(t - kStep).q.conjugate() * robot.motion(t + kStep).q) / (2.0 * kStep);
+        log_so3(robot.motion(t - kStep).q.conjugate() * robot.motion(t + kStep).q) / (2.0 * kStep);
     WheelSample sample;
     sample.stamp_ns = to_ns(t);
     const bool turning = horizontal > 1e-3;

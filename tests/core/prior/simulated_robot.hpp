@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A robot on paper: exact motion in closed form, and sensors with errors of realistic size. For tests of the
-// prior only; knows nothing of the estimator.
+// Simulated robot for tests of the prior: exact motion in closed form, sensors with errors of realistic size.
+// Independent of the estimator.
 #pragma once
 
 #include <Eigen/Core>
@@ -69,7 +69,7 @@ struct SensorErrors {
   double misalignment = 0.003;                    ///< rad, 1 sigma of roll and pitch of the IMU's mount
   double wheel_scale = 0.02;                      ///< 1 sigma
   double wheel_noise = 0.01;                      ///< m/s a sample
-  double stairs_slip = 0.05;                      ///< share of the speed lost where pitch is above 10 deg
+  double stairs_slip = 0.05;                      ///< share of the speed lost at pitch above 10 deg
   double pressure_noise = 0.35;                   ///< Pa a sample
   double turbulence = 0.15;                       ///< Pa rms, each sensor on its own
   double turbulence_time_s = 10.0;
@@ -98,7 +98,7 @@ struct SimulatedRobot {
   std::function<bool(const Pose&)> wheels_turn;  ///< unused
 };
 
-/// Estimate beside truth at one IMU sample.
+/// Estimate and truth at one IMU sample.
 struct Comparison {
   double t = 0.0;
   Pose truth;
@@ -118,7 +118,7 @@ inline PriorConfig config_for(const SimulatedRobot& robot) {
   return config;
 }
 
-/// Runs the estimator on the robot's samples, in time order; `every` keeps one comparison in so many.
+/// Runs the estimator on the robot's samples, in time order; keeps every `every`-th comparison.
 std::vector<Comparison> run(const SimulatedRobot& robot, const PriorConfig& config, unsigned seed,
                             PriorCounters* counters = nullptr, int every = 1);
 

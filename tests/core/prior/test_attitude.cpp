@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "core/prior/attitude_filter.hpp"
-#include "core/prior/rotation.hpp"
+#include "core/so3.hpp"
 #include "tests/core/prior/simulated_robot.hpp"
 
 namespace isobar::test::test_attitude {
@@ -19,7 +19,7 @@ SensorErrors no_errors() {
   return e;
 }
 
-/// What no filter can see: the mount's and the accelerometer's own tilt.
+/// Without the unobservable errors: tilt of the mount and accelerometer bias.
 SensorErrors without_tilt() {
   SensorErrors e;
   e.misalignment = e.accel_bias = 0.0;
@@ -39,18 +39,11 @@ SimulatedRobot stairs_robot() {
 
 }  // namespace
 
-TEST_CASE("exponential and logarithm of rotations are inverse") {
-  for (const Eigen::Vector3d& angle : {Eigen::Vector3d(0.0, 0.0, 0.0), Eigen::Vector3d(1e-11, 0.0, 2e-11),
-                                       Eigen::Vector3d(0.3, -2.0, 1.0), Eigen::Vector3d(0.0, 3.1, 0.0)}) {
-    CHECK((angle_of(rotation_of(angle)) - angle).norm() < 1e-12);
-  }
-}
-
-TEST_CASE("with perfect sensors roll and pitch are exact, through acceleration, turns and stairs") {
+TEST_CASE("with perfect sensors roll and pitch are exact under acceleration, turns and stairs") {
   SimulatedRobot robot = stairs_robot();
   robot.errors = no_errors();
   const auto comparisons = run(robot, config_for(robot), 1);
-  // 0.02 deg: wheel speeds are compared up to one wheel period (20 ms) late.
+  // 0.02 deg: wheel speeds are used up to one wheel period (20 ms) late.
   CHECK(figures_of(comparisons).roll_pitch_rms_rad < 0.02 * kDeg);
 }
 
@@ -66,7 +59,7 @@ TEST_CASE("roll and pitch of a shaking tracked robot are good to 0.2 deg, on sta
   CHECK(sum / 3.0 < 0.15 * kDeg);
 }
 
-TEST_CASE("IMU rates from 50 to 800 Hz do as well, with a rotated IMU off the centre") {
+TEST_CASE("roll and pitch are as good with IMU rates of 50 and 800 Hz and a rotated IMU off the centre") {
   for (const double hz : {50.0, 800.0}) {
     SimulatedRobot robot = stairs_robot();
     robot.errors = without_tilt();
@@ -94,14 +87,14 @@ TEST_CASE("a pendulum without wheels keeps its attitude") {
     return pose;
   };
   const auto comparisons = run(robot, config_for(robot), 2, nullptr, 4);
-  // From the 30th second: the gyro bias is only seen through gravity.
+  // From the 30th second on: the gyro bias is only observable through gravity.
   CHECK(figures_of(comparisons, 30.0).roll_pitch_rms_rad < 0.2 * kDeg);
   CHECK_FALSE(comparisons.back().prior.velocity_valid);
   CHECK_FALSE(comparisons.back().prior.standing_still);
   CHECK(comparisons.back().prior.T_odom_base.translation().norm() == 0.0);
 }
 
-TEST_CASE("the gyro bias is learnt while standing: yaw of a standing robot does not drift") {
+TEST_CASE("the gyro bias is estimated at standstill: yaw of a standing robot does not drift") {
   SimulatedRobot robot;
   robot.errors.gyro_bias = 0.0087;  // 0.5 deg/s
   robot.motion = [](double) { return Pose{}; };
@@ -116,10 +109,9 @@ TEST_CASE("the gyro bias is learnt while standing: yaw of a standing robot does 
   CHECK(std::abs(yaw(29.9) - yaw(9.9)) < 0.3 * kDeg);
 }
 
-TEST_CASE(
-    "yaw never changes faster than the gyro says, also when a standstill shows its bias after minutes") {
+TEST_CASE("yaw is the gyro's integral, also when a standstill reveals its bias after minutes") {
   SimulatedRobot robot;
-  robot.errors.gyro_bias = 0.0087;  // 0.5 deg/s, not yet known: the robot drives from the first moment on
+  robot.errors.gyro_bias = 0.0087;  // 0.5 deg/s, unknown: the robot drives from the start
   Drive drive;
   drive.start_s = -20.0;
   drive.radius_m = 5.0;
@@ -132,16 +124,16 @@ TEST_CASE(
   for (std::size_t i = 200; i < comparisons.size(); ++i) {
     const Eigen::Quaterniond before(comparisons[i - 1].prior.T_odom_base.linear());
     const Eigen::Quaterniond now(comparisons[i].prior.T_odom_base.linear());
-    const double turned = angle_of(now * before.conjugate()).z();
+    const double turned = log_so3(now * before.conjugate()).z();
     const double measured = (now * comparisons[i].prior.w_base_rad_s).z() / 200.0;
     largest_rad = std::max(largest_rad, std::abs(turned - measured));
   }
-  // Corrections of roll and pitch turn the axes by some hundredths of a degree, of which yaw gets the tilt's
-  // share.
+  // Corrections of roll and pitch turn the axes by some hundredths of a degree; the tilt couples a part into
+  // yaw.
   CHECK(largest_rad < 0.005 * kDeg);
 }
 
-TEST_CASE("a start while driving ends up as good") {
+TEST_CASE("a start while driving reaches the same accuracy") {
   SimulatedRobot robot;
   Drive drive;
   drive.start_s = -20.0;
@@ -152,7 +144,7 @@ TEST_CASE("a start while driving ends up as good") {
   CHECK(figures_of(run(robot, config_for(robot), 6, nullptr, 4), 30.0).roll_pitch_rms_rad < 0.2 * kDeg);
 }
 
-TEST_CASE("the IMU's own attitude, where configured, takes the place of gravity") {
+TEST_CASE("the IMU's own attitude, where configured, replaces the accelerometer") {
   AttitudeConfig config;
   config.use_imu_attitude = true;
   PriorConfig prior_config;
@@ -173,7 +165,7 @@ TEST_CASE("the IMU's own attitude, where configured, takes the place of gravity"
   CHECK(std::abs(pitch_of(prior.T_odom_base.linear())) < 0.6 * kDeg);
 }
 
-TEST_CASE("updates are consistent: the error stays within the filter's own variance") {
+TEST_CASE("the error of pitch stays within three sigmas of the filter") {
   AttitudeConfig config;
   AttitudeFilter filter(config, Eigen::Vector3d::Zero());
   filter.start(Eigen::Vector3d(0.1, 0.0, kGravity), 0.7, 0.02);

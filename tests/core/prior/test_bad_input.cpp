@@ -108,7 +108,7 @@ TEST_CASE("pressure spikes of thousands of pascals do not move the height") {
   CHECK(bench.estimator.counters().pressure_bad_value == 20);
 }
 
-TEST_CASE("a barometer stuck at one value becomes a held one") {
+TEST_CASE("a barometer stuck at one value is lost and its height held") {
   Bench bench;
   bench.stand(5.0);
   CHECK(bench.prior.height_source == HeightSource::kDifferential);
@@ -124,7 +124,7 @@ TEST_CASE("a barometer stuck at one value becomes a held one") {
   CHECK(bench.prior.height_source == HeightSource::kDifferential);
 }
 
-TEST_CASE("one stamp from the far future is refused, a clock that really jumped is followed") {
+TEST_CASE("one stamp from the far future is refused, a confirmed jump of the clock is followed") {
   for (const std::int64_t jump_ns : {3'600'000'000'000LL, -3'600'000'000'000LL}) {
     Bench bench;
     bench.stand(5.0);
@@ -160,7 +160,7 @@ TEST_CASE("shocks, saturation and free fall leave the estimate finite and it rec
   CHECK(std::abs(bench.prior.height_m) < 0.3);
 }
 
-TEST_CASE("random garbage never gives anything that is not finite") {
+TEST_CASE("random garbage never gives a prior that is not finite") {
   std::mt19937_64 random(77);
   PriorEstimator estimator{PriorConfig{}};
   const auto any = [&]() {
@@ -196,8 +196,7 @@ TEST_CASE("random garbage never gives anything that is not finite") {
   CHECK(estimator.counters().imu_accepted > 1000);
 }
 
-TEST_CASE(
-    "An accelerometer in g is no gravity: the attitude waits, the refusals are counted, metres are taken") {
+TEST_CASE("an accelerometer in g is refused and counted, and the attitude waits for one in m/s^2") {
   Bench bench;
   for (int i = 0; i < 400; ++i) {  // 2 s
     bench.now_ns += 5'000'000;

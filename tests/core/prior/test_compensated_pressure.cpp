@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Calibrations of the barometers, on their way into the height.
+// The barometers' calibrations, from PriorConfig to the height.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -28,8 +28,8 @@ CompensationConfig warm_sensor() {
 }
 
 struct Course {
-  double from_c = 20.0;  ///< of the sensor, over the minute …
-  double to_c = 40.0;    ///< … in which nothing else changes
+  double from_c = 20.0;  ///< temperature of the sensor at the start of the minute
+  double to_c = 40.0;    ///< at its end; nothing else changes
   bool base_warms = false;
   bool has_thermometer = true;
   std::uint8_t base_station = 0;
@@ -41,7 +41,7 @@ double height_after(const PriorConfig& config, const Course& course, PriorCounte
   Prior prior;
   for (int i = 0; i < 12'000; ++i) {
     const std::int64_t stamp_ns = i * 5'000'000LL;
-    const double noise_pa = 0.2 * ((i / 6) % 5 - 2);  // no digit that stands still
+    const double noise_pa = 0.2 * ((i / 6) % 5 - 2);  // so that the value never repeats
     const double temperature_c = course.from_c + (course.to_c - course.from_c) * i / 12'000.0;
     const double error_pa = 1.9 * (temperature_c - 25.0);
     const double shown_c = course.has_thermometer ? temperature_c : std::numeric_limits<double>::quiet_NaN();
@@ -70,18 +70,18 @@ double height_after(const PriorConfig& config, const Course& course, PriorCounte
 
 }  // namespace
 
-TEST_CASE("a sensor that warms up by 20 K moves the height by metres, and not at all once it is calibrated") {
+TEST_CASE("a sensor that warms up by 20 K moves the height by metres, a calibrated one does not") {
   PriorConfig config;
   PriorCounters counters;
   CHECK(std::abs(height_after(config, {}, counters)) >
-        1.0);  // 38 Pa are 3.2 m; some is taken for a moving ground
+        1.0);  // 38 Pa are 3.2 m; part of it counts as moving ground
   config.compensation = warm_sensor();
   CHECK(std::abs(height_after(config, {}, counters)) < 0.02);
   CHECK(counters.pressure_outside_calibration == 0);
   CHECK(counters.pressure_without_temperature == 0);
 }
 
-TEST_CASE("the base station's calibration is its own, and the first base station's only") {
+TEST_CASE("the base station's calibration applies to the first base station only") {
   PriorConfig config;
   PriorCounters counters;
   const Course course{.base_warms = true};
@@ -92,12 +92,12 @@ TEST_CASE("the base station's calibration is its own, and the first base station
   CHECK(counters.base_outside_calibration == 0);
 }
 
-TEST_CASE("samples that the calibration does not know are used and counted") {
+TEST_CASE("samples outside of the calibration are used and counted") {
   PriorConfig config;
   config.compensation = warm_sensor();
   PriorCounters counters;
   height_after(config, {.from_c = 30.0, .to_c = 50.0}, counters);
-  // Half of the minute at 33 samples a second lies above 40 degC.
+  // Half of the minute, at 33 samples a second, is above 40 degC.
   CHECK(counters.pressure_outside_calibration == doctest::Approx(1'000).epsilon(0.01));
   CHECK(counters.pressure_accepted > 1'900);
   height_after(config, {.has_thermometer = false}, counters);

@@ -13,19 +13,19 @@ std::int64_t at(double t) { return static_cast<std::int64_t>(t * 1e9); }
 WheelSample wheel(double t, double v) { return {at(t), v, 0.0, 0.0}; }
 }  // namespace
 
-TEST_CASE("what was rolled is the integral of the speed, also where samples come late") {
+TEST_CASE("the displacement is the integral of the speed, also where samples come late") {
   WheelOdometer odometer{DeadReckoningConfig{}};
   double sum = 0.0;
   for (int i = 0; i <= 500; ++i) {
     const double t = i * 0.02;
     odometer.add(wheel(t, 0.5 * t));
-    // Asked 15 ms later than the sample: extrapolated, and made good at the next call.
+    // Queried 15 ms after the sample: extrapolated, and corrected at the next call.
     sum += odometer.take_displacement(at(t + 0.015)).x();
   }
   CHECK(sum == doctest::Approx(0.25 * 10.0 * 10.0 + 5.0 * 0.015).epsilon(1e-6));
 }
 
-TEST_CASE("silent wheels are lost, and nothing is rolled in the gap") {
+TEST_CASE("silent wheels are lost, and the gap adds no displacement") {
   WheelOdometer odometer{DeadReckoningConfig{}};
   odometer.add(wheel(0.0, 1.0));
   odometer.add(wheel(0.1, 1.0));
@@ -38,7 +38,7 @@ TEST_CASE("silent wheels are lost, and nothing is rolled in the gap") {
   CHECK(odometer.take_displacement(at(5.1)).x() == doctest::Approx(0.1));
 }
 
-TEST_CASE("absurd speeds and jumps are refused, insisting ones are believed") {
+TEST_CASE("absurd speeds are refused, and jumps until the fifth consecutive sample confirms them") {
   WheelOdometer odometer{DeadReckoningConfig{}};
   CHECK(odometer.add(wheel(0.0, std::numeric_limits<double>::quiet_NaN())) == WheelStatus::kBadValue);
   CHECK(odometer.add(wheel(0.0, 0.5)) == WheelStatus::kAccepted);
@@ -68,8 +68,8 @@ TEST_CASE("dead reckoning follows stairs: path length and height from wheels and
   const auto comparisons = run(robot, config_for(robot), 7);
   const auto& end = comparisons.back();
   const Eigen::Vector3d error = end.prior.T_odom_base.translation() - end.truth.p;
-  // 21 m: yaw drifts by 0.3 deg, half of which counts (6 cm); climbing, attitude errors of 0.1 deg make 1 to
-  // 2 cm.
+  // 21 m: a yaw drift of 0.3 deg, of which half counts, is 6 cm; attitude errors of 0.1 deg on the climb are
+  // 1 to 2 cm.
   CHECK(error.head<2>().norm() < 0.15);
   CHECK(std::abs(error.z()) < 0.06);
   CHECK(end.truth.p.z() < -3.0);

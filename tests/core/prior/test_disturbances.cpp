@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Air and barometers that do what no height does.
+// Disturbances of the pressure without motion: faults, ventilation, wind, weather.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -10,7 +10,7 @@ namespace isobar::test::test_disturbances {
 
 namespace {
 
-/// A disturbance of 15 s: `since_s` after it began [Pa].
+/// Disturbance [Pa] of 15 s, as a function of the time since its start.
 using Shape = std::function<double(double since_s, double size_pa)>;
 
 struct NamedShape {
@@ -46,7 +46,7 @@ std::function<double(double)> twice(const Shape& shape, double first_s, double s
   };
 }
 
-/// Largest height error that the same robot does not have in undisturbed air.
+/// Largest height error beyond that of the same robot in undisturbed air.
 double added_error_m(SimulatedRobot robot, const std::function<double(double)>& extra_pa, unsigned seed) {
   const PriorConfig config = config_for(robot);
   const auto clean = run(robot, config, seed, nullptr, 4);
@@ -118,13 +118,13 @@ TEST_CASE(
     "two glitches of 15 s and thousands of metres do not move the height in a lift that does not shake") {
   for (const NamedShape& shape : shapes()) {
     CAPTURE(std::string(shape.name));
-    // One begins in the ride, one before it.
+    // One begins during the ride, one before it.
     CHECK(added_error_m(lift_robot(), twice(shape.pressure, 24.0, 50.0), 4) < 0.3);
     CHECK(added_error_m(lift_robot(), twice(shape.pressure, 17.0, 50.0), 5) < 0.3);
   }
 }
 
-TEST_CASE("while a glitch lasts the variance grows, and afterwards the height is as sure as before") {
+TEST_CASE("during a glitch the variance grows, and afterwards it is as small as before") {
   SimulatedRobot robot = flat_robot(70.0);
   robot.extra_robot_pa = twice(shapes().back().pressure, 30.0, 1e9);
   const auto comparisons = run(robot, config_for(robot), 6, nullptr, 2);
@@ -138,9 +138,8 @@ TEST_CASE("while a glitch lasts the variance grows, and afterwards the height is
   CHECK(variance_at(60.0) < variance_at(44.5));
 }
 
-TEST_CASE(
-    "a new ventilation zone that is entered over two seconds is not taken for height, nor is leaving it") {
-  // 12 Pa, 1 m: 0.5 m/s at most, which a lift could do but not unfelt.
+TEST_CASE("entering another ventilation zone over two seconds, and leaving it, does not move the height") {
+  // 12 Pa, 1 m: 0.5 m/s at most; a lift could, but its acceleration would be measured.
   const auto zone = [](double t) {
     const auto blend = [](double u) { return std::clamp(u / 2.0, 0.0, 1.0); };
     return -12.0 * (blend(t - 20.0) - blend(t - 50.0));
@@ -169,7 +168,7 @@ TEST_CASE("a base station lost for 120 s: the variance covers the weather, and i
     robot.base_on = [](double t) { return t < 40.0 || t > 160.0; };
     const auto lost = run(robot, config, seed, nullptr, 10);
     REQUIRE(lost.size() == clean.size());
-    for (std::size_t i = 10; i < lost.size(); ++i) {  // ten apart: a second
+    for (std::size_t i = 10; i < lost.size(); ++i) {  // ten comparisons are a second
       const Prior& prior = lost[i].prior;
       if (lost[i].t > 40.0 && lost[i].t < 160.0) {
         ++all;
@@ -185,7 +184,7 @@ TEST_CASE("a base station lost for 120 s: the variance covers the weather, and i
   CHECK(inside > 0.95 * all);
 }
 
-TEST_CASE("a fault of the barometer is said within two seconds, and the poses name the height's source") {
+TEST_CASE("a fault of the barometer is reported within two seconds, with the height's source") {
   SimulatedRobot robot = flat_robot(26.0);
   robot.extra_robot_pa = twice(shapes().back().pressure, 20.0, 1e9);
   PriorCounters counters;

@@ -35,16 +35,16 @@ TEST_CASE("on flat ground the height error over 5 m of travel has a median below
     const Figures figures = figures_of(run(robot, config_for(robot), seed, nullptr, 8));
     sum += figures.z_rpe_median;
     nees += figures.nees;
-    // Warm-up of 1 Pa (8 cm, 1 sigma) that nothing shows, a third of it within two minutes.
+    // Unobservable warm-up of 1 Pa (8 cm, 1 sigma), a third of it within two minutes.
     CHECK(figures.height_max_m < 0.15);
   }
   CHECK(sum / seeds < 0.003);
-  // Honest: neither far too sure nor far too modest.
+  // Consistent: variance neither far too small nor far too large.
   CHECK(nees / seeds < 3.0);
   CHECK(nees / seeds > 0.1);
 }
 
-TEST_CASE("stairs are followed though the tracks slip") {
+TEST_CASE("stairs are followed with slipping tracks") {
   SimulatedRobot robot;
   Drive drive;
   drive.speed = 0.5;
@@ -53,7 +53,7 @@ TEST_CASE("stairs are followed though the tracks slip") {
   robot.motion = drive;
   robot.duration_s = 60.0;
   for (unsigned seed = 1; seed <= 2; ++seed) {
-    // 4 m down; 5 % of slip and 2 % of scale alone would make 28 cm.
+    // 4 m down; 5 % of slip and 2 % of scale would be 28 cm.
     CHECK(figures_of(run(robot, config_for(robot), seed, nullptr, 4)).height_max_m < 0.15);
   }
 }
@@ -82,12 +82,12 @@ TEST_CASE("an elevator is followed without lag, and the robot stays at rest afte
     }
     CHECK(largest < 0.08);
     CHECK(std::abs(error_at(comparisons, 44.0) - error_at(comparisons, 34.0)) < 0.03);
-    // The wheels did not turn: dead reckoning knows nothing of the ride.
+    // The wheels did not turn: dead reckoning has no climb.
     CHECK(std::abs(comparisons.back().prior.T_odom_base.translation().z()) < 0.1);
   }
 }
 
-TEST_CASE("a door that slams is bridged") {
+TEST_CASE("the pulse of a slamming door is rejected") {
   SimulatedRobot robot = flat_robot(60.0);
   robot.extra_robot_pa = [](double t) { return t > 30.0 && t < 31.5 ? 40.0 : 0.0; };
   PriorCounters counters;
@@ -100,7 +100,7 @@ TEST_CASE("a door that slams is bridged") {
   CHECK(counters.moving_ground == 0);
 }
 
-TEST_CASE("a pressure step that stays, and that nothing can have climbed, is not taken for height") {
+TEST_CASE("a pressure step that is faster than any climb does not move the height") {
   SimulatedRobot robot = flat_robot(60.0);
   robot.extra_robot_pa = [](double t) { return t > 30.0 ? -12.0 : 0.0; };  // 1.02 m up
   PriorCounters counters;
@@ -111,14 +111,13 @@ TEST_CASE("a pressure step that stays, and that nothing can have climbed, is not
   CHECK(std::abs(error_at(comparisons, 59.0) - error_at(comparisons, 29.9)) < 0.1);
 }
 
-TEST_CASE("the lever arm of the pressure port is taken out of a pitching robot's height") {
+TEST_CASE("the height of a pitching robot is corrected for the lever arm of the pressure port") {
   SimulatedRobot robot;
   robot.p_base_port = {-0.6, 0.0, 0.4};
-  robot.wheel_hz = 0.0;  // wheels would outvote the pressure
+  robot.wheel_hz = 0.0;  // the wheels would outweigh the pressure
   robot.motion = [](double t) {
     Pose pose;
-    // Rocks about base_link's origin: the port goes up and down by 0.3 m, base_link
-    // does not.
+    // Rocks about base_link's origin: the port moves by 0.3 m up and down, base_link does not.
     const double pitch = t < 5.0 ? 0.0 : 0.25 * (1.0 - std::cos(0.5 * (t - 5.0)));
     pose.q = Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY());
     return pose;
@@ -142,7 +141,7 @@ TEST_CASE("a hanging platform gets its height from pressure and acceleration") {
   };
   robot.duration_s = 80.0;
   const Figures figures = figures_of(run(robot, config_for(robot), 9, nullptr, 4));
-  // 26 m down: turbulence and warm-up 5 cm, self-heating's share of the scale a few millimetres.
+  // 26 m down: turbulence and warm-up 5 cm, scale error from self-heating a few millimetres.
   CHECK(figures.height_max_m < 0.15);
 }
 

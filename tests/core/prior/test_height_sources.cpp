@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the height comes from as sensors come and go.
+// The height's source when sensors fail, return or are missing.
 #include <doctest/doctest.h>
 
 #include "tests/core/prior/simulated_robot.hpp"
@@ -37,7 +37,7 @@ double largest_step(const std::vector<Comparison>& comparisons, double from_s) {
 
 }  // namespace
 
-TEST_CASE("no barometer: the source says none, the height is dead reckoning") {
+TEST_CASE("without a barometer the source is kNone and the height is dead reckoning") {
   SimulatedRobot robot = robot_for(20.0);
   robot.robot_hz = 0.0;
   const auto comparisons = run(robot, config_for(robot), 1, nullptr, 4);
@@ -45,7 +45,7 @@ TEST_CASE("no barometer: the source says none, the height is dead reckoning") {
   CHECK(std::abs(comparisons.back().prior.height_m) < 0.2);
 }
 
-TEST_CASE("a single barometer says so and knows that weather moves it") {
+TEST_CASE("a single barometer is reported as such, and its variance grows with the weather") {
   SimulatedRobot robot = robot_for(60.0);
   robot.base_hz = 0.0;
   const auto comparisons = run(robot, config_for(robot), 1, nullptr, 4);
@@ -58,7 +58,7 @@ TEST_CASE("a single barometer says so and knows that weather moves it") {
         4.0 * std::sqrt(comparisons.back().prior.height_variance_m2));
 }
 
-TEST_CASE("a silent barometer is held, its variance grows, and it returns without a jump") {
+TEST_CASE("the height of a silent barometer is held, its variance grows, and it returns without a jump") {
   SimulatedRobot robot = robot_for(60.0);
   robot.robot_on = [](double t) { return t < 20.0 || t > 40.0; };
   const auto comparisons = run(robot, config_for(robot), 2, nullptr, 2);
@@ -71,7 +71,7 @@ TEST_CASE("a silent barometer is held, its variance grows, and it returns withou
   CHECK(figures_of(comparisons).height_max_m < 0.2);
 }
 
-TEST_CASE("a base station that falls silent and returns makes no jump") {
+TEST_CASE("a base station that fails and returns makes no jump") {
   SimulatedRobot robot = robot_for(120.0);
   robot.errors.weather_pa_s = 0.04;
   robot.base_on = [](double t) { return t < 30.0 || t > 80.0; };
@@ -82,12 +82,12 @@ TEST_CASE("a base station that falls silent and returns makes no jump") {
   CHECK(at_time(comparisons, 79.0).prior.height_variance_m2 >
         at_time(comparisons, 30.0).prior.height_variance_m2);
   CHECK(at_time(comparisons, 85.0).prior.height_source == HeightSource::kDifferential);
-  // 50 s of weather are 17 cm; standing on its wheels the robot knows better.
+  // 50 s of weather are 17 cm; the standing wheels hold the height better.
   CHECK(largest_step(comparisons, 5.0) < 0.05);
   CHECK(figures_of(comparisons).height_max_m < 0.2);
 }
 
-TEST_CASE("a base station that starts late or is slow and late does no harm") {
+TEST_CASE("a base station that starts late, or is slow and delayed, leaves the height right") {
   SimulatedRobot late = robot_for(80.0);
   late.base_on = [](double t) { return t > 30.0; };
   const auto comparisons = run(late, config_for(late), 4, nullptr, 2);
@@ -100,7 +100,7 @@ TEST_CASE("a base station that starts late or is slow and late does no harm") {
   CHECK(figures_of(run(slow, config_for(slow), 4, nullptr, 2)).height_max_m < 0.15);
 }
 
-TEST_CASE("wheels that fall silent are no longer valid, and the height goes on") {
+TEST_CASE("silent wheels are no longer valid, and the height goes on") {
   SimulatedRobot robot = robot_for(60.0);
   robot.wheels_on = [](double t) { return t < 20.0 || t > 35.0; };
   const auto comparisons = run(robot, config_for(robot), 5, nullptr, 2);
@@ -113,7 +113,7 @@ TEST_CASE("wheels that fall silent are no longer valid, and the height goes on")
   CHECK(figures_of(comparisons).height_max_m < 0.3);
 }
 
-TEST_CASE("a gap of the IMU is bridged and its uncertainty said") {
+TEST_CASE("a gap of the IMU is bridged, and the variance covers it") {
   SimulatedRobot robot = robot_for(60.0);
   robot.imu_on = [](double t) { return t < 30.0 || t > 34.0; };
   PriorCounters counters;
@@ -123,7 +123,7 @@ TEST_CASE("a gap of the IMU is bridged and its uncertainty said") {
         at_time(comparisons, 29.9).prior.height_variance_m2);
   CHECK(at_time(comparisons, 34.01).prior.roll_pitch_variance_rad2 >
         at_time(comparisons, 29.9).prior.roll_pitch_variance_rad2);
-  // The wheels went on rolling: 4 s at 0.6 m/s are not lost.
+  // The wheels measured on: 4 s at 0.6 m/s are not lost.
   const double moved = (at_time(comparisons, 34.01).prior.T_odom_base.translation() -
                         at_time(comparisons, 29.9).prior.T_odom_base.translation())
                            .norm();

@@ -38,7 +38,7 @@ TEST_CASE("nothing is allocated after construction") {
   CHECK(covered);
   CHECK(estimator.counters().pressure_outside_calibration > 0);
   const std::size_t counted = allocation_count();
-  ::operator delete(::operator new(16));  // the counter counts: not a new-expression, which may be left out
+  ::operator delete(::operator new(16));  // the counter works; a new-expression might be optimised away
   CHECK(allocation_count() == counted + 1);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Low-pass against low-pass with acceleration, on an elevator and on stairs.
+// PressureFilter against InertialAltimeter, on an elevator and on stairs.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ constexpr double kPressureDt = 1.0 / 32.0;
 constexpr double kAccelDt = 0.01;
 constexpr double kLagS = 1.0;
 
-/// A vertical speed made of straight pieces, and its integral and derivative.
+/// Piecewise linear vertical speed, its integral and its derivative.
 struct Motion {
   struct Piece {
     double start_s;
@@ -65,12 +65,12 @@ const Motion kStairs{{{30.0, 0.5},
                       {50.5, 0.0}}};
 
 struct Errors {
-  double largest_low_pass = 0.0;     // as it comes, at its sample's time
-  double largest_compensated = 0.0;  // at the stamp with the delay taken off, while the speed is constant
+  double largest_low_pass = 0.0;     // at the sample's time
+  double largest_compensated = 0.0;  // at the stamp minus the delay, while the speed is constant
   double largest_inertial = 0.0;
 };
 
-/// What the three of them are off by while it moves. A few tens of seconds at rest come before.
+/// Errors of the three during the motion, after some tens of seconds at rest.
 Errors run(const Motion& motion, double end_s, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
@@ -107,7 +107,7 @@ Errors run(const Motion& motion, double end_s, unsigned seed) {
     if (time_s < 25.0) continue;
     const double low_pass_m = (1e5 - low_pass.pressure_pa()) * kMPerPa;
     errors.largest_low_pass = std::max(errors.largest_low_pass, std::abs(low_pass_m - motion.height(time_s)));
-    // Five time constants after the last change of speed nothing of it is left in the filter's memory.
+    // Five time constants after the last change of speed the transient is over.
     const bool constant_speed =
         motion.accel(time_s) == 0.0 &&
         std::all_of(motion.pieces.begin(), motion.pieces.end(), [&](const auto& piece) {
@@ -122,19 +122,19 @@ Errors run(const Motion& motion, double end_s, unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("on an elevator the low-pass lags by its stated delay, and with acceleration nothing lags") {
+TEST_CASE("on an elevator the low-pass lags by its stated delay; with acceleration there is no lag") {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const Errors errors = run(kElevator, 60.0, seed);
-    // 1.5 m/s for a second, less what the corners round off, e^-8.5; 0.75 cm rms of noise, four of these.
+    // 1.5 m/s for a second, minus the transient of the corners, e^-8.5; four sigmas of noise, 0.75 cm rms.
     CHECK(errors.largest_low_pass == doctest::Approx(1.5 * kLagS).epsilon(0.025).scale(0.0));
-    // Seven seconds into the ride e^-5 of the corner is left (1 cm), and noise of 0.4 cm.
+    // Seven seconds into the ride: transient e^-5 (1 cm), and noise of 0.4 cm.
     CHECK(errors.largest_compensated < 0.03);
-    // What the bias' error of some mm/s^2 makes of a ride, and the air's own noise as the filter expects it.
+    // Error of the bias of some mm/s^2 over a ride, and the noise of the air in the filter's model.
     CHECK(errors.largest_inertial < 0.06);
   }
 }
 
-TEST_CASE("on stairs, too: the lag of the low-pass is a step's height, with acceleration it is noise") {
+TEST_CASE("on stairs the error of the low-pass is a step's height, with acceleration it is noise") {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const Errors errors = run(kStairs, 60.0, seed);
     CHECK(errors.largest_low_pass == doctest::Approx(0.25 * kLagS).epsilon(0.12).scale(0.0));
@@ -142,7 +142,7 @@ TEST_CASE("on stairs, too: the lag of the low-pass is a step's height, with acce
   }
 }
 
-TEST_CASE("it learns the accelerometer's bias, and reports a variance that covers its error") {
+TEST_CASE("it estimates the accelerometer's bias, and its variance covers the error") {
   std::mt19937 random(4);
   std::normal_distribution<double> normal;
   int inside = 0;
@@ -151,7 +151,7 @@ TEST_CASE("it learns the accelerometer's bias, and reports a variance that cover
     HeightConfig config;
     InertialAltimeter inertial{config};
     const double bias_m_s2 = 0.05 * normal(random);
-    // The air as the filter models it: Gauss-Markov, 4 cm over 10 s.
+    // The filter's model of the air: Gauss-Markov, 4 cm over 10 s.
     double turbulence_m = config.turbulence_sigma_m * normal(random);
     double offset_m = 3.0;
     for (int i = 0; i < 6000; ++i) {
@@ -168,15 +168,15 @@ TEST_CASE("it learns the accelerometer's bias, and reports a variance that cover
       reading.source = HeightSource::kDifferential;
       inertial.add_height(reading);
     }
-    // A minute of pressure holds the bias to 1 mm/s^2; this is its worst of 40, with room.
+    // A minute of pressure determines the bias to 1 mm/s^2; the worst of 40 runs, with margin.
     CHECK(std::abs(inertial.accel_bias_m_s2() - bias_m_s2) < 0.005);
     if (std::abs(inertial.height_m()) < 2.0 * std::sqrt(inertial.variance_m2())) ++inside;
   }
-  // 95 % of 40 are 38; fewer than 34 would happen once in a hundred.
+  // 95 % of 40 are 38; fewer than 34 have a probability of 1 %.
   CHECK(inside >= 34);
 }
 
-TEST_CASE("a gap in the acceleration is bridged by the pressure, and nonsense is refused") {
+TEST_CASE("a gap in the acceleration is bridged by the pressure, and invalid input is refused") {
   using Status = InertialAltimeter::Status;
   InertialAltimeter inertial{HeightConfig{}};
   AltimeterReading reading;
@@ -202,7 +202,7 @@ TEST_CASE("a gap in the acceleration is bridged by the pressure, and nonsense is
   reading.height_m = 5.0;
   reading.stamp_ns = stamp_ns - 2'000'000'000;
   CHECK(inertial.add_height(reading) == Status::kBadTime);
-  // 10 s without an IMU, meanwhile 4 m up: the height is there again within a second.
+  // 10 s without an IMU and 4 m up: the height is right again within a second.
   stamp_ns += 10'000'000'000;
   CHECK(inertial.add_acceleration(stamp_ns, 0.0) == Status::kUsed);
   CHECK(inertial.variance_m2() > 10.0);

@@ -29,7 +29,7 @@ struct Shaker {
 
 }  // namespace
 
-TEST_CASE("quiet sensors mean standstill, and the mean rate of the window is given once") {
+TEST_CASE("quiet sensors are a standstill, and the mean rate of a window is returned once") {
   StandstillDetector detector{StandstillConfig{}};
   Shaker shaker;
   CHECK_FALSE(detector.standing());
@@ -37,11 +37,11 @@ TEST_CASE("quiet sensors mean standstill, and the mean rate of the window is giv
   CHECK(detector.standing());
   CHECK(detector.take_window());
   CHECK_FALSE(detector.take_window());
-  CHECK(detector.mean_gyro().x() == doctest::Approx(0.003).epsilon(0.5));
+  CHECK(detector.mean_gyro_rad_s().x() == doctest::Approx(0.003).epsilon(0.5));
   CHECK(detector.window_s() >= 0.6);
 }
 
-TEST_CASE("vibration, turning or rolling wheels are no standstill") {
+TEST_CASE("vibration, turning or rolling is no standstill") {
   Shaker shaker;
   StandstillDetector vibrating{StandstillConfig{}};
   shaker.feed(vibrating, 2.0, 0.0, 0.005, 2.5);

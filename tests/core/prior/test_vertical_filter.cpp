@@ -46,7 +46,7 @@ TEST_CASE("the covariance is propagated as F P F^T + Q") {
 TEST_CASE("the error of every state stays within the filter's own covariance (NEES)") {
   HeightConfig config;
   config.turbulence_sigma_m = 0.03;
-  config.offset_learning_s = 1e3;  // all along: after it, height and offset are counted differently
+  config.offset_learning_s = 1e3;  // the whole run: afterwards the offset's error becomes one of the height
   std::mt19937 random(11);
   std::normal_distribution<double> normal(0.0, 1.0);
   const double dt = 0.01;
@@ -86,7 +86,7 @@ TEST_CASE("the error of every state stays within the filter's own covariance (NE
   CHECK(nees / runs < 7.4);
 }
 
-TEST_CASE("a zone of other pressure entered after the learning time never becomes part of the offset") {
+TEST_CASE("a ventilation zone entered after the learning time never becomes part of the offset") {
   HeightConfig config;
   V filter(config);
   filter.start(0.0, 0.01);
@@ -102,12 +102,11 @@ TEST_CASE("a zone of other pressure entered after the learning time never become
   CHECK(filter.variance(V::kOffset) == 0.0);
   drive(300.0, 4.85);
   drive(300.0, 5.0);
-  // Back where the pressure is the start's, so is the height: the turbulence alone may differ, by less than
-  // its sigma.
+  // Back at the start's pressure the height is the start's, but for the turbulence, less than its sigma.
   CHECK(std::abs(filter.value(V::kZ)) < 0.02);
 }
 
-TEST_CASE("a late pressure is compared with the height of its own time") {
+TEST_CASE("a delayed pressure is compared with the height at its own time") {
   V filter{HeightConfig{}};
   filter.start(0.0, 1e-6);
   for (int i = 0; i < 200; ++i) filter.update_pressure(0.0, 0.0, 1e-4);
@@ -115,7 +114,7 @@ TEST_CASE("a late pressure is compared with the height of its own time") {
   CHECK(std::abs(filter.pressure_innovation(1.0 - 0.1, 0.1, 1e-4).value) < 1e-3);
 }
 
-TEST_CASE("weather becomes part of the offset, or is settled when it is known") {
+TEST_CASE("weather becomes part of the offset, or is settled by its measurement") {
   HeightConfig config;
   V filter(config);
   filter.start(0.0, 0.01);
@@ -127,7 +126,7 @@ TEST_CASE("weather becomes part of the offset, or is settled when it is known") 
   folded.fold_weather_into_offset();
   CHECK(folded.value(V::kOffset) == doctest::Approx(sum));
   CHECK(folded.variance(V::kWeather) == 0.0);
-  // All of the 0.4 m was weather: the height it had taken comes back.
+  // All of the 0.4 m was weather: the height loses the part that it had taken.
   V settled = filter;
   REQUIRE(std::abs(filter.value(V::kZ)) > 0.02);
   settled.settle_weather(0.4, 1e-6);
@@ -135,7 +134,7 @@ TEST_CASE("weather becomes part of the offset, or is settled when it is known") 
   CHECK(settled.variance(V::kZ) < filter.variance(V::kZ));
 }
 
-TEST_CASE("a step takes all of a jump, and when it is over the offset is as sure as before it") {
+TEST_CASE("a step absorbs a jump, and after it the offset is as certain as before") {
   HeightConfig config;
   V filter(config);
   filter.start(0.0, 0.01);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A small world of rectangles, a VLP-16 that moves through it while it scans, and priors along the way.
+// Synthetic world of boxes, a VLP-16 that scans it in motion, and priors of the same motion.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -18,11 +18,11 @@ using Motion = std::function<Eigen::Isometry3d(std::int64_t stamp_ns)>;
 /// Faces of axis-aligned boxes.
 class World {
  public:
-  /// Six faces; a robot inside sees them as a room, one outside as an obstacle. Faces can be left out by
-  /// giving them a bit in `open_faces`: 1 -x, 2 +x, 4 -y, 8 +y, 16 -z, 32 +z.
+  /// Six faces: a room from inside, an obstacle from outside. Bits of `open_faces` leave faces out: 1 -x, 2
+  /// +x, 4 -y, 8 +y, 16 -z, 32 +z.
   void add_box(const Eigen::Vector3d& lowest, const Eigen::Vector3d& highest, unsigned open_faces = 0);
 
-  /// Distance along the unit `direction` to the next face; infinity where there is none.
+  /// Distance along the unit vector `direction` to the next face [m]; infinity where there is none.
   [[nodiscard]] double range(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
 
  private:
@@ -40,12 +40,12 @@ World furnished_room();
 /// A corridor of 2.4 x 2.6 m along x without ends or features.
 World bare_corridor();
 
-/// Fills `scan` with one revolution of 16 beams from `stamp_ns` on, 0.1 s long, each point measured at its
-/// own time from where the lidar was then. Deterministic for a given state of `random`.
+/// Fills `scan` with one revolution of 16 beams of 0.1 s from `stamp_ns` on; each point is measured from the
+/// lidar's pose at its own time. Deterministic for a given state of `random`.
 void scan_world(const World& world, const Motion& motion, const Eigen::Isometry3d& T_base_lidar,
                 std::int64_t stamp_ns, double noise_m, std::mt19937& random, Scan& scan);
 
-/// The prior that a perfect dead reckoning with wheels, whose odom frame is the world, has at `stamp_ns`.
+/// Prior of perfect dead reckoning with wheels at `stamp_ns`; its odom frame is the world.
 Prior perfect_prior(const Motion& motion, std::int64_t stamp_ns);
 
 }  // namespace isobar::test

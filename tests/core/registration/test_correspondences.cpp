@@ -13,7 +13,7 @@ namespace {
 
 using namespace isobar;  // NOLINT(google-build-using-namespace)
 
-// Finds each point on a plane through itself, and notes which points it had found before.
+// A map that finds each point on a plane through itself and records which points had a match before.
 class NotingMap final : public MapSnapshot {
  public:
   NotingMap() : MapSnapshot(0.25F, 1, 1) {}
@@ -31,12 +31,12 @@ class NotingMap final : public MapSnapshot {
   [[nodiscard]] const std::vector<bool>& known() const { return known_; }
 
  private:
-  mutable std::vector<bool> known_;  // by the points of the last call
+  mutable std::vector<bool> known_;  // per point of the last call
 };
 
 }  // namespace
 
-TEST_CASE("points of a coarse look bring what was found of them into the fine one, all others come new") {
+TEST_CASE("points of the coarse stride keep their match in the fine one, all others start without") {
   for (const std::size_t count : {std::size_t{1}, std::size_t{3}, std::size_t{100}, std::size_t{101}}) {
     std::vector<Eigen::Vector3f> p_base;
     for (std::size_t i = 0; i < count; ++i) p_base.emplace_back(static_cast<float>(i), 1.0F, 2.0F);
@@ -59,7 +59,7 @@ TEST_CASE("points of a coarse look bring what was found of them into the fine on
     look(3);
     CHECK(look(1) == every(3));
     CHECK(look(1) == std::vector<bool>(count, true));
-    // The other way round nothing is kept, nor from scan to scan.
+    // From fine to coarse, and from scan to scan, no match is kept.
     CHECK(look(3) == std::vector<bool>((count + 2) / 3, false));
     correspondences.start(map, Eigen::Vector3d::Zero());
     CHECK(look(3) == std::vector<bool>((count + 2) / 3, false));

@@ -21,7 +21,7 @@ TEST_CASE("each method has as many free directions as its name says") {
   CHECK(columns(Method::k3Dof) == 3);
 }
 
-TEST_CASE("only methods that name the altitude or fix z look at the altimeter") {
+TEST_CASE("only methods with altitude in the name or with fixed z use the altimeter") {
   const auto z = [](Method method) { return traits_of(method, HeightSource::kDifferential).z_prediction; };
   CHECK(z(Method::k3Dof) == ZPrediction::kAltimeter);
   CHECK(z(Method::k4DofAltitude) == ZPrediction::kAltimeter);
@@ -31,7 +31,7 @@ TEST_CASE("only methods that name the altitude or fix z look at the altimeter") 
   CHECK(z(Method::kOdometry) == ZPrediction::kDeadReckoning);
 }
 
-TEST_CASE("without any height a method runs as the one that needs none, and says so") {
+TEST_CASE("without any height a method falls back to the one that needs none") {
   const auto effective = [](Method method) { return traits_of(method, HeightSource::kNone).method; };
   CHECK(effective(Method::k3Dof) == Method::k4Dof);
   CHECK(effective(Method::k4DofAltitude) == Method::k4Dof);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Eleven consecutive VLP-16 scans of a corridor, recorded by others; skipped where they are not present.
+// Eleven consecutive VLP-16 scans of a corridor, recorded by others; skipped where the files are missing.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -20,8 +20,8 @@ namespace {
 using namespace isobar;  // NOLINT(google-build-using-namespace)
 
 constexpr std::int64_t kStart = 1'700'000'000'000'000'000;
-constexpr std::int64_t kStepNs = 400'000'000;  // the scans carry no time; this is a brisk walk
-constexpr std::size_t kPointBytes = 32;        // x, y, z as floats, then fields that are not needed
+constexpr std::int64_t kStepNs = 400'000'000;  // the files have no times; a brisk walk
+constexpr std::size_t kPointBytes = 32;        // x, y, z as floats, then unused fields
 
 bool load_pcd(const std::filesystem::path& file, Scan& scan) {
   std::ifstream stream(file, std::ios::binary);
@@ -38,7 +38,7 @@ bool load_pcd(const std::filesystem::path& file, Scan& scan) {
   return scan.point_count > 0;
 }
 
-// All that is known of this platform: it stands on the ground, and moves somehow.
+// The prior of a platform of which only this is known: it stays on the ground.
 Prior ignorant_prior(std::int64_t stamp_ns) {
   Prior prior;
   prior.stamp_ns = stamp_ns;
@@ -75,7 +75,7 @@ TEST_CASE("eleven real scans of a corridor follow each other in steps of half a 
     CAPTURE(out->pose.residual_rms_m);
     if (i > 0) {
       CHECK(out->pose.mode == PoseMode::kRegistered);
-      // The data's own description: 0.50 to 0.77 m a step. A tenth more for what that rests on.
+      // Description of the data: 0.50 to 0.77 m a step; a tenth more for its own error.
       CHECK((now - before).norm() > 0.45);
       CHECK((now - before).norm() < 0.85);
       CHECK(out->pose.overlap > 0.5);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <memory>
 #include <random>
+#include <span>
+#include <vector>
 
 #include "core/registration/sampling.hpp"
 
@@ -29,14 +31,22 @@ void fill(RegisteredScan& scan) {
   }
 }
 
+// Thins a whole scan in place.
+void thin(Sampler& sampler, RegisteredScan& scan) {
+  const std::span<const ScanPoint> all(scan.points, scan.point_count);
+  sampler.start(scan);
+  sampler.add(all, scan);
+  sampler.finish();
+}
+
 }  // namespace
 
-TEST_CASE("the map's points keep their distance: one a voxel, the first of each, in order") {
+TEST_CASE("the map gets the first point of each voxel, in order") {
   auto scan = std::make_unique<RegisteredScan>();
   fill(*scan);
   const float first_x = scan->points[0].x_m;
   Sampler sampler(0.2, 1000);
-  sampler.thin(*scan);
+  thin(sampler, *scan);
   CHECK(scan->point_count < 20'000);
   CHECK(scan->points[0].x_m == first_x);
   // No two points share a voxel of the grid that starts at -500 m.
@@ -49,12 +59,12 @@ TEST_CASE("the map's points keep their distance: one a voxel, the first of each,
   CHECK(std::adjacent_find(voxels.begin(), voxels.end()) == voxels.end());
 }
 
-TEST_CASE("the sample's size settles near what is asked and never exceeds it, far points included") {
+TEST_CASE("the sample's size settles near its limit, never exceeds it, and includes far points") {
   Sampler sampler(0.1, 500);
   auto scan = std::make_unique<RegisteredScan>();
   for (int i = 0; i < 10; ++i) {
     fill(*scan);
-    sampler.thin(*scan);
+    thin(sampler, *scan);
     CHECK(sampler.sample().size() <= 500);
   }
   CHECK(sampler.sample().size() > 350);
@@ -72,25 +82,25 @@ TEST_CASE("equal scans give equal samples") {
   auto b = std::make_unique<RegisteredScan>(*a);
   Sampler first(0.1, 300);
   Sampler second(0.1, 300);
-  first.thin(*a);
-  second.thin(*b);
+  thin(first, *a);
+  thin(second, *b);
   REQUIRE(first.sample().size() == second.sample().size());
   for (std::size_t i = 0; i < first.sample().size(); ++i) {
     CHECK(first.sample()[i] == second.sample()[i]);
   }
 }
 
-TEST_CASE("an empty scan and one that fills the memory are both thinned") {
+TEST_CASE("an empty scan and a scan of the largest size are both thinned") {
   auto scan = std::make_unique<RegisteredScan>();
   scan->point_count = 0;
   Sampler sampler(0.1, 300);
-  sampler.thin(*scan);
+  thin(sampler, *scan);
   CHECK(sampler.sample().empty());
   scan->point_count = RegisteredScan::kMaxPoints;
   for (std::uint32_t i = 0; i < scan->point_count; ++i) {
     scan->points[i] = ScanPoint{static_cast<float>(i % 300), static_cast<float>(i / 300), 0.0F, 0, 0, 0};
   }
-  sampler.thin(*scan);
+  thin(sampler, *scan);
   CHECK(scan->point_count == RegisteredScan::kMaxPoints);
   CHECK(sampler.sample().size() == 300);
 }

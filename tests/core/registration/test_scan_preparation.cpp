@@ -45,7 +45,7 @@ void fill(std::mt19937& random, std::uint32_t count, Scan& scan) {
 
 }  // namespace
 
-TEST_CASE("one pass in parts gives the bits of deskewing everything and thinning it then") {
+TEST_CASE("one pass in parts gives the same bits as deskewing the whole scan and then thinning it") {
   std::mt19937 random(31);
   PriorHistory history;
   for (std::int64_t t = -50'000'000; t <= 150'000'000; t += 5'000'000) {
@@ -63,9 +63,12 @@ TEST_CASE("one pass in parts gives the bits of deskewing everything and thinning
     fill(random, count, *scan);
     ScanMotion motion;
     REQUIRE(history.at(scan->end_stamp_ns, motion.end));
-    deskewer.deskew(*scan, history, motion, *expected);
-    whole.thin(*expected);
-    out->point_count = 12'345;  // what a buffer held before does not matter
+    deskewer.start(*scan, history, motion);
+    const std::size_t kept = deskewer.move({scan->points, scan->point_count}, expected->points);
+    whole.start(*expected);
+    whole.add({expected->points, kept}, *expected);
+    whole.finish();
+    out->point_count = 12'345;  // stale content of the buffer
     prepare_scan(*scan, history, motion, deskewer, in_parts, *out);
     REQUIRE(out->point_count == expected->point_count);
     CHECK(std::memcmp(out->points, expected->points, out->point_count * sizeof(ScanPoint)) == 0);
@@ -77,7 +80,7 @@ TEST_CASE("one pass in parts gives the bits of deskewing everything and thinning
   }
 }
 
-TEST_CASE("a count beyond the memory of a scan is taken as its memory") {
+TEST_CASE("a point count beyond the capacity of a scan is clamped to it") {
   std::mt19937 random(32);
   auto scan = std::make_unique<Scan>();
   auto out = std::make_unique<RegisteredScan>();

@@ -26,14 +26,15 @@ std::vector<Pair> room_pairs(const Vector6d& displacement) {
     normal(i % 3) = i % 2 == 0 ? 1.0F : -1.0F;
     const Eigen::Vector3f p(place(random), place(random), 0.4F * place(random));
     Pair pair{p, normal, 0.0F};
-    pair.residual_m = point_to_plane_jacobian(pair).dot(displacement.cast<float>());
+    const Eigen::Vector3d moved = displacement.head<3>().cross(p.cast<double>()) + displacement.tail<3>();
+    pair.residual_m = normal.dot(moved.cast<float>());
     pairs.push_back(pair);
   }
   return pairs;
 }
 
 NormalEquations equations_of(const std::vector<Pair>& pairs) {
-  return accumulate(pairs, PairNoise{}, 10.0F);  // so wide a loss that all weights are one
+  return accumulate(pairs, PairNoise{}, 10.0F);  // a loss so wide that all weights are one
 }
 
 Basis basis_of(Method method) { return traits_of(method, HeightSource::kDifferential).basis; }
@@ -46,7 +47,7 @@ Vector6d twist(double wx, double wy, double wz, double x, double y, double z) {
 
 }  // namespace
 
-TEST_CASE("with no prior each basis finds its part of a displacement it can make, and nothing else") {
+TEST_CASE("without a prior each basis finds a displacement in its span, and nothing else") {
   const Vector6d yaw_xy = twist(0.0, 0.0, 0.01, 0.03, -0.02, 0.0);
   const Vector6d yaw_xyz = twist(0.0, 0.0, 0.01, 0.03, -0.02, 0.05);
   const Vector6d full = twist(0.004, -0.006, 0.01, 0.03, -0.02, 0.05);
@@ -66,7 +67,7 @@ TEST_CASE("with no prior each basis finds its part of a displacement it can make
 
 TEST_CASE("3-DOF solves the paper's equation (12)") {
   const std::vector<Pair> pairs = room_pairs(twist(0.004, -0.006, 0.01, 0.03, -0.02, 0.05));
-  // (sum a a^T) tau = sum (n^T d) a, with d = q - p, summed here on its own.
+  // (sum a a^T) tau = sum (n^T d) a, with d = q - p, summed independently.
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   for (const Pair& pair : pairs) {
@@ -83,7 +84,7 @@ TEST_CASE("3-DOF solves the paper's equation (12)") {
   CHECK(step.twist.head<2>().norm() + std::abs(step.twist(5)) == 0.0);
 }
 
-TEST_CASE("a penalty on height, roll and pitch goes from free to the constraint as its sigma falls") {
+TEST_CASE("a penalty on height, roll and pitch goes from free to fixed as its sigma falls") {
   const NormalEquations equations = equations_of(room_pairs(twist(0.004, -0.006, 0.01, 0.03, -0.02, 0.05)));
   const Step constrained = solve_step(equations, PriorTerm{}, basis_of(Method::k3Dof), SolverWeights{});
   const Step free = solve_step(equations, PriorTerm{}, basis_of(Method::k6Dof), SolverWeights{});
@@ -94,7 +95,7 @@ TEST_CASE("a penalty on height, roll and pitch goes from free to the constraint 
     }
     return solve_step(equations, prior, basis_of(Method::k6Dof), SolverWeights{});
   };
-  // 600 pairs against sigma^-2: what is left of either limit is about 600 sigma^2 or its inverse, times 0.05.
+  // 600 pairs against sigma^-2: the distance to either limit is about 600 sigma^2 or its inverse, times 0.05.
   CHECK((penalised(1e-5).twist - constrained.twist).norm() < 1e-6);
   CHECK((penalised(1e4).twist - free.twist).norm() < 1e-6);
   const double between = penalised(0.05).twist(5);
@@ -102,7 +103,7 @@ TEST_CASE("a penalty on height, roll and pitch goes from free to the constraint 
   CHECK(between > free.twist(5) + 1e-3);
 }
 
-TEST_CASE("the step minimises scan and prior together") {
+TEST_CASE("the step minimises the sum of scan and prior terms") {
   const NormalEquations equations = equations_of(room_pairs(twist(0.0, 0.0, 0.01, 0.03, -0.02, 0.05)));
   PriorTerm prior;
   prior.deviation = twist(0.0, 0.0, 0.02, -0.01, 0.04, 0.0);
@@ -128,7 +129,7 @@ TEST_CASE("the step minimises scan and prior together") {
   }
 }
 
-TEST_CASE("the solution turns with the map's axes: a frame says nothing") {
+TEST_CASE("the solution turns with the map's axes: it does not depend on the frame") {
   const Vector6d displacement = twist(0.004, -0.006, 0.01, 0.03, -0.02, 0.05);
   std::vector<Pair> pairs = room_pairs(displacement);
   const Step here = solve_step(equations_of(pairs), PriorTerm{}, basis_of(Method::k6Dof), SolverWeights{});
@@ -143,8 +144,9 @@ TEST_CASE("the solution turns with the map's axes: a frame says nothing") {
   CHECK((R.cast<double>() * here.twist.tail<3>() - there.twist.tail<3>()).norm() < 1e-5);
 }
 
-TEST_CASE("a direction that no surface faces is left to the prior and called degenerate") {
-  // Side walls, floor and ceiling of a corridor along x; normals err by 0.5 degrees and so pretend to see x.
+TEST_CASE("a direction that no surface constrains follows the prior and is degenerate") {
+  // Side walls, floor and ceiling of a corridor along x; normals err by 0.5 degrees, spurious information in
+  // x.
   std::mt19937 random(9);
   std::normal_distribution<float> error(0.0F, 0.009F);
   std::uniform_real_distribution<float> along(-10.0F, 10.0F);
@@ -168,14 +170,14 @@ TEST_CASE("a direction that no surface faces is left to the prior and called deg
   const Step step = solve_step(equations_of(pairs), prior, basis_of(Method::k3Dof), weights);
   REQUIRE(step.solved);
   CHECK(step.degenerate);
-  // Along x the prior decides alone; across, the walls do.
+  // Along x only the prior counts, across the walls.
   CHECK(step.twist(3) == doctest::Approx(-0.02).epsilon(0.01));
   CHECK(std::abs(step.twist(4)) < 0.001);
   CHECK(step.covariance(3, 3) == doctest::Approx(0.05 * 0.05).epsilon(0.01));
   CHECK(step.covariance(4, 4) < 1e-4);
 }
 
-TEST_CASE("without pairs the prior is the answer; without either there is none") {
+TEST_CASE("without pairs the step is the prior's; without both there is none") {
   PriorTerm prior;
   prior.deviation = twist(0.0, 0.0, 0.1, 0.2, 0.3, 0.0);
   prior.information.setIdentity();

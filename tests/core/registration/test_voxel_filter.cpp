@@ -21,9 +21,9 @@ ScanPoint at(float x_m, float y_m, float z_m) { return {x_m, y_m, z_m, 0, 0, 0};
 
 }  // namespace
 
-TEST_CASE("two points have one voxel if and only if they lie in the same cube") {
+TEST_CASE("two points share a voxel if and only if they lie in the same cube") {
   std::mt19937 random(21);
-  // In steps of 1/128 m: they and their sum with the grid's 500 m are exact in single precision.
+  // Steps of 1/128 m: exact in single precision, also with the grid's 500 m added.
   std::uniform_int_distribution<int> step(-384, 383);
   const auto place = [&] { return static_cast<float>(step(random)) / 128.0F; };
   const VoxelGrid grid(0.5F);
@@ -38,7 +38,7 @@ TEST_CASE("two points have one voxel if and only if they lie in the same cube") 
   CHECK(voxels.size() == 12 * 12 * 12);
 }
 
-TEST_CASE("points beyond 500 m or not finite are nowhere; the farthest corners have voxels of their own") {
+TEST_CASE("points beyond 500 m or not finite have no voxel; the farthest corners have distinct ones") {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   for (const float edge_m : {0.001F, 0.1F, 3.0F}) {
@@ -60,21 +60,21 @@ TEST_CASE("points beyond 500 m or not finite are nowhere; the farthest corners h
   }
 }
 
-TEST_CASE("the filter is a set, pass after pass, small after large and large after small") {
+TEST_CASE("the filter is a set in every pass, small after large and large after small") {
   std::mt19937_64 random(22);
   VoxelFilter filter(40'000);
   for (const std::uint64_t different : {10ULL, 30'000ULL, 5ULL, 2'000ULL, 0ULL, 40'000ULL}) {
     filter.start();
     std::set<std::uint64_t> reference;
     for (std::uint64_t i = 0; i < 3 * different; ++i) {
-      // Neighbours along an axis, as a surface gives them: the case in which a weak hash piles up.
+      // Neighbours along an axis, as on a surface: the worst case of a weak hash.
       const std::uint64_t voxel = (random() % different) << 15U | 7U;
       REQUIRE(filter.first(voxel) == reference.insert(voxel).second);
     }
   }
 }
 
-TEST_CASE("a full filter takes no more and still knows what it has") {
+TEST_CASE("a full filter inserts no more and keeps what it has") {
   VoxelFilter filter(3'000);
   filter.start();
   for (std::uint64_t voxel = 0; voxel < 3'000; ++voxel) {

@@ -14,7 +14,7 @@ namespace isobar::test {
 
 namespace {
 
-/// Everything that the tests write, gone with the process.
+/// Folder of all files that the tests write, removed when the process ends.
 class Workspace {
  public:
   Workspace()

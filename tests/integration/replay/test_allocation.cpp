@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// After start-up the path from packet to pose allocates nothing. The map thread may: it is not on the path.
+// After start-up the path from packet to pose allocates nothing. The map thread is not on that path and may.
 #include <doctest/doctest.h>
 
 #include <memory>
@@ -11,14 +11,14 @@
 
 namespace isobar::test::test_allocation {
 
-TEST_CASE("the counter of this test counts") {
+TEST_CASE("the allocation counter works") {
   const std::size_t before = allocation_count();
   const auto number = std::make_unique<int>(3);
   CHECK(*number == 3);
   CHECK(allocation_count() > before);
 }
 
-TEST_CASE("after start-up no packet, sample or scan makes decoder, prior or registration allocate") {
+TEST_CASE("after start-up decoder, prior and registration allocate nothing") {
   recording::RecordingReader reader(short_drive());
   const StageSettings settings = stage_settings(with_sensors_of(reader.manifest(), Config{}));
   velodyne::VelodyneDecoder decoder(settings.lidar);

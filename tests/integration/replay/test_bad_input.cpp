@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Faults in a recording: each is counted, said in words, and takes nothing good with it.
+// Faults in a recording: each is counted and reported, and the valid data around it is used.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ recording::Manifest manifest_of(const std::filesystem::path& folder) {
   return recording::read_manifest(folder, warnings);
 }
 
-/// Time of the first event of a recording.
+/// Stamp of the first event of a recording.
 std::int64_t start_of(const std::filesystem::path& folder) {
   recording::RecordingReader reader(folder);
   recording::Event event;
@@ -37,7 +37,7 @@ std::int64_t start_of(const std::filesystem::path& folder) {
 
 }  // namespace
 
-TEST_CASE("without a base station the run goes on with the robot's barometer alone and says so") {
+TEST_CASE("without a base station the run warns and uses the robot's barometer alone") {
   const auto folder =
       copy_with(short_drive(), "no-base", [](auto& manifest) { manifest.base_barometer.reset(); }, {});
   std::filesystem::path out;
@@ -47,7 +47,7 @@ TEST_CASE("without a base station the run goes on with the robot's barometer alo
   CHECK(largest_error_m(short_drive(), out) < 0.3);
 }
 
-TEST_CASE("without wheels the run goes on with constant velocity between scans and says so") {
+TEST_CASE("without wheels the run warns and uses constant velocity between scans") {
   const auto folder =
       copy_with(short_drive(), "no-wheel", [](auto& manifest) { manifest.wheel.reset(); }, {});
   std::filesystem::path out;
@@ -56,7 +56,7 @@ TEST_CASE("without wheels the run goes on with constant velocity between scans a
   CHECK(largest_error_m(short_drive(), out) < 0.3);
 }
 
-TEST_CASE("without a barometer 3-DOF runs as 4-DOF and says so") {
+TEST_CASE("without a barometer 3-DOF runs as 4-DOF and the run warns") {
   const auto folder = copy_with(short_drive(), "no-baro",
                                 [](auto& manifest) {
                                   manifest.barometer.reset();
@@ -72,7 +72,7 @@ TEST_CASE("without a barometer 3-DOF runs as 4-DOF and says so") {
   CHECK(largest_error_m(short_drive(), out) < 0.3);
 }
 
-TEST_CASE("five seconds without lidar are bridged from the prior, and the map is found again") {
+TEST_CASE("five seconds without lidar are bridged by the prior, then scans register again") {
   const auto manifest = manifest_of(short_drive());
   const std::int64_t start_ns = start_of(short_drive());
   const auto folder = copy_with(short_drive(), "gap", {}, [&](const auto& event, auto& writer) {
@@ -89,11 +89,11 @@ TEST_CASE("five seconds without lidar are bridged from the prior, and the map is
     largest_gap_ns = std::max(largest_gap_ns, poses[i].stamp_ns - poses[i - 1].stamp_ns);
   }
   CHECK(largest_gap_ns < 400'000'000);
-  // Dead reckoning over some 3 m of travel: 10 % of it, at most.
+  // Dead reckoning over 3 m of travel: 10 % of it at most.
   CHECK(largest_error_m(short_drive(), out) < 0.3);
 }
 
-TEST_CASE("broken packets among good ones are counted by kind and change nothing") {
+TEST_CASE("broken packets among valid ones are counted by kind and change nothing") {
   const auto manifest = manifest_of(short_drive());
   int index = 0;
   const auto folder = copy_with(short_drive(), "broken", {}, [&](const auto& event, auto& writer) {
@@ -118,7 +118,7 @@ TEST_CASE("broken packets among good ones are counted by kind and change nothing
   CHECK(bytes_of(out / "trajectory.tum") == bytes_of(clean_out / "trajectory.tum"));
 }
 
-TEST_CASE("packets of another model are refused with an error that names both") {
+TEST_CASE("packets of another model are refused with an error that names both models") {
   const auto folder =
       copy_with(short_drive(), "model", [](auto& manifest) { manifest.lidar->model = "HDL-32E"; }, {});
   std::filesystem::path out;
@@ -132,7 +132,7 @@ TEST_CASE("packets of another model are refused with an error that names both") 
   }
 }
 
-TEST_CASE("impossible rows in the CSV files are counted with their place and take nothing with them") {
+TEST_CASE("invalid rows of CSV files are counted with file and line and change nothing") {
   const auto folder = copy_with(short_drive(), "rows", {}, {});
   const std::string imu = bytes_of(folder / "imu.csv");
   const std::size_t middle = imu.find('\n', imu.size() / 2) + 1;
@@ -175,7 +175,7 @@ TEST_CASE("pressure spikes of thousands of pascals and NaN do not move the heigh
   CHECK(largest_error_m(short_drive(), out) < 0.15);
 }
 
-TEST_CASE("an IMU that is silent for three seconds does not lose the robot: the scans carry it over") {
+TEST_CASE("three seconds without IMU are bridged by the scans") {
   const auto manifest = manifest_of(short_drive());
   const std::int64_t start_ns = start_of(short_drive());
   const auto folder = copy_with(short_drive(), "imu-gap", {}, [&](const auto& event, auto& writer) {
@@ -187,11 +187,11 @@ TEST_CASE("an IMU that is silent for three seconds does not lose the robot: the 
   const auto summary = run(folder, out);
   CHECK(count_of(summary, "imu gaps") == 1);
   CHECK(bytes_of(out / "status.csv").find(",registered,6dof,") != std::string::npos);
-  // What the clean drive is held to; a pose that stood still with the IMU would be off by more than a metre.
+  // The limit of the clean drive; a pose that stopped with the IMU would be off by more than a metre.
   CHECK(largest_error_m(short_drive(), out) < 0.15);
 }
 
-TEST_CASE("a barometer that stands kilopascals elsewhere for seconds does not move the height") {
+TEST_CASE("a barometer off by kilopascals for seconds does not move the height") {
   const auto manifest = manifest_of(short_drive());
   const std::int64_t start_ns = start_of(short_drive());
   for (const auto kind : {recording::EventKind::kPressure, recording::EventKind::kBasePressure}) {
@@ -202,12 +202,11 @@ TEST_CASE("a barometer that stands kilopascals elsewhere for seconds does not mo
     });
     std::filesystem::path out;
     run(folder, out);
-    CHECK(largest_error_m(short_drive(), out) <
-          0.25);  // the level is known to the noise of 16 samples, 0.1 m
+    CHECK(largest_error_m(short_drive(), out) < 0.25);  // the level is estimated from 16 samples, 0.1 m
   }
 }
 
-TEST_CASE("a step of the pressure that the robot cannot have climbed is not taken for height") {
+TEST_CASE("a pressure step that is faster than any climb does not move the height") {
   const auto manifest = manifest_of(short_drive());
   const std::int64_t start_ns = start_of(short_drive());
   const auto folder = copy_with(short_drive(), "step", {}, [&](recording::Event event, auto& writer) {

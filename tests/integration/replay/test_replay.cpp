@@ -14,7 +14,7 @@ namespace isobar::test::test_replay {
 
 using namespace isobar;  // NOLINT(google-build-using-namespace): a test
 
-TEST_CASE("replaying the same recording twice gives the same trajectory and the same map to the last bit") {
+TEST_CASE("replaying a recording twice gives the same trajectory and map, bit for bit") {
   std::filesystem::path first;
   std::filesystem::path second;
   run(short_drive(), first);
@@ -27,7 +27,7 @@ TEST_CASE("replaying the same recording twice gives the same trajectory and the 
   CHECK(map == bytes_of(second / "map.ply"));
 }
 
-TEST_CASE("the map of a run lies in its folder, whole, and map.ply is what it holds") {
+TEST_CASE("the map of a run is complete in its folder, and map.ply is its export") {
   std::filesystem::path out;
   const ReplaySummary summary = run(short_drive(), out);
   const auto store = FileTileStore::open_to_read(out / "map");
@@ -42,12 +42,12 @@ TEST_CASE("the map of a run lies in its folder, whole, and map.ply is what it ho
   CHECK(bytes_of(exported) == bytes_of(out / "map.ply"));
 }
 
-TEST_CASE("a map that may not get large forgets tiles and says how many; the poses stay as they are") {
+TEST_CASE("a map at its size limit deletes tiles and counts them; the poses do not change") {
   Config config;
-  config.map.cell_m = 0.15;  // small tiles: none that alone is too large for the limit
+  config.map.cell_m = 0.15;  // small tiles: no single one exceeds the limit
   const std::filesystem::path whole = fresh_folder("whole-map");
   replay(short_drive(), config, whole, [](double) {});
-  // Less than the configuration file may say, because the drive is short.
+  // Below the range of the setting, because the drive is short.
   const std::uint64_t limit = FileTileStore::open_to_read(whole / "map")->disk_bytes() * 3 / 4;
   config.map_files.max_disk_gb = static_cast<double>(limit) * 1e-9;
   const std::filesystem::path out = fresh_folder("small-map");
@@ -62,9 +62,9 @@ TEST_CASE("a map that may not get large forgets tiles and says how many; the pos
 TEST_CASE("every scan gets a pose, in order, and nearly all are registered") {
   std::filesystem::path out;
   const ReplaySummary summary = run(short_drive(), out);
-  CHECK(summary.scans >= 135);  // 14 s at 10 Hz, less what the ends cut off
+  CHECK(summary.scans >= 135);  // 14 s at 10 Hz, minus the cut ends
   CHECK(summary.poses >= summary.scans);
-  // Gravity is known after half a second, then the map starts: up to eight scans.
+  // The map starts after the alignment of half a second: up to eight scans.
   CHECK(summary.registered >= summary.scans - 8);
   const auto poses = recording::read_tum(out / "trajectory.tum");
   CHECK(poses.size() == summary.poses);
@@ -72,9 +72,9 @@ TEST_CASE("every scan gets a pose, in order, and nearly all are registered") {
                        [](const auto& a, const auto& b) { return a.stamp_ns < b.stamp_ns; }));
 }
 
-TEST_CASE("each method follows the drive") {
-  // A few metres of travel: 15 cm hold for every method but dead reckoning, which also drifts with the
-  // wheels' scale and slip (up to a few per cent).
+TEST_CASE("every method follows the drive") {
+  // A few metres of travel: 15 cm for every method but dead reckoning, which drifts with the wheels' scale
+  // and slip (up to a few per cent).
   for (const Method method : {Method::k3Dof, Method::k4Dof, Method::k6Dof, Method::k4DofAltitude,
                               Method::k6DofAltitude, Method::kOdometry}) {
     CAPTURE(static_cast<int>(method));
@@ -84,7 +84,7 @@ TEST_CASE("each method follows the drive") {
   }
 }
 
-TEST_CASE("the settings that a run wrote are those it used: running them again gives the same trajectory") {
+TEST_CASE("a run with the settings file of another run gives the same trajectory") {
   std::filesystem::path out;
   run(short_drive(), out);
   const Config again = load_config(out / "settings.toml");

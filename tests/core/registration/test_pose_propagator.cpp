@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/registration/pose_propagator.hpp"
-
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "core/registration/pose_propagator.hpp"
 
 namespace isobar::test::test_pose_propagator {
 
@@ -22,7 +23,7 @@ Eigen::Isometry3d pose_of(double x_m, double y_m, double z_m, double yaw_rad) {
   return T;
 }
 
-/// A robot on a circle of 5 m at 1 m/s, whose wheels measure everything in the right way but for a scale.
+/// A robot on a circle of 5 m at 1 m/s. Its wheels have no error but a scale.
 struct Drive {
   double wheel_scale = 1.0;
   bool has_wheels = true;
@@ -38,7 +39,7 @@ struct Drive {
     prior.stamp_ns = (step + 1) * kStepNs;
     prior.T_odom_base = truth(step);
     prior.T_odom_base.translation() *= has_wheels ? wheel_scale : 0.0;
-    prior.T_odom_base.translation().z() = 0.0;  // wheels know nothing of a cabin that climbs
+    prior.T_odom_base.translation().z() = 0.0;  // wheels do not measure the climb of a cabin
     prior.height_m = 100.0 + climb_m_s * time_s(step);
     prior.height_variance_m2 = 1e-4;
     prior.height_source = HeightSource::kDifferential;
@@ -47,7 +48,7 @@ struct Drive {
     prior.w_base_rad_s = Eigen::Vector3d(0.0, 0.0, 0.2);
     return prior;
   }
-  /// What the registration says about that step: the truth, moved by `error`.
+  /// Registered pose of that step: the truth, moved by `error`.
   [[nodiscard]] PoseEstimate registered(
       int step, const Eigen::Isometry3d& error = Eigen::Isometry3d::Identity()) const {
     PoseEstimate pose;
@@ -76,7 +77,7 @@ void run(const Drive& drive, int steps, Check&& check, PosePropagatorConfig conf
   }
 }
 
-TEST_CASE("nothing comes out before the first registered pose") {
+TEST_CASE("there is no odometry before the first registered pose") {
   PosePropagator propagator;
   Odometry odometry;
   CHECK_FALSE(propagator.propagate(Drive{}.prior(0), odometry));
@@ -85,7 +86,7 @@ TEST_CASE("nothing comes out before the first registered pose") {
   CHECK(propagator.propagate(Drive{}.prior(2), odometry));
 }
 
-TEST_CASE("map to odom times odom to base is the best pose, whatever the wheels do") {
+TEST_CASE("map to odom times odom to base is the best pose, also with a wrong wheel scale") {
   int count = 0;
   run(Drive{.wheel_scale = 1.1}, 2000, [&](int, const Odometry& odometry) {
     const Eigen::Isometry3d product = odometry.T_map_odom * odometry.T_odom_base;
@@ -95,7 +96,7 @@ TEST_CASE("map to odom times odom to base is the best pose, whatever the wheels 
   CHECK(count > 1900);
 }
 
-TEST_CASE("with perfect dead reckoning the best pose is the truth and odom stays where map is") {
+TEST_CASE("with perfect dead reckoning the best pose is the truth and map to odom stays the identity") {
   const Drive drive;
   run(drive, 4000, [&](int step, const Odometry& odometry) {
     CHECK((odometry.T_map_base.matrix() - drive.truth(step).matrix()).norm() < 1e-9);
@@ -103,7 +104,7 @@ TEST_CASE("with perfect dead reckoning the best pose is the truth and odom stays
   });
 }
 
-TEST_CASE("odometry follows the registered pose, however far dead reckoning drifts") {
+TEST_CASE("odometry follows the registered pose while dead reckoning drifts by metres") {
   // 10 % of scale at 1 m/s: dead reckoning is wrong by metres; between registrations (0.1 s and 40 ms of
   // delay) the best pose is wrong by up to 14 mm, and odom lags behind it by the error's rate times the time
   // constant.
@@ -120,7 +121,7 @@ TEST_CASE("odometry follows the registered pose, however far dead reckoning drif
   CHECK(worst_odom_m < 0.014 + 0.1 * 0.1 + 0.01);
 }
 
-TEST_CASE("a jump of the registration reaches odom no faster than the slew rate, and completely") {
+TEST_CASE("a jump of the registration enters odom at the slew rate at most, and completely") {
   const Drive drive;
   const PosePropagatorConfig config;
   const Eigen::Isometry3d jump = pose_of(0.6, -0.3, 0.0, 0.2);
@@ -135,7 +136,7 @@ TEST_CASE("a jump of the registration reaches odom no faster than the slew rate,
     const Eigen::Isometry3d T_before_now = before.T_odom_base.inverse() * now.T_odom_base;
     const Eigen::Isometry3d T_truth = drive.truth(step - 1).inverse() * drive.truth(step);
     const Eigen::Isometry3d extra = T_truth.inverse() * T_before_now;
-    // The step's own rotation turns the correction: a part of a thousandth.
+    // The step's own rotation turns the correction: a fraction of a thousandth.
     CHECK(extra.translation().norm() <= config.max_slew_m_s * kStepS * 1.001 + 1e-12);
     CHECK(Eigen::AngleAxisd(extra.linear()).angle() <= config.max_slew_rad_s * kStepS + 1e-9);
   }
@@ -150,7 +151,23 @@ TEST_CASE("in an elevator the height between scans is the altimeter's") {
   });
 }
 
-TEST_CASE("without wheels the velocity between the last scans is taken on, for a limited time") {
+TEST_CASE("in method odometry the height between poses is dead reckoning's, not the altimeter's") {
+  // A cabin that climbs to 1 m: the altimeter sees it, wheels and hence the poses of this method do not.
+  const Drive drive{.climb_m_s = 1.0};
+  PosePropagator propagator;
+  Odometry odometry;
+  static_cast<void>(propagator.propagate(drive.prior(0), odometry));
+  static_cast<void>(propagator.propagate(drive.prior(1), odometry));
+  PoseEstimate pose = drive.registered(0);
+  pose.method = pose.effective_method = Method::kOdometry;
+  pose.mode = PoseMode::kPriorOnly;
+  propagator.add_pose(pose);
+  REQUIRE(propagator.propagate(drive.prior(200), odometry));
+  CHECK(odometry.T_map_base.translation().z() == doctest::Approx(0.0).epsilon(1e-9));
+  CHECK(odometry.T_odom_base.translation().z() == doctest::Approx(0.0).epsilon(1e-9));
+}
+
+TEST_CASE("without wheels the velocity between the last scans is extrapolated for a limited time") {
   const Drive drive{.has_wheels = false};
   // The circle departs from the straight line by v w t^2 / 2 and the velocity is that of 0.05 s before the
   // scan: at 0.14 s after it 1 m/s * 0.2 rad/s * (0.14^2 / 2 + 0.05 * 0.14) m = 3.4 mm.
@@ -172,7 +189,7 @@ TEST_CASE("without wheels the velocity between the last scans is taken on, for a
   CHECK(odometry.v_base_m_s.isZero());
 }
 
-TEST_CASE("variances grow with the age of the registered pose and never shrink below it") {
+TEST_CASE("variances grow with the age of the registered pose") {
   Drive drive;
   PosePropagator propagator;
   propagator.add_pose(drive.registered(0));
@@ -190,7 +207,7 @@ TEST_CASE("variances grow with the age of the registered pose and never shrink b
   CHECK(odometry.twist_covariance(0, 0) == 0.01);
 }
 
-TEST_CASE("priors and poses that are not finite or that go back in time change nothing") {
+TEST_CASE("priors and poses that are not finite or go back in time are ignored") {
   const Drive drive;
   PosePropagator propagator;
   propagator.add_pose(drive.registered(0));

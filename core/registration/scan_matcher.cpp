@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/registration/scan_matcher.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry.hpp"
+
+namespace isobar {
+
+namespace {
+
+Vector6d free_directions(const Basis& basis) { return basis.rowwise().norm(); }
+
+// Twice the standard deviation of the prediction's position in the directions that the solver may move in.
+double free_error_m(const Prediction& prediction, const Basis& basis) {
+  return 2.0 * prediction.deviation.tail<3>().dot(basis.bottomRows<3>().rowwise().norm());
+}
+
+}  // namespace
+
+ScanMatcher::ScanMatcher(const RegistrationConfig& config, const Eigen::Vector3d& p_base_lidar)
+    : config_(config), p_base_lidar_(p_base_lidar), correspondences_(config.sample_points) {}
+
+MatchResult ScanMatcher::match(const MatchProblem& problem) {
+  const PairNoise noise = pair_noise(problem);
+  SearchSchedule schedule(config_, free_error_m(problem.prediction, problem.traits.basis));
+  MatchResult result;
+  result.T_map_base = problem.prediction.T_map_base;
+  correspondences_.start(problem.map, result.T_map_base.translation());
+  Step step;
+  for (int i = 0; i < config_.max_iterations; ++i) {
+    const Iteration iteration = iterate(problem, noise, schedule, result.T_map_base);
+    step = iteration.step;
+    if (!step.solved) return result;
+    result.T_map_base = moved_by(step.twist, result.T_map_base);
+    count(iteration, problem.p_base.size(), result);
+    if (schedule.converged(step.twist)) break;
+    schedule.advance(step.twist);
+  }
+  summarise(problem, step, result);
+  return result;
+}
+
+ScanMatcher::Iteration ScanMatcher::iterate(const MatchProblem& problem, const PairNoise& noise,
+                                            const SearchSchedule& schedule,
+                                            const Eigen::Isometry3d& T_map_base) {
+  const double distance_m = schedule.distance_m();
+  const std::span<const Pair> pairs = correspondences_.find(problem.map, problem.p_base, schedule.stride(),
+                                                            T_map_base, p_base_lidar_, distance_m);
+  const float scale_m = residual_scale_m(pairs, noise, static_cast<float>(distance_m) / 2.0F);
+  const NormalEquations equations = accumulate(pairs, noise, scale_m);
+  Iteration iteration;
+  iteration.step = solve_step(equations, prior_term(problem.prediction, T_map_base), problem.traits.basis,
+                              weights(scale_m, schedule.share()));
+  iteration.pair_count = pairs.size() * schedule.stride();
+  iteration.residual_rms_m =
+      equations.weight_sum > 0.0 ? std::sqrt(equations.squared_error_sum / equations.weight_sum) : 0.0;
+  return iteration;
+}
+
+PairNoise ScanMatcher::pair_noise(const MatchProblem& problem) const {
+  PairNoise noise;
+  const Vector6d free = free_directions(problem.traits.basis);
+  const double attitude = config_.attitude_error_deg * kRadPerDeg;
+  const double height2 =
+      config_.height_error_m * config_.height_error_m + std::clamp(problem.height_variance_m2, 0.0, 1.0);
+  Vector6d fixed;
+  fixed << attitude * attitude, attitude * attitude, 0.0, 0.0, 0.0, height2;
+  noise.fixed_variance = fixed.cwiseProduct(Vector6d::Ones() - free).cast<float>();
+  noise.free = free.cast<float>();
+  noise.noise_m = static_cast<float>(config_.min_residual_scale_m);
+  return noise;
+}
+
+PriorTerm ScanMatcher::prior_term(const Prediction& prediction, const Eigen::Isometry3d& T_map_base) const {
+  PriorTerm term;
+  term.information = prediction.deviation.cwiseAbs2().cwiseInverse().asDiagonal();
+  term.deviation = twist_between(prediction.T_map_base, T_map_base);
+  return term;
+}
+
+SolverWeights ScanMatcher::weights(float scale_m, double share) const {
+  SolverWeights weights;
+  weights.pair_information = 1.0 / (config_.correlated_pairs * scale_m * scale_m * share);
+  weights.false_information = std::pow(std::sin(config_.normal_error_deg * kRadPerDeg), 2);
+  weights.degenerate_information = config_.degenerate_information;
+  return weights;
+}
+
+void ScanMatcher::count(const Iteration& iteration, std::size_t sampled_points, MatchResult& result) {
+  ++result.iterations;
+  result.sampled_points = static_cast<std::uint32_t>(sampled_points);
+  result.matched_pairs = static_cast<std::uint32_t>(iteration.pair_count);
+  result.residual_rms_m = iteration.residual_rms_m;
+}
+
+void ScanMatcher::summarise(const MatchProblem& problem, const Step& step, MatchResult& result) {
+  result.solved = true;
+  if (!problem.p_base.empty()) {
+    const double share =
+        static_cast<double>(result.matched_pairs) / static_cast<double>(problem.p_base.size());
+    result.overlap = std::min(1.0, share);
+  }
+  result.smallest_eigenvalues = step.smallest_eigenvalues;
+  result.degenerate = step.degenerate;
+  const Vector6d fixed = Vector6d::Ones() - free_directions(problem.traits.basis);
+  result.twist_covariance = step.covariance;
+  result.twist_covariance.diagonal() += fixed.cwiseProduct(problem.prediction.deviation.cwiseAbs2());
+}
+
+}  // namespace isobar
