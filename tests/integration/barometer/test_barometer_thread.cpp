@@ -13,7 +13,7 @@
 #include <thread>
 
 #include "daemon/health.hpp"
-#include "drivers/datagram/udp.hpp"
+#include "drivers/clock/robot_clock.hpp"
 #include "drivers/dps310/sensor.hpp"
 #include "tests/drivers/dps310/chip_model.hpp"
 

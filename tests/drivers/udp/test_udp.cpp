@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "core/errors.hpp"
-#include "drivers/datagram/udp.hpp"
+#include "drivers/clock/robot_clock.hpp"
+#include "drivers/udp/udp.hpp"
 
 namespace isobar::test::test_udp {
 
@@ -51,7 +52,8 @@ TEST_CASE("A socket that cannot be had is explained with address and port") {
                        ServiceError);
   CHECK_THROWS_WITH_AS(UdpReceiver("203.0.113.7", 2'368),
                        doctest::Contains("203.0.113.7:2368: no network interface"), ServiceError);
-  CHECK_THROWS_WITH_AS(UdpReceiver("localhost", 2'368), doctest::Contains("no IPv4 address"), ServiceError);
+  CHECK_THROWS_WITH_AS(UdpReceiver("localhost", 2'368), doctest::Contains("is not an IPv4 address"),
+                       ServiceError);
   CHECK_THROWS_AS(UdpSender("300.1.1.1", 1), ServiceError);
 }
 
