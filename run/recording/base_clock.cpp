@@ -34,7 +34,7 @@ StampSpan robust_span(std::vector<std::int64_t>& stamps_ns) {
 }
 
 template <typename Sample>
-std::optional<StampSpan> span_of(CsvReader&& csv) {
+std::optional<StampSpan> span_of(text::CsvReader&& csv) {
   Tally ignored;
   Sample sample;
   std::vector<std::int64_t> stamps_ns;

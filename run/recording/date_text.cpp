@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-#include "run/recording/number_text.hpp"
+#include "run/text/number_text.hpp"
 
 namespace isobar::recording {
 namespace {
@@ -57,7 +57,7 @@ bool take_seconds(std::string_view& text, std::int64_t& ns) {
   std::size_t length = text.find_first_not_of("0123456789.");
   length = length == std::string_view::npos ? text.size() : length;
   constexpr std::int64_t kNsPerMinute = 60'000'000'000;
-  const bool fits = length >= 2 && parse_seconds(text.substr(0, length), ns) && ns < kNsPerMinute;
+  const bool fits = length >= 2 && text::parse_seconds(text.substr(0, length), ns) && ns < kNsPerMinute;
   text.remove_prefix(length);
   return fits;
 }
@@ -89,7 +89,7 @@ bool take_zone(std::string_view& text, std::int64_t& minutes) {
 }  // namespace
 
 bool parse_date(std::string_view text, std::int64_t& stamp_ns) {
-  text = trimmed(text);
+  text = text::trimmed(text);
   std::int64_t days = 0;
   std::int64_t seconds_ns = 0;
   std::int64_t zone_minutes = 0;

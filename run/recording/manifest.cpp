@@ -9,7 +9,7 @@
 
 #include "core/errors.hpp"
 #include "core/toml_text.hpp"
-#include "run/recording/number_text.hpp"
+#include "run/text/number_text.hpp"
 
 namespace isobar::recording {
 namespace {
@@ -68,7 +68,7 @@ class ManifestText {
       return Eigen::Vector3d::Zero();
     }
     const std::string rule =
-        "must be three numbers within -" + number_text(limit) + " … " + number_text(limit);
+        "must be three numbers within -" + text::number_text(limit) + " … " + text::number_text(limit);
     const std::string name = section_name + "." + key;
     const toml::array* array = node->as_array();
     if (array == nullptr || array->size() != 3) {
@@ -174,7 +174,8 @@ toml::table parse_toml(std::string_view text, const std::string& file) {
 }
 
 std::string triple_text(const Eigen::Vector3d& v) {
-  return "[" + number_text(v.x()) + ", " + number_text(v.y()) + ", " + number_text(v.z()) + "]";
+  return "[" + text::number_text(v.x()) + ", " + text::number_text(v.y()) + ", " + text::number_text(v.z()) +
+         "]";
 }
 
 std::string sensor_text(const char* name, const std::optional<SensorEntry>& sensor, bool position,

@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "core/errors.hpp"
-#include "run/recording/number_text.hpp"
+#include "run/text/number_text.hpp"
 
 namespace isobar::recording {
 namespace {
@@ -120,7 +120,7 @@ bool has_word(std::string_view name, std::string_view word) {
 }
 
 PressureHeader find_pressure_header(const std::filesystem::path& file, const PressureColumns& wanted) {
-  TextLines lines(file);
+  text::TextLines lines(file);
   std::string_view line;
   Fields fields;
   Attempt nearest;
@@ -128,11 +128,11 @@ PressureHeader find_pressure_header(const std::filesystem::path& file, const Pre
   nearest.rule = "is empty, must start with a line that names the columns";
   std::size_t nearest_line = 1;
   while (lines.line_number() < kLinesSearched && lines.next(line)) {
-    if (lines.line_number() == 1 && !trimmed(line).empty()) {
+    if (lines.line_number() == 1 && !text::trimmed(line).empty()) {
       nearest.rule = "must name columns separated by comma, semicolon or tab";
     }
     for (const char separator : kSeparators) {
-      split_fields(line, separator, fields);
+      text::split_fields(line, separator, fields);
       if (fields.size() < 2) {
         continue;
       }

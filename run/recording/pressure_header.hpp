@@ -4,14 +4,14 @@
 #include <filesystem>
 #include <string>
 
-#include "run/recording/csv_reader.hpp"
 #include "run/recording/pressure_log.hpp"
+#include "run/text/csv_reader.hpp"
 
 namespace isobar::recording {
 
 /// Where a logger's CSV names its columns, and which of them are meant.
 struct PressureHeader {
-  CsvFormat format;
+  text::CsvFormat format;
   std::string time;
   std::string pressure;
   std::string temperature;  ///< empty: there is none

@@ -43,7 +43,7 @@ class Stream {
 template <typename Sample>
 class SampleStream : public Stream {
  public:
-  SampleStream(std::string name, EventKind kind, CsvReader&& csv, std::int64_t offset_ns,
+  SampleStream(std::string name, EventKind kind, text::CsvReader&& csv, std::int64_t offset_ns,
                const StampGuardConfig& guard)
       : name_(std::move(name)), kind_(kind), csv_(std::move(csv)), offset_ns_(offset_ns), order_(guard) {}
 
@@ -85,7 +85,7 @@ class SampleStream : public Stream {
  private:
   std::string name_;
   EventKind kind_;
-  CsvReader csv_;
+  text::CsvReader csv_;
   std::int64_t offset_ns_;
   StampOrder<Sample> order_;
   Sample current_;

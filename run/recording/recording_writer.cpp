@@ -9,8 +9,9 @@
 
 #include "core/errors.hpp"
 #include "run/recording/csv_writer.hpp"
-#include "run/recording/number_text.hpp"
+#include "run/recording/reference.hpp"
 #include "run/recording/udp_frame.hpp"
+#include "run/text/number_text.hpp"
 
 namespace isobar::recording {
 namespace {
@@ -191,13 +192,13 @@ void RecordingWriter::add_reference(std::int64_t stamp_ns, const Eigen::Isometry
   present(files_->reference, "reference").write(format_tum_row(stamp_ns, T_map_base));
 }
 
-void RecordingWriter::add_segment(const Segment& segment) {
+void RecordingWriter::add_segment(const text::Segment& segment) {
   if (!files_->segments) {
     files_->segments.emplace(files_->folder / kSegmentsFile);
     files_->segments->write("t_start_ns,t_end_ns,label\n");
   }
-  files_->segments->write(number_text(segment.start_ns) + "," + number_text(segment.end_ns) + "," +
-                          segment.label + "\n");
+  files_->segments->write(text::number_text(segment.start_ns) + "," + text::number_text(segment.end_ns) +
+                          "," + segment.label + "\n");
 }
 
 void RecordingWriter::close() {

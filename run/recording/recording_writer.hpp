@@ -9,7 +9,7 @@
 
 #include "core/samples.hpp"
 #include "run/recording/manifest.hpp"
-#include "run/recording/reference.hpp"
+#include "run/text/segments.hpp"
 
 namespace isobar::recording {
 
@@ -34,7 +34,7 @@ class RecordingWriter {
   void add_base_pressure(const PressureSample& sample);  ///< stamp on the base station's own clock
   void add_wheel(const WheelSample& sample);
   void add_reference(std::int64_t stamp_ns, const Eigen::Isometry3d& T_map_base);
-  void add_segment(const Segment& segment);
+  void add_segment(const text::Segment& segment);
 
   /// Flushes and closes all files. Throws DataError when anything could not be written (disk full). A sample
   /// for a sensor that is not in the manifest throws std::logic_error: that is a fault of the caller.

@@ -15,6 +15,7 @@
 #include "core/plausibility.hpp"
 #include "run/recording/recording_reader.hpp"
 #include "run/recording/reference.hpp"
+#include "run/text/segments.hpp"
 
 namespace {
 
@@ -81,6 +82,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   });
   tolerate([] { read_tum(scratch() / "reference.tum"); });
-  tolerate([] { read_segments(scratch() / "segments.csv"); });
+  tolerate([] { isobar::text::read_segments(isobar::text::TextLines(scratch() / "segments.csv")); });
   return 0;
 }

@@ -9,6 +9,8 @@
 #include "core/errors.hpp"
 #include "run/recording/recording_reader.hpp"
 #include "run/recording/recording_writer.hpp"
+#include "run/recording/reference.hpp"
+#include "run/text/segments.hpp"
 #include "tests/run/recording/scratch.hpp"
 
 namespace isobar::test::test_round_trip {
@@ -137,7 +139,7 @@ TEST_CASE("Trajectories and segments survive writing and reading") {
   CHECK(poses[0].stamp_ns == kStart + 7);
   CHECK(poses[0].T_map_base.translation() == pose.translation());
   CHECK((poses[0].T_map_base.linear() - pose.linear()).norm() < 1e-14);  // through a quaternion and back
-  const auto segments = read_segments(scratch.path() / "segments.csv");
+  const auto segments = text::read_segments(text::TextLines(scratch.path() / "segments.csv"));
   REQUIRE(segments.size() == 1);
   CHECK(segments[0].start_ns == kStart);
   CHECK(segments[0].end_ns == kStart + 10);
