@@ -5,6 +5,8 @@
 
 #include <cstdint>
 
+#include "core/plausibility.hpp"
+
 namespace isobar {
 
 /// Which air temperature the hypsometric factor uses.
@@ -48,9 +50,9 @@ struct AirTemperatureConfig {
 struct AltimeterConfig {
   AirTemperatureConfig air;
 
-  /// Plausible absolute pressures [Pa]. 30 kPa is 9 km up, 115 kPa a mine 1.1 km down.
-  double min_pressure_pa = 30'000.0;
-  double max_pressure_pa = 115'000.0;
+  /// Air pressures at the site [Pa]. 30 kPa is 9 km up, 115 kPa a mine 1.1 km down.
+  double min_pressure_pa = kGroundPressurePa.lowest;
+  double max_pressure_pa = kGroundPressurePa.highest;
 
   /// Bounds of the white noise of one sample, estimated online [Pa]. Below the floor no chip
   /// goes (DPS310 at its best 0.2 Pa); `initial` holds until enough samples have come (DPS310, 32 Hz: 0.35

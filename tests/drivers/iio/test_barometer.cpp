@@ -138,7 +138,7 @@ TEST_CASE("a device that vanishes is asked for again, and comes back with anothe
   { std::ofstream(folder.path() + "/in_pressure_raw", std::ios::trunc); }
   bench.run(0.5);
   CHECK(bench.state() == BarometerState::kNoAnswer);
-  CHECK(bench.fault().find("the file holds no number") == 0);
+  CHECK(bench.fault().find("the file does not hold a number") == 0);
   folder.remove("in_pressure_raw");
   bench.run(3.0);
   CHECK(bench.fault() == "no such device or channel (No such file or directory)");

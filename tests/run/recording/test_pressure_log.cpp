@@ -120,9 +120,10 @@ TEST_CASE("Rows that are no numbers, implausible, torn or older than the newest 
 }
 
 TEST_CASE("Units that contradict the values, each other, or nothing at all are errors, never a guess") {
-  CHECK(contains(error_of("t_s,pressure_pa\n1,985\n"),
-                 "pressure is in Pa, as the column's name says, but its median, 985 Pa, is no air pressure"));
-  CHECK(contains(error_of("t_s,p\n1,29.9\n"), "the unit of pressure cannot be told: its median, 29.9"));
+  CHECK(contains(
+      error_of("t_s,pressure_pa\n1,985\n"),
+      "pressure is in Pa, as the column's name says, but its median, 985 Pa, is not an air pressure"));
+  CHECK(contains(error_of("t_s,p\n1,29.9\n"), "the unit of pressure is unknown: its median, 29.9"));
   CHECK(contains(error_of("t_s,p_hPa_kPa\n1,98\n"), "more than one unit"));
   PressureColumns chosen;
   chosen.pressure_unit = "kPa";
