@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Plausible ranges of sample values, for every robot: a value outside is a fault of the sensor or of the transport.
-// Files, datagrams, DDS and device drivers share them, so that live runs and replays refuse the same samples.
-// Narrower limits have other names: the operating range of a sensor (DPS310), the range of a robot's IMU
-// (PriorLimits), the top speed of its wheels (DeadReckoningConfig), the pressures at its site (AltimeterConfig).
+// Plausible ranges of sample values, for every robot: a value outside is a fault of the sensor or of the
+// transport. Files, datagrams, DDS and device drivers share them, so that live runs and replays refuse the
+// same samples. Narrower limits have other names: the operating range of a sensor (DPS310), the range of a
+// robot's IMU (PriorLimits), the top speed of its wheels (DeadReckoningConfig), the pressures at its site
+// (AltimeterConfig).
 #pragma once
 
 #include <cmath>

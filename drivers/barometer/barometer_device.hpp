@@ -40,8 +40,8 @@ struct BarometerStatus {
   BarometerCounters counters;
 };
 
-/// A polled barometer, which chooses the time of the next poll. Nothing throws, waits or sleeps: an absent device is
-/// retried at a later poll.
+/// A polled barometer, which chooses the time of the next poll. Nothing throws, waits or sleeps: an absent
+/// device is retried at a later poll.
 class BarometerDevice {
  public:
   struct Step {
@@ -62,8 +62,8 @@ class BarometerDevice {
   [[nodiscard]] virtual const std::string& place() const noexcept = 0;
 };
 
-/// Time without a good result after which a device is silent [ns]: three measurements, at least 0.3 s. From 8 Hz on,
-/// silence is reported within 0.5 s.
+/// Time without a good result after which a device is silent [ns]: three measurements, at least 0.3 s. From 8
+/// Hz on, silence is reported within 0.5 s.
 [[nodiscard]] constexpr std::int64_t barometer_silence_ns(int rate_hz) noexcept {
   const std::int64_t three_ns = 3'000'000'000 / rate_hz;
   return three_ns > 300'000'000 ? three_ns : 300'000'000;

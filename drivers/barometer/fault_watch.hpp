@@ -8,17 +8,18 @@
 
 namespace isobar {
 
-/// Detector of frozen results. Air and converter noise always move the last bits of a 24 bit result: sixteen equal
-/// ones in a row happen by chance once in years.
+/// Detector of frozen results. Air and converter noise always move the last bits of a 24 bit result: sixteen
+/// equal ones in a row happen by chance once in years.
 class StuckWatch {
  public:
   static constexpr std::uint64_t kMinEqual = 16;
 
-  /// @param time_ns shortest time without a change that is a fault; 0: no detection (a coarse converter in calm air)
+  /// @param time_ns shortest time without a change that is a fault; 0: no detection (a coarse converter in
+  ///         calm air)
   explicit StuckWatch(std::int64_t time_ns) : time_ns_(time_ns) {}
 
-  /// Adds a result; true while the results are stuck. Keeps its history across initialisations of the device: a
-  /// sensor that is still stuck after a reset is detected at once.
+  /// Adds a result; true while the results are stuck. Keeps its history across initialisations of the device:
+  /// a sensor that is still stuck after a reset is detected at once.
   bool add(std::int64_t bits, std::int64_t now_ns) noexcept {
     if (equal_ == 0 || bits != bits_) {
       bits_ = bits;

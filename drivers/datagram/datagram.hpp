@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Text protocol over UDP for samples from a microcontroller, or from a driver without DDS.
 //
-// A datagram holds one or more lines, a line one sample. Lines end with \n or \r\n (optional on the last one):
+// A datagram holds one or more lines, a line one sample. Lines end with \n or \r\n (optional on the last
+// one):
 //
 //   imu,SEQ,t_ns,gx,gy,gz,ax,ay,az[,qw,qx,qy,qz]   rad/s, m/s^2, attitude if the IMU computes one
 //   baro,SEQ,t_ns,pressure_pa,temperature_c        the robot's barometer; temperature nan: no thermometer

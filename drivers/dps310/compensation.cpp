@@ -9,8 +9,8 @@ namespace isobar::dps310 {
 
 namespace {
 
-// Operating range of the data sheet: the chip specifies no result outside. Narrower than the plausible ranges of
-// core/plausibility.hpp, which hold for every sensor.
+// Operating range of the data sheet: the chip specifies no result outside. Narrower than the plausible ranges
+// of core/plausibility.hpp, which hold for every sensor.
 constexpr PlausibleRange kOperatingPressurePa{30e3, 120e3};
 constexpr PlausibleRange kOperatingTemperatureC{-40.0, 85.0};
 static_assert(kPlausiblePressurePa.holds(kOperatingPressurePa.lowest) &&

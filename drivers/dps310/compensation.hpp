@@ -31,8 +31,8 @@ using CoefficientBytes = std::array<std::uint8_t, kCoefficientBytes>;
 /// Coefficients", registers 0x10 … 0x21). Every input decodes; see implausibility().
 [[nodiscard]] Coefficients decode_coefficients(const CoefficientBytes& bytes) noexcept;
 
-/// The rule that the coefficients break, a static text; nullptr when none. They have no checksum: the rules detect a
-/// memory that is not loaded yet and a bus that reads only zeros or ones.
+/// The rule that the coefficients break, a static text; nullptr when none. They have no checksum: the rules
+/// detect a memory that is not loaded yet and a bus that reads only zeros or ones.
 [[nodiscard]] const char* implausibility(const CoefficientBytes& bytes) noexcept;
 
 /// Raw results, 24 bit two's complement.
@@ -57,14 +57,16 @@ struct RawResult {
   return kScale[index_of(oversampling) & 7U];
 }
 
-/// Duration of one measurement of pressure or temperature [s], typical (data sheet, "Pressure Configuration").
+/// Duration of one measurement of pressure or temperature [s], typical (data sheet, "Pressure
+/// Configuration").
 [[nodiscard]] constexpr double measurement_time_s(int oversampling) noexcept {
   constexpr std::array<double, 8> kTime{3.6e-3,  5.2e-3,  8.4e-3,   14.8e-3,
                                         27.6e-3, 53.2e-3, 104.4e-3, 206.8e-3};
   return kTime[index_of(oversampling) & 7U];
 }
 
-/// Noise of one pressure [Pa rms] (same table; without a value for 128 times, which is no worse than 64 times).
+/// Noise of one pressure [Pa rms] (same table; without a value for 128 times, which is no worse than 64
+/// times).
 [[nodiscard]] constexpr double pressure_noise_pa(int oversampling) noexcept {
   constexpr std::array<double, 8> kNoise{2.5, 1.0, 0.5, 0.4, 0.35, 0.3, 0.2, 0.2};
   return kNoise[index_of(oversampling) & 7U];
@@ -82,8 +84,8 @@ struct Compensated {
 [[nodiscard]] Compensated compensate(const Coefficients& coefficients, const RawResult& raw,
                                      double pressure_scale, double temperature_scale) noexcept;
 
-/// The rule that a result breaks, a static text; nullptr when there is a result and it lies in the operating range of
-/// the data sheet, 300 … 1200 hPa and -40 … 85 degrees C.
+/// The rule that a result breaks, a static text; nullptr when there is a result and it lies in the operating
+/// range of the data sheet, 300 … 1200 hPa and -40 … 85 degrees C.
 [[nodiscard]] const char* implausibility(const RawResult& raw, const Compensated& value) noexcept;
 
 }  // namespace isobar::dps310

@@ -110,9 +110,10 @@ int Sensor::read_coefficients(const char*& rule) noexcept {
   return 0;
 }
 
-/// Temperature erratum: some chips read about 60 degrees C in a room of 20 until undocumented registers are written.
-/// The sequence is the manufacturer's and ends with a temperature measurement (Infineon's public driver,
-/// "correctTemp"; Linux, commit cc8baffe1761, "Temperature measurement errata"). Other chips are not affected.
+/// Temperature erratum: some chips read about 60 degrees C in a room of 20 until undocumented registers are
+/// written. The sequence is the manufacturer's and ends with a temperature measurement (Infineon's public
+/// driver, "correctTemp"; Linux, commit cc8baffe1761, "Temperature measurement errata"). Other chips are not
+/// affected.
 int Sensor::apply_erratum() noexcept {
   constexpr std::array<std::array<std::uint8_t, 2>, 5> kSequence{
       {{0x0E, 0xA5}, {0x0F, 0x96}, {0x62, 0x02}, {0x0E, 0x00}, {0x0F, 0x00}}};
@@ -214,9 +215,9 @@ void Sensor::take_result(std::int64_t now_ns, Step& step) noexcept {
   step.sample.variance_pa2 = noise_pa * noise_pa;
 }
 
-/// Reads the ready results until two reads agree: the chip may replace a result during a read, which then mixes two
-/// results and may clear the ready bit of the new one. A result that is not ready is not read: the read could clear
-/// the ready bit of one that arrives meanwhile.
+/// Reads the ready results until two reads agree: the chip may replace a result during a read, which then
+/// mixes two results and may clear the ready bit of the new one. A result that is not ready is not read: the
+/// read could clear the ready bit of one that arrives meanwhile.
 int Sensor::read_results(std::uint8_t ready) noexcept {
   const RawResult kept = raw_;
   int error = read_raw(ready);

@@ -14,8 +14,8 @@ namespace isobar::dps310 {
 ///   reset ──▶ ready? ──▶ coefficients, erratum, settings ──▶ one temperature ──▶ background measurement
 ///     ▲ after a back-off: no answer, wrong device, lost settings, silent, stuck, implausible
 ///
-/// The ready bits are polled four times a measurement. A sample's stamp is the middle of the chip's averaging time,
-/// exact to half a poll.
+/// The ready bits are polled four times a measurement. A sample's stamp is the middle of the chip's averaging
+/// time, exact to half a poll.
 class Sensor final : public BarometerDevice {
  public:
   /// @param settings validated: busy_time_s() below 1

@@ -7,8 +7,8 @@
 
 namespace isobar::dps310 {
 
-/// Device on a kernel I2C bus, /dev/i2c-N, accessed by SMBus calls only: byte reads and writes, and block reads where
-/// the adapter has them. i2c-stub and the simplest adapters support no more.
+/// Device on a kernel I2C bus, /dev/i2c-N, accessed by SMBus calls only: byte reads and writes, and block
+/// reads where the adapter has them. i2c-stub and the simplest adapters support no more.
 class SmbusDevice final : public RegisterBus {
  public:
   /// Does not open the bus.

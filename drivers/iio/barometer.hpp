@@ -10,8 +10,9 @@
 
 namespace isobar::iio {
 
-/// Barometer read through the kernel's industrial I/O: a sensor with a kernel driver (in_pressure, and in_temp if
-/// present), or a Setra 278 behind an analogue-to-digital converter. Its noise is unknown: variance_pa2 is NaN.
+/// Barometer read through the kernel's industrial I/O: a sensor with a kernel driver (in_pressure, and
+/// in_temp if present), or a Setra 278 behind an analogue-to-digital converter. Its noise is unknown:
+/// variance_pa2 is NaN.
 class Barometer final : public BarometerDevice {
  public:
   /// A sensor with a pressure channel.

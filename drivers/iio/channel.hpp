@@ -9,8 +9,8 @@ namespace isobar::iio {
 
 /// Channel of a device of the kernel's industrial I/O, read through sysfs (Linux,
 /// Documentation/ABI/testing/sysfs-bus-iio). A driver has either `NAME_input`, processed, or `NAME_raw` with
-/// `NAME_scale` and `NAME_offset`: value = (raw + offset) scale. An attribute shared by all channels of a kind has no
-/// channel number: in_voltage0_raw, in_voltage_scale.
+/// `NAME_scale` and `NAME_offset`: value = (raw + offset) scale. An attribute shared by all channels of a
+/// kind has no channel number: in_voltage0_raw, in_voltage_scale.
 class Channel {
  public:
   /// @param folder "/sys/bus/iio/devices/iio:device0"

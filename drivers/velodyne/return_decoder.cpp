@@ -10,11 +10,12 @@ namespace isobar::velodyne {
 namespace {
 
 constexpr double kRadPerCount = kRadPerDeg / 100.0;
-/// Larger azimuth steps between blocks are gaps of a restricted field of view, not rotation [0.01 deg]: 10 deg in one
-/// block would be 250 turns a second.
+/// Larger azimuth steps between blocks are gaps of a restricted field of view, not rotation [0.01 deg]: 10
+/// deg in one block would be 250 turns a second.
 constexpr std::uint32_t kMaxBlockStep = 1'000;
-/// Fixed-point unit of Channel::turn_share. Shares are rounded up, so that halves of a count round up; the error of
-/// 0.001 counts is below the 1/48 count that separates any channel's rotation from a different rounding.
+/// Fixed-point unit of Channel::turn_share. Shares are rounded up, so that halves of a count round up; the
+/// error of 0.001 counts is below the 1/48 count that separates any channel's rotation from a different
+/// rounding.
 constexpr std::uint32_t kWholeShare = 1U << 20U;
 
 std::uint32_t to_count(double degrees) {

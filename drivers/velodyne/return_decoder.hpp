@@ -24,15 +24,15 @@ struct VelodyneConfig {
   double mask_end_deg = 0.0;
 };
 
-/// Table-driven decoder: one table by channel (elevation, firing time, share of the block's rotation, ring), one
-/// by azimuth (all 36 000). Stateless: equal packets give equal points.
+/// Table-driven decoder: one table by channel (elevation, firing time, share of the block's rotation, ring),
+/// one by azimuth (all 36 000). Stateless: equal packets give equal points.
 class ReturnDecoder {
  public:
   explicit ReturnDecoder(const VelodyneConfig& config);
 
   /// Decodes blocks first_block … end_block - 1.
-  /// @param since_start_ns time of the packet's first firing after the scan's start; all blocks decoded must fire
-  ///                       0 … 262 ms after that start
+  /// @param since_start_ns time of the packet's first firing after the scan's start; all blocks decoded must
+  ///         fire 0 … 262 ms after that start
   /// @param out room for kChannels points a block, dropped returns included
   /// @return points written
   std::uint32_t decode(const DataPacket& packet, int first_block, int end_block, std::int64_t since_start_ns,

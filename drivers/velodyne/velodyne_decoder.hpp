@@ -38,10 +38,12 @@ struct VelodyneCounters {
   std::uint64_t scans = 0;        ///< scans completed
 };
 
-/// Decoder of Velodyne data packets into scans of one revolution. No I/O, no clock, no allocation after construction.
+/// Decoder of Velodyne data packets into scans of one revolution. No I/O, no clock, no allocation after
+/// construction.
 ///
-/// The caller owns the scans and passes the one being filled to every call; the decoder resets it at the start of
-/// a revolution. Blocks after the end of a revolution are kept until the next call, which passes the next scan:
+/// The caller owns the scans and passes the one being filled to every call; the decoder resets it at the
+/// start of a revolution. Blocks after the end of a revolution are kept until the next call, which passes the
+/// next scan:
 ///
 ///     Scan* scan = loan();
 ///     for (each packet) {
@@ -50,9 +52,9 @@ struct VelodyneCounters {
 ///     if (decoder.flush(*scan)) { publish(scan); }
 ///
 /// Points are in the sensor's frame (x at azimuth 0, y left, z up; recording-format.md). Point times within a
-/// scan come from the sensor's clock; ClockAnchor ties Scan::stamp_ns to the host's clock. A scan ends where the
-/// azimuth passes 0, after a gap of about a turn, at a step of the sensor's clock, and when it is full. No point is
-/// lost.
+/// scan come from the sensor's clock; ClockAnchor ties Scan::stamp_ns to the host's clock. A scan ends where
+/// the azimuth passes 0, after a gap of about a turn, at a step of the sensor's clock, and when it is full.
+/// No point is lost.
 class VelodyneDecoder {
  public:
   explicit VelodyneDecoder(const VelodyneConfig& config);

@@ -8,7 +8,7 @@
 namespace isobar::recording {
 namespace {
 
-/// Takes exactly `digits` digits off the front.
+/// Removes exactly `digits` digits from the front.
 bool take_digits(std::string_view& text, std::size_t digits, int& value) {
   if (text.size() < digits) {
     return false;
@@ -44,7 +44,7 @@ bool take_day(std::string_view& text, std::int64_t& days) {
                                          std::chrono::month(static_cast<unsigned>(month)),
                                          std::chrono::day(static_cast<unsigned>(day))};
   days = date.ok() ? std::chrono::sys_days(date).time_since_epoch().count() : 0;
-  // Loggers span days that int64 nanoseconds hold: the year decides.
+  // int64 nanoseconds hold 1677 to 2262.
   return date.ok() && year >= 1700 && year < 2250;
 }
 

@@ -14,11 +14,11 @@
 namespace isobar::recording {
 namespace {
 
-/// Farthest that a sensor can sit from base_link [m]; a larger number is a slip of units.
-constexpr double kMaxLever = 100.0;
+/// Largest distance of a sensor from base_link, by axis; a larger number is a mistake of units.
+constexpr double kMaxLeverM = 100.0;
 constexpr double kMaxAngleDeg = 360.0;
 
-/// One parsed recording.toml with what is needed to name a place in it.
+/// Access to the nodes of a recording.toml; errors and warnings name file, line and key.
 class ManifestText {
  public:
   ManifestText(std::string file, std::vector<std::string>& warnings)
@@ -86,7 +86,7 @@ class ManifestText {
   }
 
   Mount mount(const toml::table& table, const std::string& section_name) const {
-    return {triple(table, section_name, "xyz_m", kMaxLever),
+    return {triple(table, section_name, "xyz_m", kMaxLeverM),
             triple(table, section_name, "rpy_deg", kMaxAngleDeg)};
   }
 
@@ -122,7 +122,7 @@ std::optional<LidarEntry> read_lidar(const toml::table& root, ManifestText& text
   lidar.model = *model->value<std::string>();
   lidar.file = text.file_name(*table, "lidar");
   if (const toml::node* port = table->get("port"); port != nullptr) {
-    // value_exact: value would first cast a float to an integer, which is undefined for 1e72.
+    // value_exact: value() would cast a float to an integer, undefined behaviour for 1e72.
     const auto value = port->value_exact<std::int64_t>();
     if (!value || *value < 1 || *value > 65'535) {
       text.fail(*port, "lidar.port", "must be a whole number within 1 … 65535");

@@ -49,7 +49,7 @@ std::string list_of(const Fields& names) {
   return text;
 }
 
-/// One column: named by the person, or the only one that looks like it. Remembers why there is none.
+/// Search for one column: the one named by the user, or the only candidate. Records why there is none.
 struct Search {
   const Fields& fields;
   std::string missing{};
@@ -75,11 +75,11 @@ struct Search {
   }
 };
 
-/// A line as a header: what it has, or what it lacks.
+/// A line interpreted as the header.
 struct Attempt {
   PressureHeader header;
-  std::string rule;       ///< empty: all is there
-  std::size_t found = 0;  ///< how near it came
+  std::string rule;       ///< broken rule; empty: complete
+  std::size_t found = 0;  ///< required columns found
 };
 
 Attempt try_header(const Fields& fields, const PressureColumns& wanted) {
@@ -91,7 +91,7 @@ Attempt try_header(const Fields& fields, const PressureColumns& wanted) {
   if (wanted.needs_temperature) {
     Search thermometer{fields};
     attempt.header.temperature = thermometer.find(wanted.temperature, is_temperature, "temperature");
-    // A sensor may have none; but one that was named must be there, and one of several must be chosen.
+    // A sensor may have no thermometer; but a named column must exist, and an ambiguous one must be named.
     if (!wanted.temperature.empty() && search.missing.empty()) {
       search.missing = thermometer.missing;
     }

@@ -19,21 +19,21 @@ namespace isobar::recording {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-// Below a header may stand a line of units and one of how values were made.
+// A line of units, one of the kind of value ("Avg") and a spare one may follow the header.
 constexpr std::size_t kLinesBelowHeader = 3;
-// Below 2^63.
+// Largest time, below 2^63.
 constexpr double kMostNs = 9.2e18;
 enum Column : std::size_t { kTime, kPressure, kTemperature };
 
-/// How the time column counts.
+/// Unit of the time column.
 struct TimeUnit {
   const char* name;
   double ns;
 };
 constexpr std::array<TimeUnit, 4> kTimeUnits = {{{"ns", 1.0}, {"us", 1e3}, {"ms", 1e6}, {"s", 1e9}}};
 
-/// Reads the time column: dates as text, or numbers in a unit that is named or that makes them a date of this
-/// century.
+/// Parser of the time column: dates as text, or numbers in the unit that is named or that gives a date of
+/// this century.
 class TimeColumn {
  public:
   TimeColumn(const PressureHeader& header, const std::string& wanted) : name_(header.time) {
@@ -52,7 +52,8 @@ class TimeColumn {
     }
   }
 
-  /// False when the text is no time. Throws DataError at `place` where its unit cannot be told.
+  /// False when the text is not a time.
+  /// @throws DataError naming `place` when the unit is ambiguous
   bool parse(std::string_view text, const std::string& place, std::int64_t& stamp_ns) {
     if (unit_ == nullptr && parse_date(text, stamp_ns)) {
       is_date_ = true;
@@ -75,7 +76,7 @@ class TimeColumn {
     if (!(std::abs(ns) < kMostNs)) {
       return false;
     }
-    // A double of nanoseconds since 1970 is good to 256 ns: whole numbers need not go through it.
+    // Whole numbers stay integers: a double of nanoseconds since 1970 resolves 256 ns.
     stamp_ns = text::parse_number(text, stamp_ns) ? stamp_ns * static_cast<std::int64_t>(unit_->ns)
                                                   : static_cast<std::int64_t>(std::llround(ns));
     return true;
@@ -112,7 +113,7 @@ class TimeColumn {
   bool is_date_ = false;
 };
 
-/// Rows as they stand in the file, the pressure in the file's unit.
+/// Rows in the order of the file, pressure in the file's unit.
 struct RawLog {
   std::vector<PressureSample> rows;
   bool has_temperature = false;

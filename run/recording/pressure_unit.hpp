@@ -15,7 +15,8 @@ enum class PressureUnit : std::uint8_t { kPa, kHectopascal, kKilopascal };
 const char* unit_name(PressureUnit unit);
 double pascals_per(PressureUnit unit);
 
-/// The unit that a word names: Pa, hPa, mbar, mb, millibar or kPa, in upper or lower case; nothing for other words.
+/// The unit that a word names: Pa, hPa, mbar, mb, millibar or kPa, in upper or lower case; nothing for other
+/// words.
 std::optional<PressureUnit> unit_of_word(std::string_view word);
 
 struct UnitFinding {

@@ -37,7 +37,7 @@ class PcapFile {
   void write(std::int64_t stamp_ns, std::span<const std::uint8_t> frame) {
     pcap_pkthdr header{};
     header.ts.tv_sec = stamp_ns / 1'000'000'000;
-    header.ts.tv_usec = stamp_ns % 1'000'000'000;  // nanoseconds, by the precision asked for
+    header.ts.tv_usec = stamp_ns % 1'000'000'000;  // nanoseconds: PCAP_TSTAMP_PRECISION_NANO
     header.caplen = static_cast<bpf_u_int32>(frame.size());
     header.len = header.caplen;
     pcap_dump(reinterpret_cast<u_char*>(dumper_), &header, frame.data());
@@ -95,7 +95,7 @@ struct RecordingWriter::Files {
   std::optional<TextFile> wheel;
   std::optional<TextFile> reference;
   std::optional<TextFile> segments;
-  std::optional<bool> imu_has_attitude;  // known with the first sample
+  std::optional<bool> imu_has_attitude;  // set by the first sample
   std::vector<std::uint8_t> frame;
   std::uint16_t identification = 0;
 

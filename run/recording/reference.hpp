@@ -19,7 +19,8 @@ struct StampedPose {
 /// @throws DataError "file:line: rule" when a row breaks the format
 std::vector<StampedPose> read_tum(const std::filesystem::path& file);
 
-/// One TUM row with its newline: nine decimals of time, the other numbers in the shortest text of the same bits.
+/// One TUM row with its newline: nine decimals of time, the other numbers in the shortest text of the same
+/// bits.
 std::string format_tum_row(std::int64_t stamp_ns, const Eigen::Isometry3d& T_map_base);
 
 /// Writes a whole trajectory.

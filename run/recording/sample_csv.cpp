@@ -12,7 +12,8 @@ namespace {
 
 constexpr const char* kNoStamp = "t_ns must be a whole number of nanoseconds";
 constexpr const char* kNoNumber = "must be a finite number";
-/// A quaternion off by more than its last printed digit is normalised; an exact one keeps its bits.
+/// Largest deviation of a quaternion's norm from 1 that is left alone, so that written samples keep their
+/// bits.
 constexpr double kExactNorm = 1e-12;
 
 const char* parse_stamp(const text::CsvReader& csv, std::int64_t& stamp_ns, std::string& value) {
@@ -35,8 +36,8 @@ const char* parse_column(const text::CsvReader& csv, std::size_t column, double&
   return kNoNumber;
 }
 
-/// The four attitude columns; an attitude that is not there yet (NaN, zeros) leaves the rates and forces
-/// good.
+/// The four attitude columns. An attitude that is not available yet (NaN, zeros) does not spoil rates and
+/// forces.
 void parse_attitude(const text::CsvReader& csv, ImuSample& sample) {
   constexpr std::size_t kFirst = 7;
   double q[4] = {};  // NOLINT(modernize-avoid-c-arrays)

@@ -17,17 +17,17 @@ struct CsvFormat {
   std::size_t header_line = 1;  ///< the line that names the columns
 };
 
-/// Splits a line; blanks and quotation marks around a field are removed.
+/// Splits a line into fields; blanks and quotation marks around a field are removed.
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields);
 
-/// CSV reader. The first line (or another, see CsvFormat) names the columns, in any order; unknown columns, blank
-/// rows and rows that start with '#' are ignored. A column is known by its index in `required` followed by
-/// `optional`.
+/// CSV reader. The first line (or another, see CsvFormat) names the columns, in any order; unknown columns,
+/// blank rows and rows that start with '#' are ignored. A column is known by its index in `required` followed
+/// by `optional`.
 class CsvReader {
  public:
   /// Finds the columns.
-  /// @throws DataError "name:line: rule" when there is no header, a required column is missing or a known column
-  ///         is named twice
+  /// @throws DataError "name:line: rule" when there is no header, a required column is missing or a known
+  ///           column is named twice
   CsvReader(TextLines lines, const std::vector<std::string_view>& required,
             const std::vector<std::string_view>& optional = {}, const CsvFormat& format = {});
 

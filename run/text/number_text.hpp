@@ -30,8 +30,8 @@ std::string number_text(Number value) {
 /// Parses a whole number of 64 bits, also in decimal or exponent notation ("2e9"). False for anything else.
 [[nodiscard]] bool parse_number(std::string_view text, std::int64_t& value);
 
-/// Parses seconds as nanoseconds digit by digit: exact to 1 ns, where a double of 1.7e9 s holds 240 ns. False for
-/// exponent notation and for numbers that do not fit 64 bits.
+/// Parses seconds as nanoseconds digit by digit: exact to 1 ns, where a double of 1.7e9 s holds 240 ns. False
+/// for exponent notation and for numbers that do not fit 64 bits.
 [[nodiscard]] bool parse_seconds(std::string_view text, std::int64_t& value_ns);
 
 }  // namespace isobar::text

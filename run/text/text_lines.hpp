@@ -28,8 +28,8 @@ class TextLines {
   /// The next line without its line end, valid until the next call; false at the end of the text.
   bool next(std::string_view& line);
 
-  /// Skips ahead to the first line that begins in the last `bytes` of the file; does nothing when already past
-  /// it. Line numbers then count from there.
+  /// Skips ahead to the first line that begins in the last `bytes` of the file; does nothing when already
+  /// past it. Line numbers then count from there.
   void skip_to_last(std::uint64_t bytes);
 
   [[nodiscard]] bool too_long() const { return too_long_; }

@@ -17,8 +17,8 @@ struct TumRow {
   Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();  ///< unit length
 };
 
-/// The next row; nothing at the end. Blank rows and rows that start with '#' are skipped; blanks, tabs or commas
-/// separate the numbers. Stamps in plain decimals are exact to 1 ns; quaternions are normalised.
+/// The next row; nothing at the end. Blank rows and rows that start with '#' are skipped; blanks, tabs or
+/// commas separate the numbers. Stamps in plain decimals are exact to 1 ns; quaternions are normalised.
 /// @throws DataError "name:line: rule" when the row has not eight finite numbers or no unit quaternion
 std::optional<TumRow> next_tum_row(TextLines& lines);
 
