@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A whole recording folder: the input is split at '\x01' into imu.csv, barometer.csv, base_barometer.csv,
-// wheel.csv, lidar.pcap (without its file header), reference.tum and segments.csv.
+// Fuzz target: a recording folder. The input is split at '\x01' into imu.csv, barometer.csv,
+// base_barometer.csv, wheel.csv, lidar.pcap (without its file header), reference.tum and segments.csv.
 #include <unistd.h>
 
 #include <cmath>
@@ -54,7 +54,7 @@ void tolerate(const Work& work) {
   try {
     work();
   } catch (const isobar::DataError&) {
-    return;  // that is how broken files are to be refused
+    return;  // the specified refusal of a broken file
   }
 }
 

@@ -35,7 +35,7 @@ Manifest full_manifest() {
 
 }  // namespace
 
-TEST_CASE("What is written is read back bit for bit, merged in order of time") {
+TEST_CASE("A written recording reads back bit for bit, merged in order of time") {
   Scratch scratch;
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise;
@@ -146,13 +146,13 @@ TEST_CASE("Trajectories and segments survive writing and reading") {
   CHECK(segments[0].label == "stairs");
 }
 
-TEST_CASE("A recording is not written over another one") {
+TEST_CASE("A recording never overwrites another one") {
   Scratch scratch;
   RecordingWriter(scratch.path(), Manifest{}).close();
   CHECK_THROWS_AS(RecordingWriter(scratch.path(), Manifest{}), DataError);
 }
 
-TEST_CASE("A trajectory with a broken row says which row and why") {
+TEST_CASE("The error of a broken trajectory names row and rule") {
   Scratch scratch;
   for (const char* row : {"1.0 0 0 0 0 0 0", "1.0 0 0 0 0 0 0 1 5", "x 0 0 0 0 0 0 1", "1 nan 0 0 0 0 0 1",
                           "1 0 0 0 0 0 0 0"}) {
