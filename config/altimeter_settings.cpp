@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "config/section_builder.hpp"
+#include "core/plausibility.hpp"
 
 namespace isobar {
 namespace {
 
 void add_pressure_range(AltimeterConfig& altimeter, SectionBuilder& s) {
-  s.number("min_pressure_pa", &altimeter.min_pressure_pa, "Pa", 1.0, 200e3,
-           "Lowest plausible pressure; lower samples are refused. 30000 is 9 km above sea level.");
-  s.number("max_pressure_pa", &altimeter.max_pressure_pa, "Pa", 1.0, 200e3,
-           "Highest plausible pressure; higher samples are refused. 115000 is a mine 1.1 km below sea "
+  s.number("min_pressure_pa", &altimeter.min_pressure_pa, "Pa", kPlausiblePressurePa.lowest,
+           kPlausiblePressurePa.highest,
+           "Lowest air pressure at the site; lower samples are refused. 30000 is 9 km above sea level.");
+  s.number("max_pressure_pa", &altimeter.max_pressure_pa, "Pa", kPlausiblePressurePa.lowest,
+           kPlausiblePressurePa.highest,
+           "Highest air pressure at the site; higher samples are refused. 115000 is a mine 1.1 km below sea "
            "level.");
 }
 

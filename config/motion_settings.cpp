@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "config/section_builder.hpp"
+#include "core/plausibility.hpp"
 
 namespace isobar {
 namespace {
@@ -95,10 +96,11 @@ void add_dead_reckoning(DeadReckoningConfig& dead_reckoning, std::vector<Setting
   SectionBuilder s("dead_reckoning", UsedBy::kRobot, settings);
   s.number("wheel_timeout_s", &dead_reckoning.wheel_timeout_s, "s", 0.05, 10.0,
            "Silence after which the wheels are lost. 0.5: five scans at 10 Hz.");
-  s.number("max_speed_m_s", &dead_reckoning.max_speed_m_s, "m/s", 0.1, 50.0,
-           "Largest plausible wheel speed; a larger one is a fault of encoder or link. 10 is 36 km/h.");
-  s.number("max_turn_rate_rad_s", &dead_reckoning.max_turn_rate_rad_s, "rad/s", 0.1, 50.0,
-           "Largest plausible turn rate of the wheels; a larger one is a fault of encoder or link. 15 is 2.4 "
+  s.number("max_speed_m_s", &dead_reckoning.max_speed_m_s, "m/s", 0.1, kPlausibleWheelMS.highest,
+           "Top wheel speed of the robot; a larger one is a fault of encoder or link. 10 is 36 km/h.");
+  s.number("max_turn_rate_rad_s", &dead_reckoning.max_turn_rate_rad_s, "rad/s", 0.1,
+           kPlausibleWheelRadS.highest,
+           "Top turn rate of the robot; a larger one is a fault of encoder or link. 15 is 2.4 "
            "turns a second.");
   s.number("max_acceleration_m_s2", &dead_reckoning.max_acceleration_m_s2, "m/s^2", 1.0, 1e3,
            "Largest plausible acceleration between two wheel samples; a larger one is a fault of encoder or "
@@ -107,9 +109,9 @@ void add_dead_reckoning(DeadReckoningConfig& dead_reckoning, std::vector<Setting
 
 void add_limits(PriorLimits& limits, std::vector<Setting>& settings) {
   SectionBuilder s("limits", UsedBy::kRobot, settings);
-  s.number("max_gyro_rad_s", &limits.max_gyro_rad_s, "rad/s", 0.1, 100.0,
+  s.number("max_gyro_rad_s", &limits.max_gyro_rad_s, "rad/s", 0.1, kPlausibleGyroRadS.highest,
            "Largest angular rate of an axis. 35 is a gyro's usual range of 2000 deg/s.");
-  s.number("max_accel_m_s2", &limits.max_accel_m_s2, "m/s^2", 20.0, 1e3,
+  s.number("max_accel_m_s2", &limits.max_accel_m_s2, "m/s^2", 20.0, kPlausibleAccelMS2.highest,
            "Largest specific force of an axis. 160 is an accelerometer's usual range of 16 g.");
   s.number("imu_gap_s", &limits.imu_gap_s, "s", 0.005, 10.0,
            "Smallest step of IMU time that is a gap: bridged, counted, and added to the uncertainty. 0.1: 20 "

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "config/section_builder.hpp"
+#include "core/plausibility.hpp"
 
 namespace isobar {
 namespace {
@@ -82,9 +83,10 @@ void add_setra278(iio::SetraSettings& setra, std::vector<Setting>& settings) {
            "Voltage at low_pa. With a voltage divider: behind the divider, as the converter sees it.");
   s.number("high_v", &span.high_v, "V", -10.0, 10.0,
            "Voltage at high_pa: 2.5 or 5 by order code. With a voltage divider: behind it.");
-  s.number("low_pa", &span.low_pa, "Pa", 10e3, 120e3,
+  s.number("low_pa", &span.low_pa, "Pa", kPlausiblePressurePa.lowest, kPlausiblePressurePa.highest,
            "Pressure at low_v: 60000, 50000 or 80000 by order code.");
-  s.number("high_pa", &span.high_pa, "Pa", 10e3, 120e3, "Pressure at high_v: 110000 with every order code.");
+  s.number("high_pa", &span.high_pa, "Pa", kPlausiblePressurePa.lowest, kPlausiblePressurePa.highest,
+           "Pressure at high_v: 110000 with every order code.");
 }
 
 void add_compensation_file(std::string& file, SectionBuilder& section) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one place that says which sample values can be real. Files, datagrams and device drivers all ask here,
-// so that a value refused in a recording is refused live as well.
+// Plausible ranges of sample values, for every robot: a value outside is a fault of the sensor or of the
+// transport. Files, datagrams, DDS and device drivers share them, so that live runs and replays refuse the
+// same samples. Narrower limits have other names: the operating range of a sensor (DPS310), the range of a
+// robot's IMU (PriorLimits), the top speed of its wheels (DeadReckoningConfig), the pressures at its site
+// (AltimeterConfig).
 #pragma once
 
 #include <cmath>
@@ -10,35 +13,36 @@
 
 namespace isobar {
 
-/// Limits outside of which a value is a fault of the sensor or of the transport, not a measurement.
 struct PlausibleRange {
   double lowest;
   double highest;
-  /// False for NaN and infinities as well.
+  /// False for NaN and infinities.
   [[nodiscard]] constexpr bool holds(double value) const { return value >= lowest && value <= highest; }
 };
 
-/// Absolute pressure [Pa]: 10 kPa is 16 km of height, 120 kPa is 1.4 km below the sea (deepest mines end at 4
+/// Absolute pressure [Pa]: 10 kPa is 16 km above the sea, 120 kPa is 1.4 km below it (deepest mines end at 4
 /// km, but are ventilated); barometers for robots measure 30 … 120 kPa.
 inline constexpr PlausibleRange kPlausiblePressurePa{10e3, 120e3};
-/// Temperature of a sensor [degrees Celsius]: polar night to the limit of automotive silicon.
+/// Air pressure where robots drive [Pa]: from 9 km above the sea to a mine 1.1 km below it. Narrower than
+/// kPlausiblePressurePa: default of the altimeter's limits, and narrow enough to tell Pa, hPa and kPa apart.
+inline constexpr PlausibleRange kGroundPressurePa{30e3, 115e3};
+/// Temperature of a sensor [degrees Celsius]: from a polar night to the limit of automotive silicon.
 inline constexpr PlausibleRange kPlausibleTemperatureC{-60.0, 100.0};
 /// Angular rate, each axis [rad/s]: MEMS gyros of robots saturate at 2000 deg/s = 34.9 rad/s.
 inline constexpr PlausibleRange kPlausibleGyroRadS{-40.0, 40.0};
 /// Specific force, each axis [m/s^2]: MEMS accelerometers of robots saturate at 16 … 40 g.
 inline constexpr PlausibleRange kPlausibleAccelMS2{-400.0, 400.0};
-/// Speed from wheels, each axis [m/s].
+/// Speed from wheels, each axis [m/s]: 72 km/h, twice the default of DeadReckoningConfig.
 inline constexpr PlausibleRange kPlausibleWheelMS{-20.0, 20.0};
 /// Yaw rate from wheels [rad/s]: no faster than the gyro can follow.
 inline constexpr PlausibleRange kPlausibleWheelRadS{-40.0, 40.0};
-/// Norm of an attitude quaternion as printed with few decimals; it is normalised afterwards.
+/// Norm of an attitude quaternion that was printed with few decimals; readers normalise it.
 inline constexpr PlausibleRange kPlausibleQuaternionNorm{0.9, 1.1};
-/// Stamps [ns since 1970] lie between 0 and the year 2100; int64 overflows in 2262, and stamps with an offset
-/// must not.
+/// Stamps [ns since 1970]: 1970 to 2100. int64 overflows in 2262; adding a clock offset to a stamp must not.
 inline constexpr std::int64_t kPlausibleStampLowestNs = 0;
 inline constexpr std::int64_t kPlausibleStampHighestNs = 4'102'444'800LL * 1'000'000'000LL;
 
-/// Which rule a sample breaks, as a text that never dies; nullptr when the sample is plausible.
+/// The rule that a sample breaks, a static text; nullptr when the sample is plausible.
 [[nodiscard]] inline const char* implausibility(const ImuSample& sample) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!kPlausibleGyroRadS.holds(sample.gyro_rad_s[axis])) {
@@ -54,7 +58,7 @@ inline constexpr std::int64_t kPlausibleStampHighestNs = 4'102'444'800LL * 1'000
   return nullptr;
 }
 
-/// The temperature may be NaN: a sensor without one.
+/// As above. A NaN temperature is plausible: the sensor has no thermometer.
 [[nodiscard]] inline const char* implausibility(const PressureSample& sample) {
   if (!kPlausiblePressurePa.holds(sample.pressure_pa)) {
     return "pressure must lie within 10000 … 120000 Pa";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/barometer_thread.hpp"
 
-#include "drivers/datagram/udp.hpp"
+#include "drivers/clock/robot_clock.hpp"
 
 namespace isobar {
 

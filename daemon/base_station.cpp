@@ -9,7 +9,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "daemon/barometer_source.hpp"
-#include "drivers/datagram/udp.hpp"
 
 namespace isobar {
 

@@ -8,7 +8,7 @@
 #include "daemon/level_changes.hpp"
 #include "daemon/realtime.hpp"
 #include "daemon/report_schedule.hpp"
-#include "drivers/datagram/udp.hpp"
+#include "drivers/clock/robot_clock.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar {

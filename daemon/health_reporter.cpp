@@ -2,7 +2,7 @@
 #include "daemon/health_reporter.hpp"
 
 #include "daemon/health_entries.hpp"
-#include "drivers/datagram/udp.hpp"
+#include "drivers/clock/robot_clock.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar {

@@ -2,6 +2,7 @@
 #include "daemon/lidar_thread.hpp"
 
 #include "daemon/receive_loop.hpp"
+#include "drivers/clock/robot_clock.hpp"
 
 namespace isobar {
 

@@ -8,7 +8,7 @@
 #include "daemon/packet_pacing.hpp"
 #include "daemon/seq_lock.hpp"
 #include "daemon/worker.hpp"
-#include "drivers/datagram/udp.hpp"
+#include "drivers/udp/udp.hpp"
 #include "drivers/velodyne/velodyne_decoder.hpp"
 #include "ipc/shared_memory.hpp"
 

@@ -29,6 +29,7 @@
 #include "daemon/run_files.hpp"
 #include "daemon/sample_thread.hpp"
 #include "daemon/scheduling.hpp"
+#include "drivers/clock/robot_clock.hpp"
 #include "daemon/stage_settings.hpp"
 
 namespace isobar {

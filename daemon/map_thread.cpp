@@ -7,7 +7,7 @@
 
 #include "daemon/cpu_time.hpp"
 #include "daemon/message_loop.hpp"
-#include "drivers/datagram/udp.hpp"
+#include "drivers/clock/robot_clock.hpp"
 
 namespace isobar {
 

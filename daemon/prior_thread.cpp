@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "daemon/message_loop.hpp"
-#include "drivers/datagram/udp.hpp"
+#include "drivers/clock/robot_clock.hpp"
 
 namespace isobar {
 namespace {

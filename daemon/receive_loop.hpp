@@ -4,7 +4,7 @@
 #include <ctime>
 
 #include "daemon/worker.hpp"
-#include "drivers/datagram/udp.hpp"
+#include "drivers/udp/udp.hpp"
 
 namespace isobar {
 

@@ -2,7 +2,7 @@
 #include "daemon/registration_thread.hpp"
 
 #include "daemon/message_loop.hpp"
-#include "drivers/datagram/udp.hpp"
+#include "drivers/clock/robot_clock.hpp"
 
 namespace isobar {
 

@@ -9,7 +9,7 @@
 #include "daemon/seq_lock.hpp"
 #include "daemon/worker.hpp"
 #include "drivers/datagram/datagram.hpp"
-#include "drivers/datagram/udp.hpp"
+#include "drivers/udp/udp.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar {

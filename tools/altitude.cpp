@@ -71,7 +71,7 @@ FilteredPressure read_base(const AltitudeArguments& arguments, const PressureLog
 }
 
 std::vector<ImuSample> read_imu(const std::filesystem::path& file) {
-  recording::CsvReader csv = recording::open_imu_csv(file);
+  text::CsvReader csv = recording::open_imu_csv(file);
   recording::Tally malformed;
   recording::Tally implausible;
   std::vector<ImuSample> samples;

@@ -9,6 +9,7 @@
 #include "run/files/text_file.hpp"
 #include "run/recording/recording_reader.hpp"
 #include "run/recording/reference.hpp"
+#include "run/text/segments.hpp"
 #include "tools/commands.hpp"
 #include "tools/player.hpp"
 #include "tools/progress.hpp"
@@ -36,7 +37,7 @@ void write_shifted_reference(const PlayOptions& options, const recording::Manife
   recording::write_tum(options.reference_out / "reference.tum", poses);
   const auto segments_file = options.recording / recording::kSegmentsFile;
   if (!std::filesystem::exists(segments_file)) return;
-  const auto segments = recording::read_segments(segments_file);
+  const auto segments = text::read_segments(text::TextLines(segments_file));
   files::OutputFile file(options.reference_out / recording::kSegmentsFile);
   file.write("t_start_ns,t_end_ns,label\n");
   for (const auto& segment : segments) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/player.hpp"
+#include "drivers/clock/robot_clock.hpp"
 
 #include <thread>
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "drivers/datagram/datagram.hpp"
-#include "drivers/datagram/udp.hpp"
+#include "drivers/udp/udp.hpp"
 #include "run/recording/recording_reader.hpp"
 
 namespace isobar::tools {

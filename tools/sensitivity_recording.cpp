@@ -8,10 +8,9 @@
 #include "core/altitude/hypsometry.hpp"
 #include "core/errors.hpp"
 #include "core/stamp.hpp"
-#include "run/evaluation/segments.hpp"
-#include "run/evaluation/text_table.hpp"
-#include "run/files/text_file.hpp"
 #include "run/recording/manifest.hpp"
+#include "run/text/number_text.hpp"
+#include "run/text/segments.hpp"
 #include "tools/pressure_log.hpp"
 #include "tools/report/svg.hpp"
 
@@ -58,21 +57,21 @@ BarometerPair read_pair(const RecordedRigRequest& request, const Files& files,
 /// from the step's height and the measured directions.
 std::vector<Plateau> named_plateaus(const std::filesystem::path& file, const BarometerPair& pair,
                                     const StudyOptions& options) {
-  auto segments = evaluation::parse_segments_csv(files::read_text_file(file), file.string());
+  auto segments = text::read_segments(text::TextLines(file));
   std::sort(segments.begin(), segments.end(),
             [](const auto& a, const auto& b) { return a.start_ns < b.start_ns; });
   if (segments.size() < 2) throw DataError(file.string() + ": names fewer than two levels");
   std::vector<Plateau> plateaus;
   std::vector<double> middles_s;
   bool heights_known = true;
-  for (const evaluation::Segment& segment : segments) {
+  for (const text::Segment& segment : segments) {
     const auto seconds = [&](std::int64_t stamp_ns) {
       return seconds_between(pair.moved.front().stamp_ns, stamp_ns);
     };
-    const std::optional<double> height_m = evaluation::parse_double(segment.label);
-    heights_known = heights_known && height_m && std::isfinite(*height_m);
+    double height_m = 0.0;
+    heights_known = heights_known && text::parse_number(segment.label, height_m) && std::isfinite(height_m);
     if (!plateaus.empty()) middles_s.push_back(0.5 * (plateaus.back().end_s + seconds(segment.start_ns)));
-    plateaus.push_back({seconds(segment.start_ns), seconds(segment.end_ns), height_m.value_or(0.0)});
+    plateaus.push_back({seconds(segment.start_ns), seconds(segment.end_ns), height_m});
   }
   if (heights_known) return plateaus;
   const auto between =

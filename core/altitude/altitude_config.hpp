@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/name_table.hpp"
+#include "core/plausibility.hpp"
 
 namespace isobar {
 
@@ -54,9 +55,9 @@ struct AirTemperatureConfig {
 struct AltimeterConfig {
   AirTemperatureConfig air;
 
-  /// Plausible absolute pressures [Pa]. 30 kPa is 9 km up, 115 kPa a mine 1.1 km down.
-  double min_pressure_pa = 30'000.0;
-  double max_pressure_pa = 115'000.0;
+  /// Air pressures at the site [Pa]. 30 kPa is 9 km up, 115 kPa a mine 1.1 km down.
+  double min_pressure_pa = kGroundPressurePa.lowest;
+  double max_pressure_pa = kGroundPressurePa.highest;
 
   /// Bounds and initial value of the white noise of one sample, estimated online [Pa]. The floor is below the
   /// best chip (DPS310: 0.2 Pa); the initial value holds until enough samples have come (DPS310 at 32 Hz:

@@ -55,7 +55,7 @@ void FaultWatch::set_fault(BarometerState state, const char* what, int error) no
   if (error == 0) {
     std::snprintf(status_.fault.data(), status_.fault.size(), "%s", what);
   } else {
-    // strerrordesc_np: unlike strerror it shares no buffer with other threads.
+    // strerrordesc_np: thread-safe, unlike strerror.
     const char* words = strerrordesc_np(error);
     std::snprintf(status_.fault.data(), status_.fault.size(), "%s (%s)", what,
                   words != nullptr ? words : "unknown error");

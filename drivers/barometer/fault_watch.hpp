@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The book-keeping that all barometers on this machine share: what is wrong, since when, and when to try
-// again.
+// Fault detection shared by all barometers: current fault, since when, and time of the next try.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +8,18 @@
 
 namespace isobar {
 
-/// Notices a result whose bits no longer change. Real air and a converter's own noise move the last bits of a
-/// 24 bit result all the time: sixteen equal ones in a row come by chance once in years.
+/// Detector of frozen results. Air and converter noise always move the last bits of a 24 bit result: sixteen
+/// equal ones in a row happen by chance once in years.
 class StuckWatch {
  public:
   static constexpr std::uint64_t kMinEqual = 16;
 
-  /// time_ns: how long a result must not change at least; 0: never stuck (a coarse converter in calm air).
+  /// @param time_ns shortest time without a change that is a fault; 0: no detection (a coarse converter in
+  ///         calm air)
   explicit StuckWatch(std::int64_t time_ns) : time_ns_(time_ns) {}
 
-  /// True while the results are stuck. Remembers across initialisations of the device: one that is still
-  /// stuck after a reset is so at once.
+  /// Adds a result; true while the results are stuck. Keeps its history across initialisations of the device:
+  /// a sensor that is still stuck after a reset is detected at once.
   bool add(std::int64_t bits, std::int64_t now_ns) noexcept {
     if (equal_ == 0 || bits != bits_) {
       bits_ = bits;
@@ -37,26 +37,27 @@ class StuckWatch {
   std::uint64_t equal_ = 0;
 };
 
-/// State, fault text, counters and the waiting time before the next try: 0.1 s, doubled up to 5 s.
+/// State, fault text, counters, and the back-off before the next try: 0.1 s, doubled up to 5 s.
 class FaultWatch {
  public:
   explicit FaultWatch(std::int64_t silence_ns) : silence_ns_(silence_ns) {}
 
   /// An initialisation begins.
   void starts(std::int64_t now_ns) noexcept;
-  /// The device measures from now on: its first result is due.
+  /// The device begins to measure: the time to the first result counts from now_ns.
   void expects_results(std::int64_t now_ns) noexcept;
-  /// A good result: whatever was wrong is over.
+  /// A good result: clears the fault.
   void good(std::int64_t now_ns) noexcept;
-  /// Something is wrong with this access or result; it is a fault only if nothing good comes in time.
+  /// A failed access or a bad result. It becomes a fault when no good result follows in time.
   void problem(BarometerState state, const char* what, int error = 0) noexcept;
-  /// The device is given up until the time that is returned.
+  /// Sets the fault.
+  /// @return time of the next try
   std::int64_t fail(BarometerState state, const char* what, std::int64_t now_ns, int error = 0) noexcept;
-  /// True when nothing good came in time. Then the caller tries anew at give_up().
+  /// True when no good result came in time: the caller then calls give_up() and restarts the device.
   [[nodiscard]] bool overdue(std::int64_t now_ns) const noexcept {
     return now_ns - newest_good_ns_ > silence_ns_;
   }
-  /// As fail(), with the last problem as the reason, or silence.
+  /// fail() with the last problem, or silence when there was none.
   std::int64_t give_up(std::int64_t now_ns) noexcept;
 
   [[nodiscard]] const BarometerStatus& status() const noexcept { return status_; }
@@ -67,7 +68,7 @@ class FaultWatch {
 
   static constexpr std::int64_t kFirstWaitNs = 100'000'000;
   static constexpr std::int64_t kLongestWaitNs = 5'000'000'000;
-  /// A device that measured for this long was well: the next fault is a new one.
+  /// Time of good results after which the back-off starts at kFirstWaitNs again.
   static constexpr std::int64_t kWellNs = 2'000'000'000;
 
   std::int64_t silence_ns_;

@@ -13,12 +13,12 @@ namespace isobar::datagram {
 namespace {
 
 constexpr std::array<std::string_view, kKinds> kWords{"imu", "baro", "base", "wheel"};
-/// Numbers behind SEQ and t_ns; an IMU may add four.
+/// Number of values after SEQ and t_ns, by kind; an IMU may add four (attitude).
 constexpr std::array<std::size_t, kKinds> kValues{6, 2, 2, 3};
 constexpr std::size_t kMaxValues = 10;
-/// Older by more than this is a restarted sender, not a packet overtaken on its way.
+/// Largest step back of SEQ by reordering; a larger one is a restarted sender. Bits of Stream::seen.
 constexpr std::uint32_t kReorderWindow = 64;
-/// A loss larger than this is a restarted sender, too.
+/// Largest step forward of SEQ that counts as loss; a larger one is a restarted sender.
 constexpr std::uint32_t kMaxLoss = 1'000'000;
 
 std::string_view next_field(std::string_view& rest) {
@@ -75,7 +75,7 @@ const char* broken_rule(const Sample& sample) {
   }
 }
 
-/// Appends ",number"; the capacity has been chosen so that it fits.
+/// Line builder. The caller's capacity, kMaxLineBytes, holds the longest line: no bounds checks.
 class Line {
  public:
   explicit Line(std::span<char> out) : begin_(out.data()), at_(out.data()), end_(out.data() + out.size()) {}
@@ -152,7 +152,7 @@ LineStatus parse_line(std::string_view line, Sample& sample) {
   if (broken_rule(sample) != nullptr) {
     return LineStatus::kImplausible;
   }
-  // An exact quaternion keeps its bits.
+  // A quaternion of unit length keeps its bits: formatting and parsing are lossless.
   if (with_attitude && std::abs(sample.imu.q_world_imu.squaredNorm() - 1.0) > 1e-12) {
     sample.imu.q_world_imu.normalize();
   }
@@ -218,7 +218,7 @@ bool DatagramParser::next(Sample& sample) {
         ++counters_.malformed;
         break;
       case LineStatus::kImplausible:
-        follow_sequence(sample);  // it was not lost
+        follow_sequence(sample);  // received, so not lost
         ++counters_.implausible;
         break;
       case LineStatus::kOk:
@@ -258,7 +258,7 @@ bool DatagramParser::follow_sequence(const Sample& sample) {
   }
   stream.seen |= std::uint64_t{1} << behind;
   ++counters_.reordered[kind];
-  counters_.lost[kind] -= counters_.lost[kind] > 0 ? 1 : 0;  // had been counted as lost
+  counters_.lost[kind] -= counters_.lost[kind] > 0 ? 1 : 0;  // was counted as lost
   return true;
 }
 

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A text protocol over UDP through which a microcontroller, or a driver that knows nothing of DDS, feeds
-// samples.
+// Text protocol over UDP for samples from a microcontroller, or from a driver without DDS.
 //
-// One datagram holds one or more lines; a line ends with \n or \r\n, the last one may lack it. A line is one
-// sample:
+// A datagram holds one or more lines, a line one sample. Lines end with \n or \r\n (optional on the last
+// one):
 //
-//   imu,SEQ,t_ns,gx,gy,gz,ax,ay,az[,qw,qx,qy,qz]   rad/s, m/s^2, attitude of the IMU where it computes one
-//   baro,SEQ,t_ns,pressure_pa,temperature_c        the robot's barometer; temperature nan: none
+//   imu,SEQ,t_ns,gx,gy,gz,ax,ay,az[,qw,qx,qy,qz]   rad/s, m/s^2, attitude if the IMU computes one
+//   baro,SEQ,t_ns,pressure_pa,temperature_c        the robot's barometer; temperature nan: no thermometer
 //   base,SEQ,t_ns,pressure_pa,temperature_c        the base station's barometer
 //   wheel,SEQ,t_ns,vx,vy,wz                        m/s, m/s, rad/s: twist of base_link in base_link
 //
-// SEQ counts the lines of that kind, 0 … 2^32-1, and wraps; 0 after another number is a restarted sender.
-// t_ns: when it was measured, on the sender's clock, int64; 0: unknown, the time of receipt is taken.
+// SEQ: number of lines of that kind sent before, 0 … 2^32-1, wraps; 0 out of turn is a restarted sender.
+// t_ns: time of measurement on the sender's clock, int64; 0: unknown, replaced with the time of receipt.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +25,7 @@ namespace isobar::datagram {
 inline constexpr std::uint16_t kDefaultPort = 7373;
 /// Longest line that the formatter writes, newline included.
 inline constexpr std::size_t kMaxLineBytes = 384;
-/// Most bytes in one datagram: an Ethernet frame's worth, so that nothing is fragmented.
+/// Largest datagram: the payload of one Ethernet frame, so that IP does not fragment it.
 inline constexpr std::size_t kMaxDatagramBytes = 1472;
 
 enum class Kind : std::uint8_t { kImu, kPressure, kBasePressure, kWheel };
@@ -46,19 +45,20 @@ struct Sample {
 
 enum class LineStatus : std::uint8_t {
   kOk,
-  kUnknownKind,  ///< the first word is none of the four
-  kMalformed,    ///< not numbers, or another number of fields
-  kImplausible,  ///< core/plausibility.hpp says no
+  kUnknownKind,  ///< the first word is not imu, baro, base or wheel
+  kMalformed,    ///< a field is not a number, or the number of fields is wrong
+  kImplausible,  ///< a value lies outside its plausible range (core/plausibility.hpp)
 };
 
 /// Parses one line without its line end. Allocates nothing.
 LineStatus parse_line(std::string_view line, Sample& sample);
 
-/// Writes one line with its newline. out: at least kMaxLineBytes. Returns the length. Exact: parsing gives
-/// the same bits.
+/// Writes one line with its newline. Lossless: parsing gives the same bits.
+/// @param out at least kMaxLineBytes
+/// @return length [bytes]
 std::size_t format_line(const Sample& sample, std::span<char> out);
 
-/// What came of the lines so far; one writer.
+/// Counters since construction; one writer.
 struct Counters {
   std::uint64_t datagrams = 0;
   std::uint64_t samples[kKinds] = {};     // NOLINT(modernize-avoid-c-arrays): by Kind
@@ -70,15 +70,14 @@ struct Counters {
   std::uint64_t unknown_kind = 0;
 };
 
-/// Takes datagrams apart and watches the sequence numbers.
+/// Parser of datagrams; checks the sequence numbers.
 ///
 ///     parser.begin(bytes);
 ///     while (parser.next(sample)) { … }
 class DatagramParser {
  public:
   void begin(std::span<const std::uint8_t> payload);
-  /// The next good sample of the datagram; duplicates are left out, reordered samples are not. False at the
-  /// end.
+  /// The next good sample of the datagram, reordered ones included, duplicates skipped; false at the end.
   bool next(Sample& sample);
   [[nodiscard]] const Counters& counters() const { return counters_; }
 

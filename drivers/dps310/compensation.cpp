@@ -3,14 +3,20 @@
 
 #include <algorithm>
 
+#include "core/plausibility.hpp"
+
 namespace isobar::dps310 {
 
 namespace {
 
-constexpr double kLowestPressurePa = 30e3;
-constexpr double kHighestPressurePa = 120e3;
-constexpr double kLowestTemperatureC = -40.0;
-constexpr double kHighestTemperatureC = 85.0;
+// Operating range of the data sheet: the chip specifies no result outside. Narrower than the plausible ranges
+// of core/plausibility.hpp, which hold for every sensor.
+constexpr PlausibleRange kOperatingPressurePa{30e3, 120e3};
+constexpr PlausibleRange kOperatingTemperatureC{-40.0, 85.0};
+static_assert(kPlausiblePressurePa.holds(kOperatingPressurePa.lowest) &&
+              kPlausiblePressurePa.holds(kOperatingPressurePa.highest));
+static_assert(kPlausibleTemperatureC.holds(kOperatingTemperatureC.lowest) &&
+              kPlausibleTemperatureC.holds(kOperatingTemperatureC.highest));
 
 /// The lowest `bits` of a word as a two's complement number.
 constexpr std::int32_t signed_field(std::uint32_t word, int bits) {
@@ -50,7 +56,7 @@ Coefficients decode_coefficients(const CoefficientBytes& bytes) noexcept {
 
 const char* implausibility(const CoefficientBytes& bytes) noexcept {
   if (std::all_of(bytes.begin(), bytes.end(), [&](std::uint8_t byte) { return byte == bytes.front(); })) {
-    return "the coefficients' bytes are all the same";
+    return "all bytes of the coefficients are equal";
   }
   const Coefficients c = decode_coefficients(bytes);
   if (c.c1 == 0 || c.c10 == 0) return "coefficient c1 or c10 is zero";
@@ -71,10 +77,10 @@ Compensated compensate(const Coefficients& c, const RawResult& raw, double press
 
 const char* implausibility(const RawResult& raw, const Compensated& value) noexcept {
   if (raw.pressure == kNoResult || raw.temperature == kNoResult) return "no result in the registers";
-  if (!(value.temperature_c >= kLowestTemperatureC && value.temperature_c <= kHighestTemperatureC)) {
+  if (!kOperatingTemperatureC.holds(value.temperature_c)) {
     return "temperature outside -40 ... 85 degrees C";
   }
-  if (!(value.pressure_pa >= kLowestPressurePa && value.pressure_pa <= kHighestPressurePa)) {
+  if (!kOperatingPressurePa.holds(value.pressure_pa)) {
     return "pressure outside 300 ... 1200 hPa";
   }
   return nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the registers of a DPS310 to pressure and temperature. Pure: bytes in, numbers out.
+// Conversion of DPS310 registers to pressure and temperature, without I/O.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@
 
 namespace isobar::dps310 {
 
-/// Factory coefficients, as the sensor's non-volatile memory holds them.
+/// Factory calibration coefficients in the sensor's non-volatile memory.
 struct Coefficients {
   std::int32_t c0 = 0;   ///< 12 bit
   std::int32_t c1 = 0;   ///< 12 bit
   std::int32_t c00 = 0;  ///< 20 bit
   std::int32_t c10 = 0;  ///< 20 bit
-  std::int32_t c01 = 0;  ///< 16 bit, as all below
+  std::int32_t c01 = 0;  ///< 16 bit, as all that follow
   std::int32_t c11 = 0;
   std::int32_t c20 = 0;
   std::int32_t c21 = 0;
@@ -28,24 +28,24 @@ struct Coefficients {
 using CoefficientBytes = std::array<std::uint8_t, kCoefficientBytes>;
 
 /// Two's complement fields of 12, 20 and 16 bit, most significant bit first (data sheet, "Calibration
-/// Coefficients", registers 0x10 … 0x21). Any bytes give some coefficients; see implausibility().
+/// Coefficients", registers 0x10 … 0x21). Every input decodes; see implausibility().
 [[nodiscard]] Coefficients decode_coefficients(const CoefficientBytes& bytes) noexcept;
 
-/// Which rule the coefficients break, as a text that never dies; nullptr when none. They come without a
-/// checksum: this finds a memory that was not loaded and a bus that reads only zeros or ones.
+/// The rule that the coefficients break, a static text; nullptr when none. They have no checksum: the rules
+/// detect a memory that is not loaded yet and a bus that reads only zeros or ones.
 [[nodiscard]] const char* implausibility(const CoefficientBytes& bytes) noexcept;
 
-/// Results as the registers hold them, 24 bit two's complement.
+/// Raw results, 24 bit two's complement.
 struct RawResult {
   std::int32_t pressure = kNoResult;
   std::int32_t temperature = kNoResult;
   bool operator==(const RawResult&) const = default;
 };
 
-/// bytes: registers 0x00 … 0x05.
+/// @param bytes registers 0x00 … 0x05
 [[nodiscard]] RawResult decode_result(const std::array<std::uint8_t, kResultBytes>& bytes) noexcept;
 
-/// Oversampling is a power of two, 1 … 128: the index of the tables below and the value of the registers.
+/// log2 of an oversampling or a rate, 1 … 128: index of the tables below and value of the registers.
 [[nodiscard]] constexpr std::uint8_t index_of(int power_of_two) noexcept {
   return static_cast<std::uint8_t>(std::countr_zero(static_cast<unsigned>(power_of_two)));
 }
@@ -57,7 +57,7 @@ struct RawResult {
   return kScale[index_of(oversampling) & 7U];
 }
 
-/// Time that one measurement of pressure or temperature takes [s], typical (data sheet, "Pressure
+/// Duration of one measurement of pressure or temperature [s], typical (data sheet, "Pressure
 /// Configuration").
 [[nodiscard]] constexpr double measurement_time_s(int oversampling) noexcept {
   constexpr std::array<double, 8> kTime{3.6e-3,  5.2e-3,  8.4e-3,   14.8e-3,
@@ -65,7 +65,8 @@ struct RawResult {
   return kTime[index_of(oversampling) & 7U];
 }
 
-/// Noise of one pressure [Pa rms] (same table; it names none for 128 times, which is no worse than 64 times).
+/// Noise of one pressure [Pa rms] (same table; without a value for 128 times, which is no worse than 64
+/// times).
 [[nodiscard]] constexpr double pressure_noise_pa(int oversampling) noexcept {
   constexpr std::array<double, 8> kNoise{2.5, 1.0, 0.5, 0.4, 0.35, 0.3, 0.2, 0.2};
   return kNoise[index_of(oversampling) & 7U];
@@ -83,8 +84,8 @@ struct Compensated {
 [[nodiscard]] Compensated compensate(const Coefficients& coefficients, const RawResult& raw,
                                      double pressure_scale, double temperature_scale) noexcept;
 
-/// Which rule a result breaks, as a text that never dies; nullptr when it can be real: there is a result, and
-/// it lies in the operating range of the data sheet, 300 … 1200 hPa and -40 … 85 degrees C.
+/// The rule that a result breaks, a static text; nullptr when there is a result and it lies in the operating
+/// range of the data sheet, 300 … 1200 hPa and -40 … 85 degrees C.
 [[nodiscard]] const char* implausibility(const RawResult& raw, const Compensated& value) noexcept;
 
 }  // namespace isobar::dps310

@@ -6,7 +6,7 @@
 
 namespace isobar::dps310 {
 
-/// Access to the registers of one device on a bus. Every call returns 0 or an errno value; nothing throws.
+/// Register access to one device on a bus. Every call returns 0 or an errno value; nothing throws.
 class RegisterBus {
  public:
   RegisterBus() = default;
@@ -14,9 +14,9 @@ class RegisterBus {
   RegisterBus(const RegisterBus&) = delete;
   RegisterBus& operator=(const RegisterBus&) = delete;
 
-  /// Opens the bus, again if it is open already: an adapter may have been unplugged meanwhile.
+  /// Opens the bus, or reopens it: the adapter may have been unplugged.
   virtual int open() noexcept = 0;
-  /// Reads consecutive registers from `first` on, 32 at most. bytes are undefined after an error.
+  /// Reads up to 32 consecutive registers, starting at `first`. `bytes` are undefined after an error.
   virtual int read(std::uint8_t first, std::span<std::uint8_t> bytes) noexcept = 0;
   virtual int write(std::uint8_t address, std::uint8_t value) noexcept = 0;
 };

@@ -8,16 +8,16 @@ namespace isobar::dps310 {
 
 namespace {
 
-/// The data sheet allows 12 ms for the sensor and 40 ms for the coefficients after a reset.
+/// After a reset the data sheet allows 12 ms for the sensor and 40 ms for the coefficients.
 constexpr std::int64_t kReadyPollNs = 10'000'000;
 constexpr std::int64_t kReadyTimeoutNs = 100'000'000;
-/// The chip's oscillator may be slower than its data sheet's typical times.
+/// Tolerance of the data sheet's typical times: the chip's oscillator may be slower.
 constexpr std::int64_t kSlackNs = 20'000'000;
 constexpr std::int64_t kFastestPollNs = 4'000'000;
 constexpr std::int64_t kSlowestPollNs = 20'000'000;
 constexpr std::uint8_t kResultsReady = kPressureReady | kTemperatureReady;
-/// A read that met an update is repeated this often at most.
-constexpr int kReadsAtMost = 4;
+/// Most reads of one result until two agree.
+constexpr int kMaxReads = 4;
 
 constexpr std::int64_t to_ns(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
 
@@ -78,7 +78,7 @@ std::int64_t Sensor::wait_ready(std::int64_t now_ns) noexcept {
   constexpr std::uint8_t kBoth = kCoefficientsReady | kSensorReady;
   const Ready ready = read_ready();
   if (ready.error == 0 && (ready.bits & kBoth) == kBoth) return set_up(now_ns);
-  if (now_ns < deadline_ns_) return now_ns + kReadyPollNs;  // a resetting chip does not answer, either
+  if (now_ns < deadline_ns_) return now_ns + kReadyPollNs;  // a resetting chip does not answer
   if (ready.error != 0) return no_answer(ready.error, now_ns);
   return fail(BarometerState::kWrongDevice, "sensor or coefficients not ready 0.1 s after a reset", now_ns);
 }
@@ -92,7 +92,7 @@ std::int64_t Sensor::set_up(std::int64_t now_ns) noexcept {
   if (error == 0) error = bus_->write(kMeasurementConfig, kModeOneTemperature);
   if (error != 0) return no_answer(error, now_ns);
   phase_ = Phase::kFirstTemperature;
-  deadline_ns_ = 0;  // runs from the first look on: on a slow bus all this took longer than the measurement
+  deadline_ns_ = 0;  // set at the first poll: on a slow bus the set-up took longer than the measurement
   return now_ns + temperature_time_ns_;
 }
 
@@ -102,7 +102,7 @@ int Sensor::read_coefficients(const char*& rule) noexcept {
   if (const int error = bus_->read(kCoefficients, bytes); error != 0) return error;
   if (const int error = bus_->read(kCoefficients, again); error != 0) return error;
   rule = implausibility(bytes);
-  // They carry no checksum, and a flipped bit in them would shift every pressure until the next start.
+  // Read twice: they have no checksum, and a flipped bit would shift every pressure until the next start.
   if (bytes != again) rule = "two reads of the coefficients differ";
   coefficients_ = decode_coefficients(bytes);
   if (const int error = bus_->read(kCoefficientSource, {&thermometer_, 1}); error != 0) return error;
@@ -110,9 +110,10 @@ int Sensor::read_coefficients(const char*& rule) noexcept {
   return 0;
 }
 
-/// Some chips read about 60 degrees in a room of 20 until undocumented registers are written; the sequence is
-/// the manufacturer's and ends with a temperature measurement (Infineon's public driver, "correctTemp";
-/// Linux, commit cc8baffe1761, "Temperature measurement errata"). It changes nothing on the others.
+/// Temperature erratum: some chips read about 60 degrees C in a room of 20 until undocumented registers are
+/// written. The sequence is the manufacturer's and ends with a temperature measurement (Infineon's public
+/// driver, "correctTemp"; Linux, commit cc8baffe1761, "Temperature measurement errata"). Other chips are not
+/// affected.
 int Sensor::apply_erratum() noexcept {
   constexpr std::array<std::array<std::uint8_t, 2>, 5> kSequence{
       {{0x0E, 0xA5}, {0x0F, 0x96}, {0x62, 0x02}, {0x0E, 0x00}, {0x0F, 0x00}}};
@@ -140,7 +141,7 @@ int Sensor::write_settings() noexcept {
     std::uint8_t held = 0;
     if (const int error = bus_->write(address, value); error != 0) return error;
     if (const int error = bus_->read(address, {&held, 1}); error != 0) return error;
-    if (held != value) return EIO;  // results would be scaled wrongly
+    if (held != value) return EIO;  // results would have the wrong scale
   }
   return 0;
 }
@@ -170,7 +171,7 @@ void Sensor::measure(std::int64_t now_ns, Step& step) noexcept {
   int error = first.error;
   if (error == 0 && (ready & kModeMask) != kModeBackground) {
     ++faults_.counters().resets;
-    step.next_ns = fail(BarometerState::kSilent, "lost its settings (power?)", now_ns);
+    step.next_ns = fail(BarometerState::kSilent, "lost its settings (power failure?)", now_ns);
     return;
   }
   if (error == 0 && (ready & kResultsReady) != 0) error = read_results(ready);
@@ -190,7 +191,7 @@ void Sensor::measure(std::int64_t now_ns, Step& step) noexcept {
 void Sensor::take_result(std::int64_t now_ns, Step& step) noexcept {
   if (stuck_.add(raw_.pressure, now_ns)) {
     if (status().state != BarometerState::kStuck) ++faults_.counters().stuck;
-    step.next_ns = fail(BarometerState::kStuck, "the same bits again and again", now_ns);
+    step.next_ns = fail(BarometerState::kStuck, "the result no longer changes", now_ns);
     return;
   }
   const Compensated value = compensate(coefficients_, raw_, scale_factor(settings_.pressure_oversampling),
@@ -201,7 +202,8 @@ void Sensor::take_result(std::int64_t now_ns, Step& step) noexcept {
     return;
   }
   if (now_ns - newest_temperature_ns_ > temperature_silence_ns_) {
-    faults_.problem(BarometerState::kSilent, "no new temperature");  // every pressure needs one
+    faults_.problem(BarometerState::kSilent,
+                    "no new temperature");  // the compensation of every pressure needs one
     return;
   }
   faults_.good(now_ns);
@@ -213,9 +215,9 @@ void Sensor::take_result(std::int64_t now_ns, Step& step) noexcept {
   step.sample.variance_pa2 = noise_pa * noise_pa;
 }
 
-/// A result that is replaced while it is read is put together from two, and its ready bit may be cleared by
-/// that very read. So it is read until two reads agree. What is not ready is not read: that would clear the
-/// bit of a result that comes just then.
+/// Reads the ready results until two reads agree: the chip may replace a result during a read, which then
+/// mixes two results and may clear the ready bit of the new one. A result that is not ready is not read: the
+/// read could clear the ready bit of one that arrives meanwhile.
 int Sensor::read_results(std::uint8_t ready) noexcept {
   const RawResult kept = raw_;
   int error = read_raw(ready);
@@ -224,9 +226,9 @@ int Sensor::read_results(std::uint8_t ready) noexcept {
     error = read_raw(ready);
     if (error == 0 && raw_ == before) return 0;
     if (error == 0) ++faults_.counters().torn;
-    if (reads == kReadsAtMost) error = EAGAIN;  // faster than it can be read: no sensor with these settings
+    if (reads == kMaxReads) error = EAGAIN;  // results change faster than these settings allow
   }
-  raw_ = kept;  // half a temperature must not wait for the next pressure
+  raw_ = kept;  // a torn temperature must not compensate the next pressure
   return error;
 }
 

@@ -9,17 +9,17 @@
 
 namespace isobar::dps310 {
 
-/// A DPS310 from power-up to samples, and back again after every fault. A state machine that is asked when
-/// something can be due, so that no wait blocks:
+/// DPS310 driver: a polled state machine without blocking waits, which restarts after every fault:
 ///
 ///   reset ──▶ ready? ──▶ coefficients, erratum, settings ──▶ one temperature ──▶ background measurement
-///     ▲ after a wait that doubles: no answer, wrong device, lost settings, silent, stuck, implausible
+///     ▲ after a back-off: no answer, wrong device, lost settings, silent, stuck, implausible
 ///
-/// While it measures, the ready bits are polled four times a measurement. The stamp of a sample is the middle
-/// of the time over which the chip averaged, known to half a poll.
+/// The ready bits are polled four times a measurement. A sample's stamp is the middle of the chip's averaging
+/// time, exact to half a poll.
 class Sensor final : public BarometerDevice {
  public:
-  /// settings: checked already (busy_time_s() below 1). stuck_time_ns: see StuckWatch.
+  /// @param settings validated: busy_time_s() below 1
+  /// @param stuck_time_ns see StuckWatch
   Sensor(const Settings& settings, std::unique_ptr<RegisterBus> bus, std::int64_t stuck_time_ns);
 
   Step step(std::int64_t now_ns) noexcept override;
@@ -28,7 +28,7 @@ class Sensor final : public BarometerDevice {
 
  private:
   enum class Phase : std::uint8_t { kBegin, kWaitReady, kFirstTemperature, kMeasuring };
-  /// The outcome of an access: the ready bits, or the fault.
+  /// Result of reading the ready bits.
   struct Ready {
     int error = 0;
     std::uint8_t bits = 0;
@@ -63,8 +63,8 @@ class Sensor final : public BarometerDevice {
   std::int64_t deadline_ns_ = 0;
   std::int64_t newest_temperature_ns_ = 0;
   Coefficients coefficients_;
-  RawResult raw_;                 ///< the newest of each
-  std::uint8_t thermometer_ = 0;  ///< kExternalThermometer or 0: the one that the coefficients are made for
+  RawResult raw_;                 ///< newest pressure and newest temperature
+  std::uint8_t thermometer_ = 0;  ///< kExternalThermometer or 0: the one that the coefficients are for
 };
 
 }  // namespace isobar::dps310

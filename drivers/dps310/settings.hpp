@@ -17,8 +17,8 @@ struct Settings {
   int temperature_oversampling = 8;
 };
 
-/// Time that the sensor measures in a second [s]. One converter does both in turn: from 1 s on, the rates
-/// cannot be met (data sheet, "Pressure Configuration": rate times measurement time of both, below 1 s).
+/// Measurement time per second [s], pressure plus temperature: one converter serves both, so it must be below
+/// 1 s (data sheet, "Pressure Configuration").
 [[nodiscard]] constexpr double busy_time_s(const Settings& settings) noexcept {
   return settings.pressure_rate_hz * measurement_time_s(settings.pressure_oversampling) +
          settings.temperature_rate_hz * measurement_time_s(settings.temperature_oversampling);

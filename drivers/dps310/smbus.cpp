@@ -76,7 +76,7 @@ int SmbusDevice::read_byte(std::uint8_t address, std::uint8_t& value) noexcept {
 
 int SmbusDevice::read_block(std::uint8_t first, std::span<std::uint8_t> bytes) noexcept {
   i2c_smbus_data data{};
-  data.block[0] = static_cast<std::uint8_t>(bytes.size());  // how many are wanted, and then how many came
+  data.block[0] = static_cast<std::uint8_t>(bytes.size());  // in: bytes wanted; out: bytes read
   if (const int error = transfer(file_, I2C_SMBUS_READ, first, I2C_SMBUS_I2C_BLOCK_DATA, data); error != 0) {
     return error;
   }

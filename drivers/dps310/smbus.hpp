@@ -7,15 +7,16 @@
 
 namespace isobar::dps310 {
 
-/// A device on a bus of the kernel, /dev/i2c-N, by SMBus calls only: byte reads and writes, and block reads
-/// where the adapter has them. That is all that i2c-stub and the poorest adapters can do.
+/// Device on a kernel I2C bus, /dev/i2c-N, accessed by SMBus calls only: byte reads and writes, and block
+/// reads where the adapter has them. i2c-stub and the simplest adapters support no more.
 class SmbusDevice final : public RegisterBus {
  public:
-  /// Opens nothing yet. address: 7 bit.
+  /// Does not open the bus.
+  /// @param address 7 bit
   SmbusDevice(std::string bus, std::uint8_t address);
   ~SmbusDevice() override;
 
-  /// ENOTSUP: the adapter has no byte reads and writes. EBUSY: a driver of the kernel holds the device.
+  /// ENOTSUP: the adapter has no byte reads and writes. EBUSY: a kernel driver holds the device.
   int open() noexcept override;
   int read(std::uint8_t first, std::span<std::uint8_t> bytes) noexcept override;
   int write(std::uint8_t address, std::uint8_t value) noexcept override;

@@ -10,9 +10,9 @@ namespace isobar::iio {
 
 namespace {
 
-constexpr double kVoltsPerUnit = 1e-3;    // a voltage channel counts millivolts
-constexpr double kPascalsPerUnit = 1e3;   // a pressure channel counts kilopascals
-constexpr double kDegreesPerUnit = 1e-3;  // a temperature channel counts thousandths of a degree Celsius
+constexpr double kVoltsPerUnit = 1e-3;    // unit of a voltage channel: millivolt
+constexpr double kPascalsPerUnit = 1e3;   // unit of a pressure channel: kilopascal
+constexpr double kDegreesPerUnit = 1e-3;  // unit of a temperature channel: millidegree Celsius
 
 }  // namespace
 
@@ -50,7 +50,7 @@ std::int64_t Barometer::begin(std::int64_t now_ns) noexcept {
     const char* what = error == ENOENT ? "no such device or channel" : "no answer";
     return faults_.fail(BarometerState::kNoAnswer, what, now_ns, error);
   }
-  // A converter's in_temp is the converter's, not the transducer's.
+  // A converter's in_temp is its own temperature, not the transducer's.
   has_thermometer_ = !span_ && thermometer_.open() == 0;
   open_ = true;
   return now_ns + period_ns_;
@@ -62,7 +62,7 @@ void Barometer::measure(std::int64_t now_ns, Step& step) noexcept {
   double pressure_pa = 0.0;
   if (reading.error != 0) {
     ++faults_.counters().io_errors;
-    const char* what = reading.error == EBADMSG ? "the file holds no number" : "no answer";
+    const char* what = reading.error == EBADMSG ? "the file does not hold a number" : "no answer";
     faults_.problem(BarometerState::kNoAnswer, what, reading.error);
   } else if (const char* fault = convert(reading.value, pressure_pa); fault != nullptr) {
     ++faults_.counters().implausible;
@@ -70,7 +70,7 @@ void Barometer::measure(std::int64_t now_ns, Step& step) noexcept {
   } else if (stuck_.add(reading.bits, now_ns)) {
     if (status().state != BarometerState::kStuck) ++faults_.counters().stuck;
     open_ = false;
-    step.next_ns = faults_.fail(BarometerState::kStuck, "the same value again and again", now_ns);
+    step.next_ns = faults_.fail(BarometerState::kStuck, "the value no longer changes", now_ns);
     return;
   } else {
     faults_.good(now_ns);
@@ -97,7 +97,7 @@ const char* Barometer::convert(double value, double& pressure_pa) const noexcept
   return implausibility(sample);
 }
 
-/// A thermometer that fails costs the temperature, not the pressure.
+/// NaN when the thermometer fails: the pressure stays valid.
 double Barometer::read_temperature() noexcept {
   if (has_thermometer_) {
     const Channel::Value reading = thermometer_.read();

@@ -10,13 +10,16 @@
 
 namespace isobar::iio {
 
-/// A barometer that the kernel reads: one with a driver of its own (in_pressure, and in_temp where it has
-/// one), or a Setra 278 behind a converter. Its noise is not known here: variance_pa2 stays NaN.
+/// Barometer read through the kernel's industrial I/O: a sensor with a kernel driver (in_pressure, and
+/// in_temp if present), or a Setra 278 behind an analogue-to-digital converter. Its noise is unknown:
+/// variance_pa2 is NaN.
 class Barometer final : public BarometerDevice {
  public:
-  /// Any driver with a pressure channel. stuck_time_ns: see StuckWatch.
+  /// A sensor with a pressure channel.
+  /// @param stuck_time_ns see StuckWatch
   Barometer(const Settings& settings, std::int64_t stuck_time_ns);
-  /// A Setra 278. settings.span: checked already (setra278::broken_rule).
+  /// A Setra 278.
+  /// @param settings span validated (setra278::broken_rule)
   Barometer(const SetraSettings& settings, std::int64_t stuck_time_ns);
 
   Step step(std::int64_t now_ns) noexcept override;
@@ -29,7 +32,7 @@ class Barometer final : public BarometerDevice {
 
   std::int64_t begin(std::int64_t now_ns) noexcept;
   void measure(std::int64_t now_ns, Step& step) noexcept;
-  /// Judges one reading; nullptr when pressure_pa is good, or the fault.
+  /// Converts a reading to pressure_pa; the fault, or nullptr when there is none.
   const char* convert(double value, double& pressure_pa) const noexcept;
   [[nodiscard]] double read_temperature() noexcept;
 
@@ -37,7 +40,7 @@ class Barometer final : public BarometerDevice {
   std::int64_t period_ns_;
   Channel channel_;
   Channel thermometer_;
-  std::optional<setra278::Span> span_;  ///< volts to pressure; without: the channel is pressure
+  std::optional<setra278::Span> span_;  ///< volts to pressure; absent: the channel is a pressure
   FaultWatch faults_;
   StuckWatch stuck_;
   bool open_ = false;

@@ -14,7 +14,7 @@ namespace isobar::iio {
 
 namespace {
 
-constexpr std::size_t kLongestPath = 512;
+constexpr std::size_t kMaxPathBytes = 512;
 
 /// "in_voltage" of "in_voltage0".
 std::string without_digits(const std::string& name) {
@@ -25,7 +25,7 @@ std::string without_digits(const std::string& name) {
   return text;
 }
 
-/// The number in a file, read anew: an attribute of sysfs is computed at each read from its start.
+/// Parses a sysfs file. pread at 0 makes the kernel compute the attribute again.
 int read_number(int file, double& value) noexcept {
   std::array<char, 64> text{};
   const ssize_t length = pread(file, text.data(), text.size(), 0);
@@ -48,7 +48,7 @@ void Channel::close() noexcept {
 }
 
 int Channel::open_file(const char* suffix, bool shared) const noexcept {
-  std::array<char, kLongestPath> path{};
+  std::array<char, kMaxPathBytes> path{};
   const std::string& name = shared ? shared_name_ : name_;
   const int length =
       std::snprintf(path.data(), path.size(), "%s/%s%s", folder_.c_str(), name.c_str(), suffix);
@@ -59,7 +59,7 @@ int Channel::open_file(const char* suffix, bool shared) const noexcept {
   return ::open(path.data(), O_RDONLY | O_CLOEXEC);
 }
 
-/// Leaves the value alone where there is neither a file for the channel nor one for all of its kind.
+/// Reads an attribute of the channel, else the one shared by its kind; keeps `value` when neither exists.
 int Channel::read_constant(const char* suffix, double& value) const noexcept {
   int file = open_file(suffix, false);
   if (file < 0 && errno == ENOENT) file = open_file(suffix, true);

@@ -7,28 +7,29 @@
 
 namespace isobar::iio {
 
-/// One measured channel of a device of the kernel's industrial I/O interface, read from its folder in sysfs
-/// (Linux, Documentation/ABI/testing/sysfs-bus-iio). A driver offers either `NAME_input`, processed, or
-/// `NAME_raw` with `_scale` and `_offset`, of which those that all channels of a kind share lack the number:
-/// in_voltage0_raw and in_voltage_scale. value = (raw + offset) scale.
+/// Channel of a device of the kernel's industrial I/O, read through sysfs (Linux,
+/// Documentation/ABI/testing/sysfs-bus-iio). A driver has either `NAME_input`, processed, or `NAME_raw` with
+/// `NAME_scale` and `NAME_offset`: value = (raw + offset) scale. An attribute shared by all channels of a
+/// kind has no channel number: in_voltage0_raw, in_voltage_scale.
 class Channel {
  public:
-  /// folder: "/sys/bus/iio/devices/iio:device0". name: "in_pressure", "in_voltage0".
+  /// @param folder "/sys/bus/iio/devices/iio:device0"
+  /// @param name "in_pressure", "in_voltage0"
   Channel(std::string folder, std::string name);
   ~Channel();
   Channel(const Channel&) = delete;
   Channel& operator=(const Channel&) = delete;
 
-  /// Finds the files and reads scale and offset. 0 or errno; ENOENT: the device has no such channel. EBADMSG:
-  /// a file does not hold a number.
+  /// Opens the channel's file and reads scale and offset.
+  /// @return 0 or errno; ENOENT: the device has no such channel; EBADMSG: a file does not hold a number
   int open() noexcept;
 
   struct Value {
-    int error = 0;          ///< errno; EBADMSG: no number
-    double value = 0.0;     ///< in the unit of the channel: millivolt, kilopascal, milli degree Celsius
-    std::int64_t bits = 0;  ///< changes when the reading does
+    int error = 0;          ///< 0 or errno; EBADMSG: the file does not hold a number
+    double value = 0.0;     ///< in the channel's unit: millivolt, kilopascal, millidegree Celsius
+    std::int64_t bits = 0;  ///< bits of the reading, for StuckWatch
   };
-  /// Reads once: the driver may convert meanwhile. Allocates nothing.
+  /// Reads once; blocks while the driver converts. Allocates nothing.
   Value read() noexcept;
 
  private:

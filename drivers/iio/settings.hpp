@@ -7,13 +7,13 @@
 
 namespace isobar::iio {
 
-/// Where a barometer of the kernel is.
+/// Location of a barometer with a kernel driver.
 struct Settings {
   std::string folder = "/sys/bus/iio/devices/iio:device0";
-  int rate_hz = 10;  ///< how often it is read
+  int rate_hz = 10;  ///< polling rate
 };
 
-/// Where the converter behind a Setra 278 is.
+/// Location and span of a Setra 278 behind a converter.
 struct SetraSettings {
   Settings device;
   std::string channel = "in_voltage0";

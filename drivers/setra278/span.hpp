@@ -3,9 +3,8 @@
 
 namespace isobar::setra278 {
 
-/// The straight line of a Setra 278, as its order code and its converter's wiring say: 0 … 2.5 V or 0 … 5 V
-/// for 600 … 1100, 500 … 1100 or 800 … 1100 hPa. With a divider in front of the converter: the volts behind
-/// it.
+/// Linear characteristic of a Setra 278, by its order code: 0 … 2.5 V or 0 … 5 V for 600 … 1100, 500 … 1100
+/// or 800 … 1100 hPa. Volts are those at the converter, after a voltage divider if there is one.
 struct Span {
   double low_v = 0.0;
   double high_v = 2.5;
@@ -13,16 +12,16 @@ struct Span {
   double high_pa = 110'000.0;
 };
 
-/// Share of the span at each end that is no measurement. A wire that is off, a supply that is missing or a
-/// converter at its limit read an end of the span or a little beyond; air pressure is not there.
+/// Share of the span at each end that is refused. An open wire, a missing supply or a saturated converter
+/// read an end of the span or slightly beyond; real air pressure does not.
 inline constexpr double kEndShare = 0.005;
 
-/// Which rule the span breaks, as a text that never dies; nullptr when none.
+/// The rule that the span breaks, a static text; nullptr when none.
 [[nodiscard]] const char* broken_rule(const Span& span) noexcept;
 
-/// A pressure, or why there is none.
+/// Pressure or fault.
 struct Reading {
-  const char* fault = nullptr;  ///< a text that never dies; nullptr: pressure_pa is valid
+  const char* fault = nullptr;  ///< a static text; nullptr: pressure_pa is valid
   double pressure_pa = 0.0;
 };
 

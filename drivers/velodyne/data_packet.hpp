@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A data packet that has been checked, field by field, before anything believes it.
+// Parsing and validation of a data packet.
 #pragma once
 
 #include <array>
@@ -17,22 +17,23 @@ inline std::uint32_t read_u16(const std::uint8_t* at) {
 
 enum class DecodeStatus : std::uint8_t {
   kOk,          ///< decoded
-  kPosition,    ///< a position packet: no points, nothing wrong
+  kPosition,    ///< a valid position packet; it has no points
   kTruncated,   ///< shorter than a data packet
   kOversized,   ///< longer than a data packet
-  kGarbage,     ///< right size, but a block flag, an azimuth or the return mode is impossible
-  kWrongModel,  ///< of another model than configured: see VelodyneDecoder::wrong_model_message()
-  kDuplicate,   ///< seen already
-  kTooLate,     ///< overtaken by so much that no open scan can hold it
+  kGarbage,     ///< right size, but a block flag, an azimuth or the return mode is invalid
+  kWrongModel,  ///< from another model than configured: see VelodyneDecoder::wrong_model_message()
+  kDuplicate,   ///< received before
+  kTooLate,     ///< reordered too late for the open scan
 };
 
+/// Header fields of a valid packet, and a pointer to its returns.
 struct DataPacket {
-  const std::uint8_t* bytes = nullptr;  ///< kDataPacketBytes of them, of the caller's
-  std::uint32_t timestamp_us = 0;       ///< past the hour
+  const std::uint8_t* bytes = nullptr;  ///< kDataPacketBytes, owned by the caller
+  std::uint32_t timestamp_us = 0;       ///< past the hour, of the first firing
   std::uint8_t product_id = 0;
   bool dual = false;
   std::array<std::uint32_t, kBlocks> azimuth{};  ///< by block [0.01 deg], below kFullTurn
-  std::int64_t device_ns = 0;                    ///< of its first firing, unwrapped; for the caller to set
+  std::int64_t device_ns = 0;                    ///< unwrapped time of the first firing; set by the decoder
 
   /// The 32 channels of a block.
   [[nodiscard]] const std::uint8_t* channels(int block) const {
@@ -40,8 +41,9 @@ struct DataPacket {
   }
 };
 
-/// Checks a UDP payload. kOk, kPosition, kTruncated, kOversized, kGarbage or kWrongModel; `packet` is filled
-/// for kOk, its product_id for kWrongModel too.
+/// Parses and validates a UDP payload.
+/// @param packet filled with kOk; with kWrongModel only its product_id is valid
+/// @return kOk, kPosition, kTruncated, kOversized, kGarbage or kWrongModel
 DecodeStatus read_packet(std::span<const std::uint8_t> payload, Model model, DataPacket& packet);
 
 }  // namespace isobar::velodyne

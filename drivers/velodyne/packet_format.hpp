@@ -21,7 +21,7 @@ namespace isobar::velodyne {
 inline constexpr std::size_t kDataPacketBytes = 1206;
 inline constexpr std::size_t kPositionPacketBytes = 512;
 inline constexpr int kBlocks = 12;
-inline constexpr int kChannels = 32;  ///< of one block
+inline constexpr int kChannels = 32;  ///< per block
 inline constexpr std::size_t kBlockBytes = 100;
 inline constexpr std::size_t kBlockHeaderBytes = 4;
 inline constexpr std::size_t kChannelBytes = 3;
@@ -32,8 +32,8 @@ inline constexpr std::size_t kReturnModeOffset = 1204;
 inline constexpr std::size_t kProductIdOffset = 1205;
 
 inline constexpr double kDistanceUnitM = 0.002;
-inline constexpr std::uint32_t kFullTurn = 36'000;  ///< azimuth counts a turn [0.01 deg]
-inline constexpr std::int64_t kClockPeriodNs = 3'600'000'000'000;
+inline constexpr std::uint32_t kFullTurn = 36'000;                 ///< counts of a turn [0.01 deg]
+inline constexpr std::int64_t kClockPeriodNs = 3'600'000'000'000;  ///< the timestamp wraps at the hour
 inline constexpr std::uint16_t kDataPort = 2368;
 inline constexpr std::uint16_t kPositionPort = 8308;
 
@@ -41,19 +41,19 @@ enum class ReturnMode : std::uint8_t { kStrongest = 0x37, kLast = 0x38, kDual = 
 /// The product id in the last byte of a data packet.
 enum class Model : std::uint8_t { kHdl32e = 0x21, kVlp16 = 0x22 };
 
-/// What differs between models.
+/// Geometry and firing times of a model.
 struct ModelTraits {
   Model model;
-  std::string_view name;                 ///< as recordings and configurations spell it
+  std::string_view name;                 ///< in recordings and configurations
   int lasers;                            ///< 16 or 32
   int firings_per_block;                 ///< firing cycles that share one azimuth
-  std::int64_t firing_cycle_ns;          ///< from the first laser to the first laser again, recharge included
+  std::int64_t firing_cycle_ns;          ///< period of a laser: all lasers once, and the recharge time
   std::int64_t firing_step_ns;           ///< from one laser to the next
   double max_range_m;                    ///< data sheet
   std::array<double, 32> elevation_deg;  ///< by laser, in firing order
   std::array<std::uint8_t, 32> ring;     ///< by laser; 0 is the lowest
 
-  /// Time covered by one packet [ns]: dual return repeats every firing in a second block.
+  /// Time covered by one packet [ns]. In dual return two blocks hold the same firing.
   [[nodiscard]] constexpr std::int64_t packet_duration_ns(bool dual) const {
     return std::int64_t{dual ? kBlocks / 2 : kBlocks} * firings_per_block * firing_cycle_ns;
   }
@@ -65,7 +65,7 @@ struct ModelTraits {
 };
 
 namespace detail {
-/// Rings by counting the lasers below.
+/// Fills the rings: the number of lasers at a lower elevation.
 constexpr ModelTraits with_rings(ModelTraits traits) {
   for (int laser = 0; laser < traits.lasers; ++laser) {
     std::uint8_t below = 0;
@@ -118,7 +118,7 @@ inline constexpr ModelTraits kHdl32e = detail::with_rings(
   }
   return nullptr;
 }
-/// Name behind a product id, of models that are not decoded too.
+/// Name of a product id, including models that are not decoded.
 [[nodiscard]] constexpr std::string_view product_name(std::uint8_t product_id) {
   switch (product_id) {
     case 0x21:

@@ -10,11 +10,12 @@ namespace isobar::velodyne {
 namespace {
 
 constexpr double kRadPerCount = kRadPerDeg / 100.0;
-/// Steps from block to block above this are gaps of a restricted field of view, not rotation: 10 deg in one
-/// block would be 250 turns a second.
+/// Larger azimuth steps between blocks are gaps of a restricted field of view, not rotation [0.01 deg]: 10
+/// deg in one block would be 250 turns a second.
 constexpr std::uint32_t kMaxBlockStep = 1'000;
-/// Shares are rounded up: that turns a step by 0.001 counts at most, less than the 1/48 by which the rotation
-/// of any channel differs from one that rounds the other way, and keeps halves rounding up.
+/// Fixed-point unit of Channel::turn_share. Shares are rounded up, so that halves of a count round up; the
+/// error of 0.001 counts is below the 1/48 count that separates any channel's rotation from a different
+/// rounding.
 constexpr std::uint32_t kWholeShare = 1U << 20U;
 
 std::uint32_t to_count(double degrees) {
@@ -22,7 +23,7 @@ std::uint32_t to_count(double degrees) {
   return static_cast<std::uint32_t>(std::lround((turns - std::floor(turns)) * kFullTurn)) % kFullTurn;
 }
 
-/// An azimuth below two turns, within one. A division a return would cost as much as all the rest.
+/// azimuth mod kFullTurn for azimuths below two turns. A division a return would double the decoder's cost.
 std::uint32_t within_turn(std::uint32_t azimuth) {
   return azimuth >= kFullTurn ? azimuth - kFullTurn : azimuth;
 }
@@ -47,7 +48,7 @@ ReturnDecoder::ReturnDecoder(const VelodyneConfig& config)
                           -static_cast<float>(std::sin(azimuth_rad))};
   }
   constexpr double kMaxCount = 65'535.0;
-  // The small shares keep 0.3 m / 2 mm from becoming 150.00000000000003.
+  // 1e-6 absorbs rounding: 0.3 m / 2 mm is 150.00000000000003.
   min_count_ = static_cast<std::uint32_t>(
       std::clamp(std::ceil(config.min_range_m / kDistanceUnitM - 1e-6), 1.0, kMaxCount));
   max_count_ = static_cast<std::uint32_t>(
@@ -64,13 +65,13 @@ std::uint32_t ReturnDecoder::decode(const DataPacket& packet, int first_block, i
   for (int block = 0; block < end_block; ++block) {
     const std::uint32_t azimuth = packet.azimuth[static_cast<std::size_t>(block)];
     const int next = block / stride * stride + stride;
-    if (next < kBlocks) {  // the last firing has no successor: it takes the step before it
+    if (next < kBlocks) {  // the last firing reuses the step of the one before
       const std::uint32_t to_next =
           within_turn(packet.azimuth[static_cast<std::size_t>(next)] + kFullTurn - azimuth);
       step = to_next <= kMaxBlockStep ? to_next : step;
     }
     if (block >= first_block) {
-      // In dual return the odd block repeats the firing of the even one before it.
+      // Dual return: an odd block holds the other return of the firing in the even block before it.
       const bool second = packet.dual && block % 2 == 1;
       const std::int64_t start_ns = since_start_ns + traits_.firing_offset_ns(block, 0, packet.dual);
       written += decode_block({packet.channels(block), second ? packet.channels(block - 1) : nullptr, azimuth,
@@ -87,8 +88,8 @@ std::uint32_t ReturnDecoder::decode_block(const Block& block, ScanPoint* out) co
   std::size_t at = 0;
   for (const Channel& channel : channels_) {
     const std::uint32_t count = read_u16(block.channels + at);
-    const bool repeated = block.twin != nullptr && read_u16(block.twin + at) == count;
-    // Rounded to the resolution of the sensor's own azimuths: at most 0.005 deg, 0.9 mm at 10 m.
+    const bool repeated = block.other_return != nullptr && read_u16(block.other_return + at) == count;
+    // Rounded to the resolution of the packet's azimuth: error at most 0.005 deg, 0.9 mm at 10 m.
     const std::uint32_t beyond = (block.step * channel.turn_share + kWholeShare / 2) / kWholeShare;
     const std::uint32_t azimuth = within_turn(block.azimuth + beyond);
     const bool masked = within_turn(azimuth + kFullTurn - mask_start_) < mask_width_;
@@ -96,8 +97,7 @@ std::uint32_t ReturnDecoder::decode_block(const Block& block, ScanPoint* out) co
     const float across_m = range_m * channel.cos_elevation;
     const Direction& direction = directions_[azimuth];
     const std::uint32_t time_ns = block.start_ns + channel.firing_ns;
-    // Written in any case and overwritten by the next if it does not count: a jump that no processor can
-    // foresee would cost more.
+    // Branch-free: written always, overwritten by the next point when dropped. A branch would mispredict.
     out[written] = {across_m * direction.x,
                     across_m * direction.y,
                     range_m * channel.sin_elevation,

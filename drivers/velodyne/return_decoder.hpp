@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the returns in a packet to points: the one place that is passed by every return of the sensor.
+// Conversion of the returns in a packet to points: the inner loop of the lidar driver.
 #pragma once
 
 #include <array>
@@ -14,25 +14,26 @@ namespace isobar::velodyne {
 
 struct VelodyneConfig {
   Model model = Model::kVlp16;
-  /// Returns nearer than this are dropped [m], 0 … 10: housing and mount of the sensor, 0 keeps all.
+  /// Nearer returns are dropped [m], 0 … 10: they come from the sensor's housing and mount. 0 keeps all.
   double min_range_m = 0.3;
-  /// Returns farther than this are dropped [m], up to 131 (16 bits of 2 mm).
+  /// Farther returns are dropped [m], up to 131 (16 bits of 2 mm).
   double max_range_m = 131.0;
-  /// Sector in which the sensor sees the robot itself [deg], azimuth clockwise from above as the packet
-  /// counts, from start to end, 0 … 360, may pass 0. Equal values: no sector is dropped.
+  /// Masked sector, in which the sensor sees the robot itself [deg], 0 … 360: from start clockwise (seen from
+  /// above, as the packet's azimuth) to end, across 0 if end < start. Equal values mask nothing.
   double mask_start_deg = 0.0;
   double mask_end_deg = 0.0;
 };
 
-/// Decodes returns by tables: of what a channel of a block always has (elevation, firing time, share of the
-/// rotation, ring), and of all 36 000 azimuths. Without state: equal packets give equal points.
+/// Table-driven decoder: one table by channel (elevation, firing time, share of the block's rotation, ring),
+/// one by azimuth (all 36 000). Stateless: equal packets give equal points.
 class ReturnDecoder {
  public:
   explicit ReturnDecoder(const VelodyneConfig& config);
 
-  /// Decodes blocks first_block … end_block - 1. `since_start_ns`: time of the packet's first firing after
-  /// the scan's start; the first of the blocks must not fire before that start, nor the last 262 ms after it.
-  /// `out`: room for kChannels points a block, also for what is dropped.
+  /// Decodes blocks first_block … end_block - 1.
+  /// @param since_start_ns time of the packet's first firing after the scan's start; all blocks decoded must
+  ///         fire 0 … 262 ms after that start
+  /// @param out room for kChannels points a block, dropped returns included
   /// @return points written
   std::uint32_t decode(const DataPacket& packet, int first_block, int end_block, std::int64_t since_start_ns,
                        ScanPoint* out) const;
@@ -41,8 +42,8 @@ class ReturnDecoder {
   struct Channel {
     float cos_elevation = 0.0F;
     float sin_elevation = 0.0F;
-    std::uint32_t firing_ns = 0;   // after the block's first
-    std::uint32_t turn_share = 0;  // of the block's rotation by then, in units of 1 / kWholeShare
+    std::uint32_t firing_ns = 0;   // after the block's first firing
+    std::uint32_t turn_share = 0;  // share of the block's rotation at that time, in units of 1 / kWholeShare
     std::uint8_t ring = 0;
   };
   struct Direction {
@@ -51,7 +52,7 @@ class ReturnDecoder {
   };
   struct Block {
     const std::uint8_t* channels;
-    const std::uint8_t* twin;  // channels of the same firing's other return, or nullptr
+    const std::uint8_t* other_return;  // channels of the same firing's other return, or nullptr
     std::uint32_t azimuth;
     std::uint32_t step;      // rotation until the next block [0.01 deg]
     std::uint32_t start_ns;  // after the scan's start

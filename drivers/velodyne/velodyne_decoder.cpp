@@ -7,14 +7,13 @@
 namespace isobar::velodyne {
 namespace {
 
-/// The azimuth only grows; a fall by more than this is the passage through 0, less is jitter of the motor
-/// [0.01 deg].
+/// Largest decrease of the azimuth by motor jitter [0.01 deg]; a larger one is the passage through 0.
 constexpr std::uint32_t kMaxBackwardJitter = 1'000;
-/// ScanPoint::time_4us reaches 262 ms.
+/// Longest scan: range of ScanPoint::time_4us, 2^16 x 4 us.
 constexpr std::int64_t kMaxScanNs = 262'000'000;
-/// A packet overtaken by longer than this does not belong to the open scan [ns].
+/// Largest delay with which a reordered packet is added to the open scan [ns].
 constexpr std::int64_t kMaxLateNs = 50'000'000;
-/// Longer silence is no packet loss but a sensor that was off [ns].
+/// Longest gap that counts as packet loss [ns]; after a longer one the sensor was off.
 constexpr std::int64_t kMaxCountedGapNs = 60'000'000'000;
 
 ClockAnchorConfig hourly_clock() {
@@ -158,14 +157,14 @@ DecodeResult VelodyneDecoder::add_reordered(const DataPacket& packet, Scan& curr
     ++counters_.too_late;
     return {DecodeStatus::kTooLate, false};
   }
-  if (early_ns > 0) {  // the scan has just begun: let it begin earlier
+  if (early_ns > 0) {  // earlier than the scan's first packet: move the scan's start
     const auto shift = static_cast<std::uint16_t>((early_ns + kPointTimeUnitNs - 1) / kPointTimeUnitNs);
     for (std::uint32_t i = 0; i < current.point_count; ++i) {
       current.points[i].time_4us = static_cast<std::uint16_t>(current.points[i].time_4us + shift);
     }
     scan_start_ns_ -= shift * kPointTimeUnitNs;
   }
-  // What came late had been counted as lost.
+  // The packet was counted as lost when the one after it arrived.
   counters_.lost -= counters_.lost > 0 ? 1 : 0;
   current.packets_lost -= current.packets_lost > 0 ? 1 : 0;
   append(packet, 0, kBlocks, current);
@@ -178,8 +177,7 @@ std::uint32_t VelodyneDecoder::lost_before(const DataPacket& packet) const {
   if (!have_last_ || gap_ns <= 0 || gap_ns > kMaxCountedGapNs) {
     return 0;
   }
-  // A sensor that says it is an HDL-32E but keeps a VLP-16's pace has been seen: no gap is shorter than the
-  // pace.
+  // The shortest gap bounds the true packet period: an HDL-32E with the packet rate of a VLP-16 exists.
   const std::int64_t duration_ns = std::max(traits_.packet_duration_ns(packet.dual), shortest_gap_ns_);
   const std::int64_t packets = (gap_ns + duration_ns / 2) / duration_ns;
   return packets > 1 ? static_cast<std::uint32_t>(packets - 1) : 0;

@@ -17,11 +17,11 @@ namespace isobar::velodyne {
 
 struct DecodeResult {
   DecodeStatus status = DecodeStatus::kOk;
-  /// The scan given to add_packet() is complete: publish it and lend another one to the next call.
+  /// The scan passed to add_packet() is complete: publish it and pass another one to the next call.
   bool scan_complete = false;
 };
 
-/// Counters since the start; one writer.
+/// Counters since construction; one writer.
 struct VelodyneCounters {
   std::uint64_t packets = 0;  ///< data packets decoded
   std::uint64_t position = 0;
@@ -30,19 +30,20 @@ struct VelodyneCounters {
   std::uint64_t garbage = 0;
   std::uint64_t wrong_model = 0;
   std::uint64_t duplicated = 0;
-  std::uint64_t reordered = 0;    ///< decoded all the same, into the scan that is open
-  std::uint64_t too_late = 0;     ///< reordered by so much that no open scan can hold them: not decoded
-  std::uint64_t lost = 0;         ///< missing, from the gaps in the sensor's time
-  std::uint64_t clock_steps = 0;  ///< the sensor's or the host's clock was set
-  std::uint64_t returns = 0;      ///< points handed out
-  std::uint64_t scans = 0;        ///< completed
+  std::uint64_t reordered = 0;    ///< decoded into the open scan
+  std::uint64_t too_late = 0;     ///< reordered too late for the open scan, not decoded
+  std::uint64_t lost = 0;         ///< missing packets, from gaps in the sensor's time
+  std::uint64_t clock_steps = 0;  ///< steps of the sensor's or the host's clock
+  std::uint64_t returns = 0;      ///< points written
+  std::uint64_t scans = 0;        ///< scans completed
 };
 
-/// Decodes Velodyne data packets into scans. Pure: no I/O, no clock, no allocation after construction.
+/// Decoder of Velodyne data packets into scans of one revolution. No I/O, no clock, no allocation after
+/// construction.
 ///
-/// The caller owns the memory of the scans. Every call names the scan that is being filled; the decoder
-/// resets it at the start of a revolution. When a packet closes a revolution, its blocks of the next
-/// revolution wait inside the decoder for the next call:
+/// The caller owns the scans and passes the one being filled to every call; the decoder resets it at the
+/// start of a revolution. Blocks after the end of a revolution are kept until the next call, which passes the
+/// next scan:
 ///
 ///     Scan* scan = loan();
 ///     for (each packet) {
@@ -50,22 +51,25 @@ struct VelodyneCounters {
 ///     }
 ///     if (decoder.flush(*scan)) { publish(scan); }
 ///
-/// Points are in the sensor's frame (x at azimuth 0, y left, z up; recording-format.md). Within one scan
-/// times come from the sensor's clock alone; Scan::stamp_ns is anchored to the host's clock by ClockAnchor. A
-/// scan ends where the azimuth passes 0, after a gap of about a turn, when the sensor's clock steps, or when
-/// it is full; no point is lost.
+/// Points are in the sensor's frame (x at azimuth 0, y left, z up; recording-format.md). Point times within a
+/// scan come from the sensor's clock; ClockAnchor ties Scan::stamp_ns to the host's clock. A scan ends where
+/// the azimuth passes 0, after a gap of about a turn, at a step of the sensor's clock, and when it is full.
+/// No point is lost.
 class VelodyneDecoder {
  public:
   explicit VelodyneDecoder(const VelodyneConfig& config);
 
-  /// payload: the UDP payload. host_stamp_ns: when the host received it, robot clock.
+  /// Decodes a packet.
+  /// @param payload UDP payload
+  /// @param host_stamp_ns receive time, robot clock
+  /// @param current scan being filled
   DecodeResult add_packet(std::span<const std::uint8_t> payload, std::int64_t host_stamp_ns, Scan& current);
 
-  /// Ends the open revolution. True if `current` now holds a scan.
+  /// Ends the open revolution; true when `current` holds a scan.
   bool flush(Scan& current);
 
   [[nodiscard]] const VelodyneCounters& counters() const { return counters_; }
-  /// Names both models, for the status: "packets of HDL-32E (product id 0x21), but VLP-16 is configured".
+  /// Status text of a model mismatch: "packets of HDL-32E (product id 0x21), but VLP-16 is configured".
   [[nodiscard]] std::string wrong_model_message() const;
 
  private:
@@ -101,9 +105,9 @@ class VelodyneDecoder {
   std::size_t recent_next_ = 0;
 
   bool have_last_ = false;
-  std::int64_t last_device_ns_ = 0;   // of the newest packet
-  std::int64_t shortest_gap_ns_ = 0;  // between two packets, ever
-  std::uint32_t last_azimuth_ = 0;    // of its last block
+  std::int64_t last_device_ns_ = 0;   // first firing of the newest packet
+  std::int64_t shortest_gap_ns_ = 0;  // between consecutive packets, since construction
+  std::uint32_t last_azimuth_ = 0;    // last block of the newest packet [0.01 deg]
   double azimuth_rate_ = 0.0;         // [0.01 deg / ns]
 
   bool scan_open_ = false;
@@ -111,7 +115,7 @@ class VelodyneDecoder {
   std::int64_t scan_end_ns_ = 0;
   std::uint32_t sequence_ = 0;
 
-  // Blocks of the packet that closed a scan, for the next scan, which has no memory yet.
+  // Blocks after the end of a scan: they belong to the next one, which the caller has not passed yet.
   bool pending_ = false;
   DataPacket pending_packet_;
   std::array<std::uint8_t, kDataPacketBytes> pending_bytes_{};

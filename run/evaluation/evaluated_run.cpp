@@ -86,7 +86,7 @@ ReferenceData load_reference(const fs::path& path, const std::optional<fs::path>
   reference.trajectory = parse_tum(files::read_text_file(trajectory_file), trajectory_file.string());
   std::optional<fs::path> file = segments_file;
   if (!file && is_recording && fs::exists(path / "segments.csv")) file = path / "segments.csv";
-  if (file) reference.segments = parse_segments_csv(files::read_text_file(*file), file->string());
+  if (file) reference.segments = text::read_segments(text::TextLines(*file));
   if (needed_repair(reference.trajectory.repairs)) {
     reference.notes.push_back(repairs_note("The reference", reference.trajectory.repairs));
   }

@@ -3,28 +3,25 @@
 
 #include <utility>
 
-#include "run/evaluation/text_table.hpp"
 #include "run/files/ply_reader.hpp"
 #include "run/files/run_layout.hpp"
 #include "run/files/text_file.hpp"
+#include "run/text/csv_reader.hpp"
 
 namespace isobar::evaluation {
 
 std::vector<StatusRow> parse_status_csv(std::string_view text, const std::string& name) {
-  CsvReader csv(text, name);
-  const std::size_t stamp = csv.required_column("t_ns");
-  const auto mode = csv.column("mode");
-  const auto scan_ms = csv.column("scan_ms");
-  const auto altimeter_height = csv.column("altimeter_height_m");
-  const auto sd_z = csv.column("sd_z_m");
+  enum Column : std::size_t { kStampNs, kMode, kScanMs, kAltimeterHeightM, kSdZM };
+  text::CsvReader csv(text::TextLines(text, name), {"t_ns"},
+                      {"mode", "scan_ms", "altimeter_height_m", "sd_z_m"});
   std::vector<StatusRow> rows;
   while (csv.next_row()) {
     StatusRow row;
-    row.stamp_ns = csv.int64(stamp);
-    if (mode) row.mode = csv.cell(*mode);
-    row.scan_ms = csv.number_or_nan(scan_ms);
-    row.altimeter_height_m = csv.number_or_nan(altimeter_height);
-    row.sd_z_m = csv.number_or_nan(sd_z);
+    row.stamp_ns = csv.int64(kStampNs);
+    row.mode = csv.field(kMode);
+    row.scan_ms = csv.number_or_nan(kScanMs);
+    row.altimeter_height_m = csv.number_or_nan(kAltimeterHeightM);
+    row.sd_z_m = csv.number_or_nan(kSdZM);
     rows.push_back(std::move(row));
   }
   return rows;

@@ -11,15 +11,18 @@
 namespace isobar::recording {
 namespace {
 
+/// Rows read at the start of a file, and bytes at its end.
 constexpr std::size_t kRowsAtStart = 200;
 constexpr std::uint64_t kBytesAtEnd = 16'384;
-/// Stamps farther than this from the median of their neighbours are absurd [ns].
+/// Stamps farther than this from the median of their neighbours are outliers [ns].
 constexpr std::int64_t kNeighbourhoodNs = 3'600'000'000'000;
+/// Tolerance when the spans of two recorders are compared [ns].
 constexpr std::int64_t kToleranceNs = 5'000'000'000;
-/// Two files that one recorder starts and ends together do so within this [ns]: a few samples of 10 Hz.
+/// Largest difference between two files that one recorder opens and closes together [ns]: a few samples of 10
+/// Hz.
 constexpr std::int64_t kTogetherNs = 300'000'000;
 
-/// Lowest and highest stamp among those near the median.
+/// Lowest and highest of the stamps near the median.
 StampSpan robust_span(std::vector<std::int64_t>& stamps_ns) {
   const std::int64_t median_ns = upper_median(stamps_ns);
   StampSpan span{median_ns, median_ns};
@@ -33,7 +36,7 @@ StampSpan robust_span(std::vector<std::int64_t>& stamps_ns) {
 }
 
 template <typename Sample>
-std::optional<StampSpan> span_of(CsvReader&& csv) {
+std::optional<StampSpan> span_of(text::CsvReader&& csv) {
   Tally ignored;
   Sample sample;
   std::vector<std::int64_t> stamps_ns;

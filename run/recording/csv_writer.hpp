@@ -11,13 +11,15 @@
 
 namespace isobar::recording {
 
-/// A text file with a buffer, whose errors are not lost.
+/// Buffered text file that reports write errors.
 class TextFile {
  public:
-  /// Creates or truncates. Throws DataError.
+  /// Creates or truncates the file.
+  /// @throws DataError when it cannot be opened
   explicit TextFile(const std::filesystem::path& file);
   void write(std::string_view text) { std::fwrite(text.data(), 1, text.size(), file_.get()); }
-  /// Flushes and closes. Throws DataError when anything could not be written.
+  /// Flushes and closes.
+  /// @throws DataError when any write failed
   void close();
 
  private:
@@ -28,7 +30,7 @@ class TextFile {
   std::unique_ptr<std::FILE, Closer> file_;
 };
 
-/// One row of numbers, in the shortest notation that reads back as the same bits.
+/// CSV row of numbers, each in the shortest text that reads back as the same bits.
 class CsvRow {
  public:
   CsvRow& add(double value);

@@ -3,12 +3,12 @@
 
 #include <chrono>
 
-#include "run/recording/number_text.hpp"
+#include "run/text/number_text.hpp"
 
 namespace isobar::recording {
 namespace {
 
-/// Takes exactly `digits` digits off the front.
+/// Removes exactly `digits` digits from the front.
 bool take_digits(std::string_view& text, std::size_t digits, int& value) {
   if (text.size() < digits) {
     return false;
@@ -44,7 +44,7 @@ bool take_day(std::string_view& text, std::int64_t& days) {
                                          std::chrono::month(static_cast<unsigned>(month)),
                                          std::chrono::day(static_cast<unsigned>(day))};
   days = date.ok() ? std::chrono::sys_days(date).time_since_epoch().count() : 0;
-  // Loggers span days that int64 nanoseconds hold: the year decides.
+  // int64 nanoseconds hold 1677 to 2262.
   return date.ok() && year >= 1700 && year < 2250;
 }
 
@@ -57,7 +57,7 @@ bool take_seconds(std::string_view& text, std::int64_t& ns) {
   std::size_t length = text.find_first_not_of("0123456789.");
   length = length == std::string_view::npos ? text.size() : length;
   constexpr std::int64_t kNsPerMinute = 60'000'000'000;
-  const bool fits = length >= 2 && parse_seconds(text.substr(0, length), ns) && ns < kNsPerMinute;
+  const bool fits = length >= 2 && text::parse_seconds(text.substr(0, length), ns) && ns < kNsPerMinute;
   text.remove_prefix(length);
   return fits;
 }
@@ -89,7 +89,7 @@ bool take_zone(std::string_view& text, std::int64_t& minutes) {
 }  // namespace
 
 bool parse_date(std::string_view text, std::int64_t& stamp_ns) {
-  text = trimmed(text);
+  text = text::trimmed(text);
   std::int64_t days = 0;
   std::int64_t seconds_ns = 0;
   std::int64_t zone_minutes = 0;

@@ -9,16 +9,16 @@
 
 #include "core/errors.hpp"
 #include "core/toml_text.hpp"
-#include "run/recording/number_text.hpp"
+#include "run/text/number_text.hpp"
 
 namespace isobar::recording {
 namespace {
 
-/// Farthest that a sensor can sit from base_link [m]; a larger number is a slip of units.
-constexpr double kMaxLever = 100.0;
+/// Largest distance of a sensor from base_link, by axis; a larger number is a mistake of units.
+constexpr double kMaxLeverM = 100.0;
 constexpr double kMaxAngleDeg = 360.0;
 
-/// One parsed recording.toml with what is needed to name a place in it.
+/// Access to the nodes of a recording.toml; errors and warnings name file, line and key.
 class ManifestText {
  public:
   ManifestText(std::string file, std::vector<std::string>& warnings)
@@ -68,7 +68,7 @@ class ManifestText {
       return Eigen::Vector3d::Zero();
     }
     const std::string rule =
-        "must be three numbers within -" + number_text(limit) + " … " + number_text(limit);
+        "must be three numbers within -" + text::number_text(limit) + " … " + text::number_text(limit);
     const std::string name = section_name + "." + key;
     const toml::array* array = node->as_array();
     if (array == nullptr || array->size() != 3) {
@@ -86,7 +86,7 @@ class ManifestText {
   }
 
   Mount mount(const toml::table& table, const std::string& section_name) const {
-    return {triple(table, section_name, "xyz_m", kMaxLever),
+    return {triple(table, section_name, "xyz_m", kMaxLeverM),
             triple(table, section_name, "rpy_deg", kMaxAngleDeg)};
   }
 
@@ -122,7 +122,7 @@ std::optional<LidarEntry> read_lidar(const toml::table& root, ManifestText& text
   lidar.model = *model->value<std::string>();
   lidar.file = text.file_name(*table, "lidar");
   if (const toml::node* port = table->get("port"); port != nullptr) {
-    // value_exact: value would first cast a float to an integer, which is undefined for 1e72.
+    // value_exact: value() would cast a float to an integer, undefined behaviour for 1e72.
     const auto value = port->value_exact<std::int64_t>();
     if (!value || *value < 1 || *value > 65'535) {
       text.fail(*port, "lidar.port", "must be a whole number within 1 … 65535");
@@ -174,7 +174,8 @@ toml::table parse_toml(std::string_view text, const std::string& file) {
 }
 
 std::string triple_text(const Eigen::Vector3d& v) {
-  return "[" + number_text(v.x()) + ", " + number_text(v.y()) + ", " + number_text(v.z()) + "]";
+  return "[" + text::number_text(v.x()) + ", " + text::number_text(v.y()) + ", " + text::number_text(v.z()) +
+         "]";
 }
 
 std::string sensor_text(const char* name, const std::optional<SensorEntry>& sensor, bool position,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// recording.toml: what a recording folder holds and where each sensor sits on the robot.
+// recording.toml: the files of a recording folder and the mounts of its sensors.
 #pragma once
 
 #include <cstdint>
@@ -42,15 +42,19 @@ struct Manifest {
   static Manifest with_all_sensors();
 };
 
-/// Reads `folder`/recording.toml. Throws DataError "file:line: key: rule". Unknown keys and sections come
-/// from other tools and are no error: they are added to `warnings` as "file:line: key: unknown, ignored".
+/// Reads `folder`/recording.toml.
+/// @param warnings receives "file:line: key: unknown, ignored" for keys and sections of other tools
+/// @throws DataError "file:line: key: rule" when the file is missing or breaks the format
 Manifest read_manifest(const std::filesystem::path& folder, std::vector<std::string>& warnings);
 
-/// The same from the text of a file; `file` is its name in errors.
+/// Parses the text of a recording.toml.
+/// @param file name in errors
+/// @throws DataError "file:line: key: rule"
 Manifest parse_manifest(std::string_view content, const std::string& file,
                         std::vector<std::string>& warnings);
 
-/// Writes `folder`/recording.toml; reading it back gives an equal manifest. Throws DataError.
+/// Writes `folder`/recording.toml; reading it gives an equal manifest.
+/// @throws DataError when the file cannot be written
 void write_manifest(const std::filesystem::path& folder, const Manifest& manifest);
 
 }  // namespace isobar::recording

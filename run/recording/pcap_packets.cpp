@@ -15,7 +15,7 @@
 namespace isobar::recording {
 namespace {
 
-// 200 packets a call of the kernel instead of three.
+// 200 packets a read() instead of three.
 constexpr std::size_t kBufferBytes = std::size_t{256} * 1024;
 
 }  // namespace

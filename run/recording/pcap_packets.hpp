@@ -23,9 +23,8 @@ struct StampedPacket {
   std::vector<std::uint8_t> payload;
 };
 
-/// Reads the lidar's UDP payloads from a pcap file: both byte orders, microseconds and nanoseconds, pcapng as
-/// well. A packet is never dropped for its stamp: an absurd one is replaced with the last good one, because
-/// the packet has the sensor's own time.
+/// Reader of the lidar's UDP payloads in a pcap file: both byte orders, micro- and nanoseconds, also pcapng.
+/// A packet with an absurd stamp is kept with the last good stamp: its data carry the sensor's own time.
 class PcapPackets {
  public:
   struct Tallies {
@@ -34,16 +33,16 @@ class PcapPackets {
     Tally malformed;
     Tally cut;  ///< the capture holds only the beginning of the packet
     Tally absurd_stamp;
-    Tally file_truncated;  ///< 1 if the file ends in the middle of a packet
+    Tally file_truncated;  ///< 1 when the file ends within a packet
   };
 
-  /// Throws DataError when the file is missing, no pcap, or of a link type without IP.
+  /// @throws DataError when the file is missing, not a pcap, or of a link type without IP
   PcapPackets(const std::filesystem::path& file, std::uint16_t port, const StampGuardConfig& guard);
   ~PcapPackets();
   PcapPackets(const PcapPackets&) = delete;
   PcapPackets& operator=(const PcapPackets&) = delete;
 
-  /// The next payload; false at the end. The packet's memory is reused when it is handed in again.
+  /// The next payload; false at the end. Reuses the memory of `packet`.
   bool next(StampedPacket& packet);
 
   [[nodiscard]] const Tallies& tallies() const { return tallies_; }
@@ -56,7 +55,7 @@ class PcapPackets {
   [[nodiscard]] std::string place() const;
 
   std::string name_;
-  std::vector<char> buffer_;  // of the file behind handle_
+  std::vector<char> buffer_;  // file buffer of handle_
   pcap* handle_ = nullptr;
   LinkType link_ = LinkType::kEthernet;
   std::uint64_t frames_ = 0;

@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "core/errors.hpp"
-#include "run/recording/number_text.hpp"
+#include "run/text/number_text.hpp"
 
 namespace isobar::recording {
 namespace {
@@ -49,7 +49,7 @@ std::string list_of(const Fields& names) {
   return text;
 }
 
-/// One column: named by the person, or the only one that looks like it. Remembers why there is none.
+/// Search for one column: the one named by the user, or the only candidate. Records why there is none.
 struct Search {
   const Fields& fields;
   std::string missing{};
@@ -75,11 +75,11 @@ struct Search {
   }
 };
 
-/// A line as a header: what it has, or what it lacks.
+/// A line interpreted as the header.
 struct Attempt {
   PressureHeader header;
-  std::string rule;       ///< empty: all is there
-  std::size_t found = 0;  ///< how near it came
+  std::string rule;       ///< broken rule; empty: complete
+  std::size_t found = 0;  ///< required columns found
 };
 
 Attempt try_header(const Fields& fields, const PressureColumns& wanted) {
@@ -91,7 +91,7 @@ Attempt try_header(const Fields& fields, const PressureColumns& wanted) {
   if (wanted.needs_temperature) {
     Search thermometer{fields};
     attempt.header.temperature = thermometer.find(wanted.temperature, is_temperature, "temperature");
-    // A sensor may have none; but one that was named must be there, and one of several must be chosen.
+    // A sensor may have no thermometer; but a named column must exist, and an ambiguous one must be named.
     if (!wanted.temperature.empty() && search.missing.empty()) {
       search.missing = thermometer.missing;
     }
@@ -120,7 +120,7 @@ bool has_word(std::string_view name, std::string_view word) {
 }
 
 PressureHeader find_pressure_header(const std::filesystem::path& file, const PressureColumns& wanted) {
-  TextLines lines(file);
+  text::TextLines lines(file);
   std::string_view line;
   Fields fields;
   Attempt nearest;
@@ -128,11 +128,11 @@ PressureHeader find_pressure_header(const std::filesystem::path& file, const Pre
   nearest.rule = "is empty, must start with a line that names the columns";
   std::size_t nearest_line = 1;
   while (lines.line_number() < kLinesSearched && lines.next(line)) {
-    if (lines.line_number() == 1 && !trimmed(line).empty()) {
+    if (lines.line_number() == 1 && !text::trimmed(line).empty()) {
       nearest.rule = "must name columns separated by comma, semicolon or tab";
     }
     for (const char separator : kSeparators) {
-      split_fields(line, separator, fields);
+      text::split_fields(line, separator, fields);
       if (fields.size() < 2) {
         continue;
       }

@@ -4,24 +4,25 @@
 #include <filesystem>
 #include <string>
 
-#include "run/recording/csv_reader.hpp"
 #include "run/recording/pressure_log.hpp"
+#include "run/text/csv_reader.hpp"
 
 namespace isobar::recording {
 
-/// Where a logger's CSV names its columns, and which of them are meant.
+/// Header line of a logger's CSV and the names of the columns to read.
 struct PressureHeader {
-  CsvFormat format;
+  text::CsvFormat format;
   std::string time;
   std::string pressure;
   std::string temperature;  ///< empty: there is none
 };
 
-/// Looks at the first lines for one that holds all columns that `wanted` names and one each of those that it
-/// leaves open. Throws DataError that says what is missing, or which columns could all be meant.
+/// Finds the header among the first lines: the line with every column that `wanted` names, and with exactly
+/// one candidate for each that it leaves open.
+/// @throws DataError naming the missing column or the ambiguous candidates
 PressureHeader find_pressure_header(const std::filesystem::path& file, const PressureColumns& wanted);
 
-/// Whether a word stands in a name: letters and digits between others, in any case.
+/// True when `name` contains `word` as a whole word (letters and digits), in upper or lower case.
 bool has_word(std::string_view name, std::string_view word);
 
 }  // namespace isobar::recording

@@ -10,30 +10,30 @@
 #include "core/plausibility.hpp"
 #include "core/statistics/distribution.hpp"
 #include "run/recording/date_text.hpp"
-#include "run/recording/number_text.hpp"
 #include "run/recording/pressure_header.hpp"
 #include "run/recording/pressure_unit.hpp"
 #include "run/recording/tally.hpp"
+#include "run/text/number_text.hpp"
 
 namespace isobar::recording {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-// Below a header may stand a line of units and one of how values were made.
+// A line of units, one of the kind of value ("Avg") and a spare one may follow the header.
 constexpr std::size_t kLinesBelowHeader = 3;
-// Below 2^63.
+// Largest time, below 2^63.
 constexpr double kMostNs = 9.2e18;
 enum Column : std::size_t { kTime, kPressure, kTemperature };
 
-/// How the time column counts.
+/// Unit of the time column.
 struct TimeUnit {
   const char* name;
   double ns;
 };
 constexpr std::array<TimeUnit, 4> kTimeUnits = {{{"ns", 1.0}, {"us", 1e3}, {"ms", 1e6}, {"s", 1e9}}};
 
-/// Reads the time column: dates as text, or numbers in a unit that is named or that makes them a date of this
-/// century.
+/// Parser of the time column: dates as text, or numbers in the unit that is named or that gives a date of
+/// this century.
 class TimeColumn {
  public:
   TimeColumn(const PressureHeader& header, const std::string& wanted) : name_(header.time) {
@@ -52,32 +52,33 @@ class TimeColumn {
     }
   }
 
-  /// False when the text is no time. Throws DataError at `place` where its unit cannot be told.
+  /// False when the text is not a time.
+  /// @throws DataError naming `place` when the unit is ambiguous
   bool parse(std::string_view text, const std::string& place, std::int64_t& stamp_ns) {
     if (unit_ == nullptr && parse_date(text, stamp_ns)) {
       is_date_ = true;
       return true;
     }
     double number = 0.0;
-    if (is_date_ || !parse_number(text, number) || !std::isfinite(number)) {
+    if (is_date_ || !text::parse_number(text, number) || !std::isfinite(number)) {
       return false;
     }
     if (unit_ == nullptr) {
       guess(number, place);
     }
     if (unit_ == &kTimeUnits.front()) {
-      return parse_number(text, stamp_ns);
+      return text::parse_number(text, stamp_ns);
     }
-    if (unit_ == &kTimeUnits.back() && parse_seconds(text, stamp_ns)) {
+    if (unit_ == &kTimeUnits.back() && text::parse_seconds(text, stamp_ns)) {
       return true;
     }
     const double ns = number * unit_->ns;
     if (!(std::abs(ns) < kMostNs)) {
       return false;
     }
-    // A double of nanoseconds since 1970 is good to 256 ns: whole numbers need not go through it.
-    stamp_ns = parse_number(text, stamp_ns) ? stamp_ns * static_cast<std::int64_t>(unit_->ns)
-                                            : static_cast<std::int64_t>(std::llround(ns));
+    // Whole numbers stay integers: a double of nanoseconds since 1970 resolves 256 ns.
+    stamp_ns = text::parse_number(text, stamp_ns) ? stamp_ns * static_cast<std::int64_t>(unit_->ns)
+                                                  : static_cast<std::int64_t>(std::llround(ns));
     return true;
   }
 
@@ -112,7 +113,7 @@ class TimeColumn {
   bool is_date_ = false;
 };
 
-/// Rows as they stand in the file, the pressure in the file's unit.
+/// Rows in the order of the file, pressure in the file's unit.
 struct RawLog {
   std::vector<PressureSample> rows;
   bool has_temperature = false;
@@ -121,22 +122,22 @@ struct RawLog {
   std::string units_line;
 };
 
-std::string with_value(const CsvReader& csv, const std::string& rule, std::string_view value) {
+std::string with_value(const text::CsvReader& csv, const std::string& rule, std::string_view value) {
   return csv.lines().place() + rule + " (is '" + std::string(value) + "')";
 }
 
-void read_rows(CsvReader& csv, TimeColumn& time, RawLog& log) {
+void read_rows(text::CsvReader& csv, TimeColumn& time, RawLog& log) {
   std::int64_t newest_ns = std::numeric_limits<std::int64_t>::min();
   std::size_t below_header = 0;
-  for (auto row = csv.next(); row != CsvReader::Row::kEnd; row = csv.next()) {
-    if (row == CsvReader::Row::kBad) {
+  for (auto row = csv.next(); row != text::CsvReader::Row::kEnd; row = csv.next()) {
+    if (row == text::CsvReader::Row::kBad) {
       log.broken.add([&csv] { return csv.bad_row_message(); });
       continue;
     }
     PressureSample sample;
     const bool has_time = time.parse(csv.field(kTime), csv.lines().place(), sample.stamp_ns);
     const bool has_pressure =
-        parse_number(csv.field(kPressure), sample.pressure_pa) && std::isfinite(sample.pressure_pa);
+        text::parse_number(csv.field(kPressure), sample.pressure_pa) && std::isfinite(sample.pressure_pa);
     if (!has_time && !has_pressure && log.rows.empty() && below_header < kLinesBelowHeader) {
       ++below_header;
       if (log.units_line.empty()) {
@@ -150,7 +151,7 @@ void read_rows(CsvReader& csv, TimeColumn& time, RawLog& log) {
       log.out_of_order.add(
           [&csv] { return with_value(csv, "is not newer than rows before", csv.field(kTime)); });
     } else {
-      if (!log.has_temperature || !parse_number(csv.field(kTemperature), sample.temperature_c)) {
+      if (!log.has_temperature || !text::parse_number(csv.field(kTemperature), sample.temperature_c)) {
         sample.temperature_c = kNone;
       }
       newest_ns = sample.stamp_ns;
@@ -193,7 +194,7 @@ PressureLog read_pressure_log(const std::filesystem::path& file, const PressureC
   if (!header.temperature.empty()) {
     optional.emplace_back(header.temperature);
   }
-  CsvReader csv(file, {header.time, header.pressure}, optional, header.format);
+  text::CsvReader csv(text::TextLines(file), {header.time, header.pressure}, optional, header.format);
   TimeColumn time(header, columns.time_unit);
   RawLog raw;
   raw.has_temperature = !optional.empty();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pressure from any logger's CSV: which columns, units and clock it uses is found out and said.
+// Pressure from any logger's CSV; columns, units and clock are detected and reported.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace isobar::recording {
 
-/// Columns by name; what is empty is found out from the header.
+/// Columns by name; an empty name is detected from the header.
 struct PressureColumns {
   std::string time;
   std::string pressure;
@@ -24,13 +24,15 @@ struct PressureLog {
   std::string file;
   std::vector<PressureSample> samples;  ///< ascending in time; temperature_c NaN where there is none
   bool has_temperature = false;         ///< the file has a column for it
-  std::vector<std::string> notes;       ///< what was found out, and what was refused and counted
+  std::vector<std::string> notes;       ///< detected columns and units; refused rows, counted
 };
 
-/// Reads one file. The separator may be a comma, a semicolon or a tab; lines of a logger's own may stand
-/// before the header, and lines of units below it. Rows that are broken, not a number, implausible or not
-/// newer than those before are left out and counted in the notes. Throws DataError "file:line: rule": no such
-/// file or column, columns or units that cannot be told apart, no usable row.
+/// Reads one file. Separators: comma, semicolon or tab. Other lines may precede the header, and lines of
+/// units follow it. Rows that are broken, not numbers, implausible or not newer than the row before are
+/// skipped and counted in the notes.
+/// @throws DataError "file:line: rule" when the file or a column is missing, columns or units are ambiguous,
+///           or no row is usable
+/// @throws UsageError when a unit in `columns` is unknown
 PressureLog read_pressure_log(const std::filesystem::path& file, const PressureColumns& columns);
 
 }  // namespace isobar::recording

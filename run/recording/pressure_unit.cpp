@@ -8,19 +8,15 @@
 #include <vector>
 
 #include "core/errors.hpp"
+#include "core/plausibility.hpp"
 
 namespace isobar::recording {
 namespace {
 
-// From the top of Mount Everest to a mine 1.1 km down [Pa]: narrow enough that values in hPa and in kPa
-// cannot be taken for each other.
-constexpr double kLowestPa = 30e3;
-constexpr double kHighestPa = 115e3;
+// At most one unit can fit: highest / lowest is below 10.
+static_assert(kGroundPressurePa.highest < 10.0 * kGroundPressurePa.lowest);
 
-bool fits(double median, PressureUnit unit) {
-  const double pa = median * pascals_per(unit);
-  return pa >= kLowestPa && pa <= kHighestPa;
-}
+bool fits(double median, PressureUnit unit) { return kGroundPressurePa.holds(median * pascals_per(unit)); }
 
 std::string short_text(double value) {
   std::array<char, 32> text{};
@@ -51,9 +47,8 @@ UnitFinding checked(PressureUnit unit, const std::string& reason, const UnitClue
   if (fits(clues.median, unit)) {
     return {unit, reason};
   }
-  const std::string name(kPressureUnitNames.name(unit));
-  throw DataError(place + "pressure is in " + name + ", " + reason + ", but its median, " +
-                  short_text(clues.median) + " " + name + ", is no air pressure");
+  throw DataError(place + "pressure is in " + unit_name(unit) + ", " + reason + ", but its median, " +
+                  short_text(clues.median) + " " + unit_name(unit) + ", is not an air pressure");
 }
 
 }  // namespace
@@ -102,7 +97,7 @@ UnitFinding find_unit(const UnitClues& clues, const std::string& place) {
     }
   }
   if (named.size() > 1) {
-    throw DataError(place + "the header names more than one unit of pressure: say which it is");
+    throw DataError(place + "the header names more than one unit of pressure: name one on the command line");
   }
   if (named.size() == 1) {
     return checked(
@@ -116,8 +111,8 @@ UnitFinding find_unit(const UnitClues& clues, const std::string& place) {
               "the only unit in which its median, " + short_text(clues.median) + ", is an air pressure"};
     }
   }
-  throw DataError(place + "the unit of pressure cannot be told: its median, " + short_text(clues.median) +
-                  ", is no air pressure in Pa, hPa or kPa");
+  throw DataError(place + "the unit of pressure is unknown: its median, " + short_text(clues.median) +
+                  ", is not an air pressure in Pa, hPa or kPa");
 }
 
 }  // namespace isobar::recording

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which unit a column of pressures is in, and how that is known.
+// Unit of a pressure column, from the command line, the header or the values.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,8 @@ inline constexpr NameTable<PressureUnit, 3> kPressureUnitNames{{{
 
 double pascals_per(PressureUnit unit);
 
-/// The unit that a word names: Pa, hPa, mbar, mb, millibar, kPa, in any case.
+/// The unit that a word names: Pa, hPa, mbar, mb, millibar or kPa, in upper or lower case; nothing for other
+/// words.
 std::optional<PressureUnit> unit_of_word(std::string_view word);
 
 struct UnitFinding {
@@ -29,17 +30,18 @@ struct UnitFinding {
   std::string reason;  ///< "as the column's name says", …
 };
 
-/// What is known of a column before its unit is.
+/// Evidence for the unit of a column.
 struct UnitClues {
-  std::string chosen;       ///< by the person; empty: nothing
+  std::string chosen;       ///< unit on the command line; empty: none
   std::string column_name;  ///< may name the unit: p_mbar
-  std::string units_line;   ///< what a line of units below the header says of it
-  double median = 0.0;      ///< of its values
+  std::string units_line;   ///< the column's field in a line of units below the header; may be empty
+  double median = 0.0;      ///< of the values, in the unknown unit
 };
 
-/// The unit that the clues agree on: chosen, named, or the only one in which the median is an air pressure
-/// (30 to 115 kPa, ranges that no two units share). Throws DataError with the rule where they contradict each
-/// other or fit none; `place` ("file: ") goes before it.
+/// The unit of a column: chosen, else named, else the only one in which the median lies in kGroundPressurePa.
+/// @param place "file: ", start of the errors
+/// @throws DataError when the clues contradict each other or fit no unit
+/// @throws UsageError when the chosen unit is none of Pa, hPa, mbar, kPa
 UnitFinding find_unit(const UnitClues& clues, const std::string& place);
 
 }  // namespace isobar::recording

@@ -43,7 +43,7 @@ class Stream {
 template <typename Sample>
 class SampleStream : public Stream {
  public:
-  SampleStream(std::string name, EventKind kind, CsvReader&& csv, std::int64_t offset_ns,
+  SampleStream(std::string name, EventKind kind, text::CsvReader&& csv, std::int64_t offset_ns,
                const StampGuardConfig& guard)
       : name_(std::move(name)), kind_(kind), csv_(std::move(csv)), offset_ns_(offset_ns), order_(guard) {}
 
@@ -85,7 +85,7 @@ class SampleStream : public Stream {
  private:
   std::string name_;
   EventKind kind_;
-  CsvReader csv_;
+  text::CsvReader csv_;
   std::int64_t offset_ns_;
   StampOrder<Sample> order_;
   Sample current_;
@@ -106,7 +106,7 @@ class LidarStream : public Stream {
   }
   [[nodiscard]] std::int64_t stamp_ns() const override { return next_.stamp_ns; }
   void give(Event& event) override {
-    std::swap(given_, next_);  // the event's bytes live until the next but one advance()
+    std::swap(given_, next_);  // the event's bytes stay valid during the advance() that follows
     event.kind = EventKind::kLidarPacket;
     event.stamp_ns = given_.stamp_ns;
     event.packet = given_.payload;
@@ -186,8 +186,7 @@ void RecordingReader::Impl::open_all(const ReaderOptions& options) {
   StampGuardConfig guard;
   guard.max_forward_ns = options.max_gap_ns;
   tie_base();
-  // The order decides between events of the same time: what the prior needs comes before what registers
-  // against it.
+  // Order of events with equal stamps: inputs of the prior before the lidar packets registered with it.
   if (manifest.imu) {
     open<SampleStream<ImuSample>>(manifest.imu->file, "imu", EventKind::kImu,
                                   open_imu_csv(folder / manifest.imu->file), 0, guard);

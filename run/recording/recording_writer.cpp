@@ -9,8 +9,9 @@
 
 #include "core/errors.hpp"
 #include "run/recording/csv_writer.hpp"
-#include "run/recording/number_text.hpp"
+#include "run/recording/reference.hpp"
 #include "run/recording/udp_frame.hpp"
+#include "run/text/number_text.hpp"
 
 namespace isobar::recording {
 namespace {
@@ -36,7 +37,7 @@ class PcapFile {
   void write(std::int64_t stamp_ns, std::span<const std::uint8_t> frame) {
     pcap_pkthdr header{};
     header.ts.tv_sec = stamp_ns / 1'000'000'000;
-    header.ts.tv_usec = stamp_ns % 1'000'000'000;  // nanoseconds, by the precision asked for
+    header.ts.tv_usec = stamp_ns % 1'000'000'000;  // nanoseconds: PCAP_TSTAMP_PRECISION_NANO
     header.caplen = static_cast<bpf_u_int32>(frame.size());
     header.len = header.caplen;
     pcap_dump(reinterpret_cast<u_char*>(dumper_), &header, frame.data());
@@ -94,7 +95,7 @@ struct RecordingWriter::Files {
   std::optional<TextFile> wheel;
   std::optional<TextFile> reference;
   std::optional<TextFile> segments;
-  std::optional<bool> imu_has_attitude;  // known with the first sample
+  std::optional<bool> imu_has_attitude;  // set by the first sample
   std::vector<std::uint8_t> frame;
   std::uint16_t identification = 0;
 
@@ -191,13 +192,13 @@ void RecordingWriter::add_reference(std::int64_t stamp_ns, const Eigen::Isometry
   present(files_->reference, "reference").write(format_tum_row(stamp_ns, T_map_base));
 }
 
-void RecordingWriter::add_segment(const Segment& segment) {
+void RecordingWriter::add_segment(const text::Segment& segment) {
   if (!files_->segments) {
     files_->segments.emplace(files_->folder / kSegmentsFile);
     files_->segments->write("t_start_ns,t_end_ns,label\n");
   }
-  files_->segments->write(number_text(segment.start_ns) + "," + number_text(segment.end_ns) + "," +
-                          segment.label + "\n");
+  files_->segments->write(text::number_text(segment.start_ns) + "," + text::number_text(segment.end_ns) +
+                          "," + segment.label + "\n");
 }
 
 void RecordingWriter::close() {

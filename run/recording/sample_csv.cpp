@@ -5,18 +5,19 @@
 #include <limits>
 
 #include "core/plausibility.hpp"
-#include "run/recording/number_text.hpp"
+#include "run/text/number_text.hpp"
 
 namespace isobar::recording {
 namespace {
 
 constexpr const char* kNoStamp = "t_ns must be a whole number of nanoseconds";
 constexpr const char* kNoNumber = "must be a finite number";
-/// A quaternion off by more than its last printed digit is normalised; an exact one keeps its bits.
+/// Largest deviation of a quaternion's norm from 1 that is left alone, so that written samples keep their
+/// bits.
 constexpr double kExactNorm = 1e-12;
 
-const char* parse_stamp(const CsvReader& csv, std::int64_t& stamp_ns, std::string& value) {
-  if (!parse_number(csv.field(0), stamp_ns)) {
+const char* parse_stamp(const text::CsvReader& csv, std::int64_t& stamp_ns, std::string& value) {
+  if (!text::parse_number(csv.field(0), stamp_ns)) {
     value = csv.field(0);
     return kNoStamp;
   }
@@ -27,23 +28,23 @@ const char* parse_stamp(const CsvReader& csv, std::int64_t& stamp_ns, std::strin
   return rule;
 }
 
-const char* parse_column(const CsvReader& csv, std::size_t column, double& number, std::string& value) {
-  if (parse_number(csv.field(column), number) && std::isfinite(number)) {
+const char* parse_column(const text::CsvReader& csv, std::size_t column, double& number, std::string& value) {
+  if (text::parse_number(csv.field(column), number) && std::isfinite(number)) {
     return nullptr;
   }
   value = csv.field(column);
   return kNoNumber;
 }
 
-/// The four attitude columns; an attitude that is not there yet (NaN, zeros) leaves the rates and forces
-/// good.
-void parse_attitude(const CsvReader& csv, ImuSample& sample) {
+/// The four attitude columns. An attitude that is not available yet (NaN, zeros) does not spoil rates and
+/// forces.
+void parse_attitude(const text::CsvReader& csv, ImuSample& sample) {
   constexpr std::size_t kFirst = 7;
   double q[4] = {};  // NOLINT(modernize-avoid-c-arrays)
   sample.has_attitude = true;
   for (std::size_t i = 0; i < 4; ++i) {
     sample.has_attitude = sample.has_attitude && csv.has(kFirst + i) &&
-                          parse_number(csv.field(kFirst + i), q[i]) && std::isfinite(q[i]);
+                          text::parse_number(csv.field(kFirst + i), q[i]) && std::isfinite(q[i]);
   }
   sample.q_world_imu = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
   const double norm = sample.q_world_imu.norm();
@@ -57,21 +58,21 @@ void parse_attitude(const CsvReader& csv, ImuSample& sample) {
 
 }  // namespace
 
-CsvReader open_imu_csv(const std::filesystem::path& file) {
-  return {file,
+text::CsvReader open_imu_csv(const std::filesystem::path& file) {
+  return {text::TextLines(file),
           {"t_ns", "gx_rad_s", "gy_rad_s", "gz_rad_s", "ax_m_s2", "ay_m_s2", "az_m_s2"},
           {"qw", "qx", "qy", "qz"}};
 }
 
-CsvReader open_pressure_csv(const std::filesystem::path& file) {
-  return {file, {"t_ns", "pressure_pa", "temperature_c"}};
+text::CsvReader open_pressure_csv(const std::filesystem::path& file) {
+  return {text::TextLines(file), {"t_ns", "pressure_pa", "temperature_c"}};
 }
 
-CsvReader open_wheel_csv(const std::filesystem::path& file) {
-  return {file, {"t_ns", "vx_m_s", "vy_m_s", "wz_rad_s"}};
+text::CsvReader open_wheel_csv(const std::filesystem::path& file) {
+  return {text::TextLines(file), {"t_ns", "vx_m_s", "vy_m_s", "wz_rad_s"}};
 }
 
-const char* parse_row(const CsvReader& csv, ImuSample& sample, std::string& value) {
+const char* parse_row(const text::CsvReader& csv, ImuSample& sample, std::string& value) {
   if (const char* rule = parse_stamp(csv, sample.stamp_ns, value); rule != nullptr) {
     return rule;
   }
@@ -86,7 +87,7 @@ const char* parse_row(const CsvReader& csv, ImuSample& sample, std::string& valu
   return implausibility(sample);
 }
 
-const char* parse_row(const CsvReader& csv, PressureSample& sample, std::string& value) {
+const char* parse_row(const text::CsvReader& csv, PressureSample& sample, std::string& value) {
   if (const char* rule = parse_stamp(csv, sample.stamp_ns, value); rule != nullptr) {
     return rule;
   }
@@ -95,7 +96,7 @@ const char* parse_row(const CsvReader& csv, PressureSample& sample, std::string&
   }
   if (csv.field(2).empty()) {
     sample.temperature_c = std::numeric_limits<double>::quiet_NaN();
-  } else if (!parse_number(csv.field(2), sample.temperature_c)) {
+  } else if (!text::parse_number(csv.field(2), sample.temperature_c)) {
     value = csv.field(2);
     return kNoNumber;
   }
@@ -106,7 +107,7 @@ const char* parse_row(const CsvReader& csv, PressureSample& sample, std::string&
   return rule;
 }
 
-const char* parse_row(const CsvReader& csv, WheelSample& sample, std::string& value) {
+const char* parse_row(const text::CsvReader& csv, WheelSample& sample, std::string& value) {
   if (const char* rule = parse_stamp(csv, sample.stamp_ns, value); rule != nullptr) {
     return rule;
   }
@@ -120,14 +121,14 @@ const char* parse_row(const CsvReader& csv, WheelSample& sample, std::string& va
 }
 
 template <typename Sample>
-bool next_sample(CsvReader& csv, Sample& sample, Tally& malformed, Tally& implausible) {
+bool next_sample(text::CsvReader& csv, Sample& sample, Tally& malformed, Tally& implausible) {
   std::string value;
   for (;;) {
-    const CsvReader::Row row = csv.next();
-    if (row == CsvReader::Row::kEnd) {
+    const text::CsvReader::Row row = csv.next();
+    if (row == text::CsvReader::Row::kEnd) {
       return false;
     }
-    if (row == CsvReader::Row::kBad) {
+    if (row == text::CsvReader::Row::kBad) {
       malformed.add([&csv] { return csv.bad_row_message(); });
       continue;
     }
@@ -144,8 +145,8 @@ bool next_sample(CsvReader& csv, Sample& sample, Tally& malformed, Tally& implau
   }
 }
 
-template bool next_sample(CsvReader&, ImuSample&, Tally&, Tally&);
-template bool next_sample(CsvReader&, PressureSample&, Tally&, Tally&);
-template bool next_sample(CsvReader&, WheelSample&, Tally&, Tally&);
+template bool next_sample(text::CsvReader&, ImuSample&, Tally&, Tally&);
+template bool next_sample(text::CsvReader&, PressureSample&, Tally&, Tally&);
+template bool next_sample(text::CsvReader&, WheelSample&, Tally&, Tally&);
 
 }  // namespace isobar::recording

@@ -1,33 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The rows of the sensor files as samples.
+// Rows of the sensor files as samples.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
 #include "core/samples.hpp"
-#include "run/recording/csv_reader.hpp"
 #include "run/recording/tally.hpp"
+#include "run/text/csv_reader.hpp"
 
 namespace isobar::recording {
 
-/// Opens a sensor's file with its columns (recording-format.md). Throws DataError.
-CsvReader open_imu_csv(const std::filesystem::path& file);
-CsvReader open_pressure_csv(const std::filesystem::path& file);
-CsvReader open_wheel_csv(const std::filesystem::path& file);
+/// Opens a sensor's file with its columns (recording-format.md).
+/// @throws DataError when the file cannot be read or lacks a column
+text::CsvReader open_imu_csv(const std::filesystem::path& file);
+text::CsvReader open_pressure_csv(const std::filesystem::path& file);
+text::CsvReader open_wheel_csv(const std::filesystem::path& file);
 
-/// Takes the current row as a sample. Returns nullptr, or the rule that the row breaks; `value` then is the
-/// text in question (may be empty). A barometer's row without a temperature is good: temperature_c is NaN.
-const char* parse_row(const CsvReader& csv, ImuSample& sample, std::string& value);
-const char* parse_row(const CsvReader& csv, PressureSample& sample, std::string& value);
-const char* parse_row(const CsvReader& csv, WheelSample& sample, std::string& value);
+/// Parses the current row as a sample. A pressure without a temperature is good: temperature_c is NaN.
+/// @param value text that breaks the rule; may be empty
+/// @return the rule that the row breaks, a static text; nullptr when none
+const char* parse_row(const text::CsvReader& csv, ImuSample& sample, std::string& value);
+const char* parse_row(const text::CsvReader& csv, PressureSample& sample, std::string& value);
+const char* parse_row(const text::CsvReader& csv, WheelSample& sample, std::string& value);
 
-/// Goes to the next good row; broken ones are counted. False at the end of the file.
+/// Moves to the next good row and counts the broken ones; false at the end of the file.
 template <typename Sample>
-bool next_sample(CsvReader& csv, Sample& sample, Tally& malformed, Tally& implausible);
+bool next_sample(text::CsvReader& csv, Sample& sample, Tally& malformed, Tally& implausible);
 
-extern template bool next_sample(CsvReader&, ImuSample&, Tally&, Tally&);
-extern template bool next_sample(CsvReader&, PressureSample&, Tally&, Tally&);
-extern template bool next_sample(CsvReader&, WheelSample&, Tally&, Tally&);
+extern template bool next_sample(text::CsvReader&, ImuSample&, Tally&, Tally&);
+extern template bool next_sample(text::CsvReader&, PressureSample&, Tally&, Tally&);
+extern template bool next_sample(text::CsvReader&, WheelSample&, Tally&, Tally&);
 
 }  // namespace isobar::recording

@@ -13,20 +13,20 @@
 
 namespace isobar::recording {
 
-/// Brings the samples of one file into the order of their stamps, looking ahead by a few rows only.
+/// Sorts the samples of one file by stamp within a look-ahead of a few rows.
 ///
-/// A single absurd stamp is left out; so is a short run of them (shorter than the look-ahead) that ends where
-/// the good stamps go on. Samples that were overtaken are sorted in; those overtaken by more than the
-/// look-ahead are left out, because later ones have been handed out already. When the clock really was set
-/// back, the stream goes on with the new stamps.
+/// Dropped: a single absurd stamp; a run of absurd stamps shorter than the look-ahead after which the good
+/// stamps continue; samples late by more than the look-ahead, since newer ones were returned already. Samples
+/// late by less are sorted in. After a true step back of the clock the stream continues with the new stamps.
 template <typename Sample>
 class StampOrder {
  public:
   static constexpr std::size_t kLookAhead = 32;
-  /// No sensor is silent for an hour between its first sample and the second: the first stamp was absurd.
+  /// Longest step from the first stamp to the second [ns]; after a longer one the first stamp was absurd.
   static constexpr std::int64_t kMaxFirstStepNs = 3'600'000'000'000;
 
-  /// So many stamps at the start of a file are absurd rather than the truth before the clock was set.
+  /// Most stamps at the start of a file that count as absurd; more are good stamps before a step of the
+  /// clock.
   static constexpr std::size_t kMaxAbsurdAtStart = 3;
 
   struct Counts {
@@ -37,7 +37,8 @@ class StampOrder {
 
   explicit StampOrder(const StampGuardConfig& config) : guard_(config) {}
 
-  /// The next sample in order. read: bool(Sample&), false at the end of the file.
+  /// The next sample in order; false at the end.
+  /// @param read bool(Sample&): reads the next sample of the file, false at its end
   template <typename Read>
   bool next(Sample& sample, const Read& read) {
     while (!at_end_ && after_step_.empty() && ordered_.size() < kLookAhead) {
@@ -105,8 +106,8 @@ class StampOrder {
     }
   }
 
-  /// The stamps go back to `to_ns`, for good. What lies ahead of it in the look-ahead was absurd if what lies
-  /// before it goes on; else the clock was set.
+  /// A confirmed step back to `to_ns`. If the stamps continue those before it in the look-ahead, the newer
+  /// ones were absurd; otherwise the clock was set back.
   void step_back(std::int64_t to_ns) {
     const auto ahead = std::find_if(ordered_.begin(), ordered_.end(),
                                     [to_ns](const Sample& sample) { return sample.stamp_ns > to_ns; });
@@ -147,7 +148,7 @@ class StampOrder {
   StampGuard guard_;
   Counts counts_;
   std::deque<Sample> ordered_;
-  std::deque<Sample> after_step_;  // belong behind a step back of the clock
+  std::deque<Sample> after_step_;  // samples after a step back of the clock
   std::optional<Sample> held_;
   bool stepped_ = false;
   bool handed_out_ = false;

@@ -7,12 +7,13 @@
 
 namespace isobar::recording {
 
-/// How often something was met, and the words for the first time. Later times cost no text.
+/// Counter with the message of the first occurrence; later ones format no text.
 struct Tally {
   std::uint64_t count = 0;
   std::string first_message;
 
-  /// describe: called for the first time only, returns the message.
+  /// Counts an occurrence.
+  /// @param describe std::string(): the message, called for the first occurrence only
   template <typename Describe>
   void add(const Describe& describe) {
     if (count++ == 0) {

@@ -17,7 +17,7 @@ std::uint16_t read_be16(std::span<const std::uint8_t> bytes, std::size_t at) {
 
 bool is_vlan(std::uint16_t type) { return type == 0x8100 || type == 0x88A8 || type == 0x9100; }
 
-/// Cuts the link header off; an empty span when the frame is too short or no IPv4.
+/// Removes the link header; an empty span when the frame is too short or not IPv4.
 std::span<const std::uint8_t> ip_packet(LinkType link, std::span<const std::uint8_t> frame, bool& too_short) {
   std::size_t header = 0;
   std::size_t type_at = 0;

@@ -21,28 +21,28 @@ enum class LinkType : int {
 };
 [[nodiscard]] std::optional<LinkType> link_type_of(int data_link);
 
-/// What a frame was.
+/// Content of a frame.
 enum class FrameKind : std::uint8_t {
   kPayload,     ///< a UDP payload to the wanted port
-  kCutPayload,  ///< the same, but the capture holds only its beginning
+  kCutPayload,  ///< the same, truncated by the capture
   kOtherPort,
   kOtherProtocol,  ///< ARP, TCP, IPv6, …
-  kFragment,       ///< a part of a datagram that is not yet complete
+  kFragment,       ///< fragment of an incomplete datagram
   kMalformed,      ///< lengths contradict each other
 };
 
-/// Finds UDP payloads for one destination port in captured frames: VLAN tags (802.1Q, 802.1ad, stacked) are
-/// skipped, IPv4 fragments put together (RFC 791; first byte wins where they overlap). Every length is
-/// checked before use.
+/// Extractor of the UDP payloads for one destination port from captured frames. Skips VLAN tags (802.1Q,
+/// 802.1ad, stacked) and reassembles IPv4 fragments (RFC 791; the first byte wins where they overlap). Every
+/// length is checked before use.
 class UdpExtractor {
  public:
   explicit UdpExtractor(std::uint16_t port) : port_(port) {}
 
-  /// payload: valid until the next call.
+  /// @param payload valid until the next call
   FrameKind extract(LinkType link, std::span<const std::uint8_t> frame,
                     std::span<const std::uint8_t>& payload);
 
-  /// Datagrams given up because fragments did not arrive while kSlots others did.
+  /// Datagrams dropped incomplete: kSlots newer ones needed the memory.
   [[nodiscard]] std::uint64_t incomplete() const { return incomplete_; }
   [[nodiscard]] std::uint64_t reassembled() const { return reassembled_; }
 

@@ -19,8 +19,10 @@ inline constexpr std::size_t kMaxUdpPayloadBytes = 65'535 - kIpv4HeaderBytes - k
 /// Folds and complements the sum.
 [[nodiscard]] std::uint16_t internet_checksum(std::uint32_t sum);
 
-/// Puts a frame around a payload, from 192.168.1.201 (a Velodyne's factory address) to the broadcast address,
-/// with the same source and destination port. `frame` is overwritten. payload: at most kMaxUdpPayloadBytes.
+/// Builds the frame of a payload: from 192.168.1.201 (a Velodyne's factory address) to the broadcast address,
+/// equal source and destination port.
+/// @param payload at most kMaxUdpPayloadBytes
+/// @param frame overwritten
 void build_udp_frame(std::span<const std::uint8_t> payload, std::uint16_t port, std::uint16_t identification,
                      std::vector<std::uint8_t>& frame);
 

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "drivers/datagram/udp.hpp"
+#include "drivers/clock/robot_clock.hpp"
 
 namespace isobar::test::test_worker_group {
 

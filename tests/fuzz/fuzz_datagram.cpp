@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Datagrams, split at a zero byte. What is accepted must survive formatting.
+// Fuzz target: datagrams, separated by zero bytes. An accepted sample must survive formatting and parsing.
 #include <array>
 #include <cstdint>
 #include <cstdlib>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The driver of the DPS310 on a bus that reads whatever the fuzzer wants. Each access takes a byte of
-// choices: an error, the fuzzer's bytes, or what a sound chip would read, so that the fuzzer gets past the
-// checks.
+// Fuzz target: the DPS310 driver on a bus that the fuzzer controls. A byte per access selects an error, the
+// fuzzer's bytes, or a sound chip's answer, which passes the checks.
 #include <cerrno>
 #include <cmath>
 #include <cstdint>
@@ -67,7 +66,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::int64_t now_ns = 0;
   for (int steps = 0; steps < 5'000 && !input.empty(); ++steps) {
     const isobar::BarometerDevice::Step step = sensor.step(now_ns);
-    // Time goes on, and no wait is longer than the longest between two tries.
+    // The next step lies in the future, at most the longest back-off away.
     if (step.next_ns <= now_ns || step.next_ns - now_ns > 6'000'000'000) std::abort();
     if (step.has_sample) {
       const isobar::PressureSample& sample = step.sample;

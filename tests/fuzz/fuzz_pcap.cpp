@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A capture file of any kind.
+// Fuzz target: a capture file.
 #include <sys/mman.h>
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any logger's CSV. What is accepted is in order of time, plausible, and finite.
+// Fuzz target: a logger's CSV. Accepted samples are in order of time, plausible and finite.
 #include <unistd.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A whole recording folder: the input is split at '\x01' into imu.csv, barometer.csv, base_barometer.csv,
-// wheel.csv, lidar.pcap (without its file header), reference.tum and segments.csv.
+// Fuzz target: a recording folder. The input is split at '\x01' into imu.csv, barometer.csv,
+// base_barometer.csv, wheel.csv, lidar.pcap (without its file header), reference.tum and segments.csv.
 #include <unistd.h>
 
 #include <cmath>
@@ -15,6 +15,7 @@
 #include "core/plausibility.hpp"
 #include "run/recording/recording_reader.hpp"
 #include "run/recording/reference.hpp"
+#include "run/text/segments.hpp"
 
 namespace {
 
@@ -53,7 +54,7 @@ void tolerate(const Work& work) {
   try {
     work();
   } catch (const isobar::DataError&) {
-    return;  // that is how broken files are to be refused
+    return;  // the specified refusal of a broken file
   }
 }
 
@@ -81,6 +82,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   });
   tolerate([] { read_tum(scratch() / "reference.tum"); });
-  tolerate([] { read_segments(scratch() / "segments.csv"); });
+  tolerate([] { isobar::text::read_segments(isobar::text::TextLines(scratch() / "segments.csv")); });
   return 0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A map on the disk in any state: tiles, index and map.toml, separated by the length of the first two.
+// Fuzz target: a stored map: tiles, index and map.toml, separated by the lengths of the first two.
 #include <unistd.h>
 
 #include <cstdint>
@@ -29,7 +29,7 @@ void write(const std::filesystem::path& file, std::string_view content) {
   std::ofstream(file, std::ios::binary | std::ios::trunc) << content;
 }
 
-/// Everything that is listed can be taken or is damaged, and of that the count is true.
+/// Every listed tile can be read or is counted as damaged.
 void take_all(isobar::FileTileStore& store) {
   std::vector<std::byte> bytes;
   const std::uint64_t before = store.counters().damaged;
@@ -60,7 +60,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const auto store = isobar::FileTileStore::open_to_continue(folder, {}, {});
       repaired = store->tile_count();
     }
-    // Repaired once is repaired: nothing is torn any more, and no tile is gone.
+    // A second repair finds nothing to do and loses no tile.
     const auto store = isobar::FileTileStore::open_to_continue(folder, {}, {});
     if (store->counters().torn != 0 || store->tile_count() != repaired) std::abort();
     if (!store->put({1, 2, 3}, std::vector<std::byte>(20))) std::abort();

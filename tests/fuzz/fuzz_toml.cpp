@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Configuration and manifest. What is accepted must be shown and accepted again.
+// Fuzz target: configuration and manifest. An accepted configuration must print as one that is accepted.
 #include <cstdint>
 #include <cstdlib>
 #include <string>

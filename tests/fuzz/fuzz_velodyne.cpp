@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A stream of packets. Each starts with a byte of choices and the payload's length; the byte may ask for
-// valid flags, azimuths, mode and model, so that the fuzzer gets past the checks.
+// Fuzz target: a stream of packets. Each starts with an option byte and the payload's length; the options set
+// valid flags, azimuths, mode and model, which pass the checks.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -25,7 +25,7 @@ void make_valid(std::vector<std::uint8_t>& packet, Model model, bool dual) {
   packet[1205] = static_cast<std::uint8_t>(model);
 }
 
-/// What the next stage relies on.
+/// Invariants that the next stage relies on.
 void check(const isobar::Scan& scan) {
   if (scan.point_count > isobar::Scan::kMaxPoints || scan.end_stamp_ns < scan.stamp_ns ||
       scan.end_stamp_ns - scan.stamp_ns > 600'000'000) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes seed inputs for every fuzz target into the folder that is given. Nothing recorded is in them.
+// Writes generated seed inputs for every fuzz target into the given folder.
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>

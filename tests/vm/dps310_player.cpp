@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Plays a DPS310 on the kernel's i2c-stub, which is nothing but memory: the model of the chip lives here,
-// sees what the driver wrote, and writes what the chip would show. Usage: dps310_player BUS
-// {play|brownout|freeze SECONDS}…
+// Emulates a DPS310 on the kernel's i2c-stub, a bus of plain memory: runs the model of the chip, passes it
+// the driver's writes, and writes its registers to the bus. Usage: dps310_player BUS {play|brownout|freeze
+// SECONDS}…
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -19,7 +19,7 @@ using Clock = std::chrono::steady_clock;
 namespace {
 
 constexpr std::uint8_t kReady = kPressureReady | kTemperatureReady;
-/// The stub does not see a read. A result counts as read after a poll of the driver and a half.
+/// i2c-stub reports no reads: a result counts as read after one and a half polls of the driver.
 constexpr auto kReadWithin = 12ms;
 
 class Player {
@@ -89,7 +89,7 @@ class Player {
     std::uint8_t status = 0;  // a chip in reset does not answer
     if (chip_.read(kMeasurementConfig, {&status, 1}) != 0) return;
     if ((status & kReady & ~shown_) != 0) {
-      // Nobody may read while the bytes change: the ready bits go first, and a read that is under way ends.
+      // Clear the ready bits first and let a read in progress end: no torn result.
       put(kMeasurementConfig, static_cast<std::uint8_t>(status & ~kReady));
       std::this_thread::sleep_for(2ms);
       for (std::uint8_t address = 0; address < kResultBytes; ++address) put(address, chip_.held(address));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The driver of the DPS310 alone on a bus of the kernel: prints what it reads.
+// The DPS310 driver alone on a kernel bus; prints its samples.
 // Usage: dps310_reader BUS SECONDS
 #include <chrono>
 #include <cstdio>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/benchmark/live/listeners.hpp"
 
-#include "drivers/datagram/udp.hpp"
+#include "drivers/clock/robot_clock.hpp"
 #include "ipc/dds/messages.hpp"
 
 namespace isobar::benchmark {

@@ -6,7 +6,7 @@
 #include <array>
 #include <string_view>
 
-#include "drivers/datagram/udp.hpp"
+#include "drivers/clock/robot_clock.hpp"
 
 namespace isobar::benchmark {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "core/altitude/hypsometry.hpp"
 #include "core/so3.hpp"
+#include "tests/core/altitude/isothermal_air.hpp"
 
 namespace isobar::test {
 namespace {

@@ -74,7 +74,7 @@ TEST_CASE("The longest possible line fits the documented size") {
   CHECK(formatted(sample).size() < kMaxLineBytes);
 }
 
-TEST_CASE("One datagram holds lines of several kinds; broken ones cost only themselves") {
+TEST_CASE("A datagram holds lines of several kinds; a broken line does not affect the others") {
   DatagramParser parser;
   const auto samples = parse_all(parser,
                                  "imu,0,5,0,0,0,0,0,9.8\r\n"
@@ -102,7 +102,8 @@ TEST_CASE("One datagram holds lines of several kinds; broken ones cost only them
   CHECK(parser.counters().implausible == 2);
 }
 
-TEST_CASE("Sequence numbers show loss, repetition, overtaking, wrap and restart, for each kind on its own") {
+TEST_CASE(
+    "Sequence numbers reveal loss, duplicates, reordering, wrap and restart, separately for each kind") {
   DatagramParser parser;
   const auto feed = [&parser](std::uint32_t sequence) {
     return parse_all(parser, "baro," + std::to_string(sequence) + ",1,1e5,20\n").size();

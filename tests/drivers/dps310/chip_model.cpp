@@ -46,7 +46,7 @@ void ChipModel::run_until(std::int64_t now_ns) {
   now_ns_ = std::max(now_ns_, now_ns);
 }
 
-/// One converter: when it is free, what has been due for longest starts, pressure first.
+/// The chip's single converter: when free it starts the measurement that is due the longest; pressure first.
 void ChipModel::start_due() {
   if (pressure_.end_ns != 0 || temperature_.end_ns != 0) return;
   const bool background = mode_ == kModeBackground;
@@ -95,7 +95,8 @@ std::int32_t ChipModel::raw_temperature() {
   return static_cast<std::int32_t>(std::lround(ts * scale_factor(oversampling(kTemperatureConfig))));
 }
 
-/// The compensation backwards, by Newton's method; without its shift a result above 8 times overflows.
+/// Inverse of the compensation, by Newton's method. Without the shift bit a result above 8 times oversampling
+/// overflows.
 std::int32_t ChipModel::raw_pressure(std::int64_t middle_ns) {
   const Coefficients& c = kKnownCoefficients;
   const double wanted = pressure_pa(static_cast<double>(middle_ns) * 1e-9) +

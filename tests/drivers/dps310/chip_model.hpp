@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A DPS310 as its data sheet describes it, register by register, on a simulated clock.
+// Register-level model of a DPS310 (data sheet), on a simulated clock.
 #pragma once
 
 #include <array>
@@ -16,16 +16,16 @@
 
 namespace isobar::dps310 {
 
-/// The chip and the air around it.
+/// The chip and the air at it.
 class ChipModel {
  public:
-  /// Powered for a second already.
+  /// Starts one second after power-up.
   ChipModel() {
     power_up();
     run_until(now_ns_ + 1'000'000'000);
   }
 
-  // What the test sets.
+  // Inputs, set by the test.
   std::function<double(double)> pressure_pa = [](double) { return 96'000.0; };  ///< by time [s]
   double temperature_c = 21.0;
   double noise_pa = 0.0;                            ///< rms of each conversion
@@ -50,7 +50,7 @@ class ChipModel {
   void run_until(std::int64_t now_ns);
   [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
 
-  // What the test looks at.
+  // Outputs, read by the test.
   std::uint64_t transactions = 0;
   std::uint64_t soft_resets = 0;
   std::set<std::int32_t> pressures;  ///< every raw pressure that was ever measured
@@ -92,7 +92,7 @@ class ChipModel {
   std::mt19937 random_{3};
 };
 
-/// The driver's way to the model.
+/// RegisterBus of the driver, connected to the model.
 class ModelBus final : public RegisterBus {
  public:
   explicit ModelBus(ChipModel& chip) : chip_(&chip) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The coefficients of one real DPS310 and their bytes, written down by hand from the data sheet's table.
+// Coefficients of a real DPS310 and their bytes, encoded by hand from the data sheet's table.
 #pragma once
 
 #include "drivers/dps310/compensation.hpp"

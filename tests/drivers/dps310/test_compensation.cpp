@@ -15,7 +15,7 @@ using namespace isobar::dps310;
 
 namespace {
 
-/// Sets `bits` bits of a row of bytes from bit `first` on, one by one: another way than the decoder's.
+/// Sets `bits` bits from bit `first` on, one by one: independent of the decoder.
 void set_field(CoefficientBytes& bytes, int first, int bits, std::int32_t value) {
   for (int i = 0; i < bits; ++i) {
     const bool one = (static_cast<std::uint32_t>(value) & 1U << (bits - 1 - i)) != 0;
@@ -31,7 +31,8 @@ TEST_CASE("the coefficients of a known sensor are read from their 18 bytes") {
   CHECK(decode_coefficients(dps310::kKnownBytes) == dps310::kKnownCoefficients);
 }
 
-TEST_CASE("every coefficient has its own bits: both ends of each range survive, and touch no other") {
+TEST_CASE(
+    "every coefficient has its own bits: both ends of its range decode and leave the others unchanged") {
   struct Field {
     std::int32_t Coefficients::*member;
     int first;
@@ -58,7 +59,7 @@ TEST_CASE("every coefficient has its own bits: both ends of each range survive, 
   }
 }
 
-TEST_CASE("a memory that was not loaded and a dead bus are no coefficients") {
+TEST_CASE("coefficients of an unloaded memory and of a dead bus are refused") {
   CoefficientBytes bytes{};
   CHECK(implausibility(bytes) != nullptr);
   bytes.fill(0xFF);
@@ -71,13 +72,13 @@ TEST_CASE("a memory that was not loaded and a dead bus are no coefficients") {
   CHECK(implausibility(bytes) != nullptr);
 }
 
-TEST_CASE("results are 24 bit with a sign") {
+TEST_CASE("results are 24 bit two's complement") {
   CHECK(decode_result({0xFA, 0x36, 0xE9, 0x05, 0x05, 0x11}) == RawResult{-379'159, 328'977});
   CHECK(decode_result({0x7F, 0xFF, 0xFF, 0x80, 0x00, 0x00}) == RawResult{8'388'607, -8'388'608});
   CHECK(decode_result({0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00}) == RawResult{-1, 0});
 }
 
-TEST_CASE("whatever the bytes are, the numbers are finite, and what cannot be real is named") {
+TEST_CASE("every input gives finite numbers, and implausible results name the rule") {
   std::mt19937 random(7);
   std::uniform_int_distribution<int> any(0, 255);
   std::uniform_int_distribution<int> power(0, 7);
@@ -101,19 +102,20 @@ TEST_CASE("whatever the bytes are, the numbers are finite, and what cannot be re
       REQUIRE(value.temperature_c <= 85.0);
     }
   }
-  // Random coefficients span +-400 K and more of temperature and +-500 kPa: most of it is no air.
+  // Random coefficients span +-400 K and more of temperature and +-500 kPa: most results are not air
+  // pressure.
   CHECK(implausible > 40'000);
   CHECK(implausible < 50'000);
 }
 
-TEST_CASE("an empty result register is no measurement, whatever it compensates to") {
+TEST_CASE("an empty result register is refused, whatever it compensates to") {
   const Compensated fine{95'000.0, 20.0};
   CHECK(implausibility(RawResult{kNoResult, 0}, fine) != nullptr);
   CHECK(implausibility(RawResult{0, kNoResult}, fine) != nullptr);
   CHECK(implausibility(RawResult{0, 0}, fine) == nullptr);
 }
 
-TEST_CASE("more oversampling never is noisier or faster, and the default settings can be met") {
+TEST_CASE("more oversampling is never noisier or faster, and the default settings fit into a second") {
   for (int oversampling = 2; oversampling <= 128; oversampling *= 2) {
     CHECK(pressure_noise_pa(oversampling) <= pressure_noise_pa(oversampling / 2));
     CHECK(measurement_time_s(oversampling) > measurement_time_s(oversampling / 2));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The formulas on a minute of a real DPS310: registers, coefficients and the result that its own driver
-// logged.
+// The compensation on a minute of a real DPS310: registers, coefficients and results logged by its own
+// driver.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -59,9 +59,9 @@ Compensated compensated(const Row& row) {
                     row[kTemperatureScale]);
 }
 
-/// A row is torn when its result is newer than its registers: the result differs from the row before, but the
-/// registers that it is made of do not. The logger read the registers, then the sensor was updated, then it
-/// read the result. No formula is needed to see it.
+/// A row is torn when its result is newer than its registers: the result differs from the row before, the
+/// registers do not. The sensor was updated between the logger's read of the registers and its read of the
+/// result.
 bool torn(const Row& before, const Row& row) {
   const bool raw_temperature_same = row[kRawTemperature] == before[kRawTemperature];
   const bool raw_same = raw_temperature_same && row[kRawPressure] == before[kRawPressure];
@@ -92,7 +92,7 @@ TEST_CASE(
     if (i > 0 && torn(rows[i - 1], rows[i])) {
       ++torn_rows;
       if (rows[i][kPressure] != rows[i - 1][kPressure]) ++torn_pressures;
-      // The rule must not hide a wrong formula: what it calls torn really disagrees.
+      // Torn rows must disagree: otherwise the rule could hide a wrong formula.
       smallest_torn_pa = std::min(smallest_torn_pa, std::max(pressure_error, temperature_error));
       continue;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The driver against a chip that behaves, and misbehaves, as the data sheet and the field know it.
+// The driver against a model of the chip, sound and with faults of the data sheet and of the field.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -33,9 +33,9 @@ Settings with_rates(int pressure_hz, int pressure_times, int temperature_hz, int
   return settings;
 }
 
-/// Chip, driver and a clock: calls the driver when it wants to be called.
+/// Chip, driver and clock; steps the driver at the times that it asks for.
 struct Bench {
-  /// Air without noise gives the same bits for ever: only tests with noise look for a stuck sensor.
+  /// Air without noise gives constant bits: the detection of a stuck sensor needs noise.
   explicit Bench(const Settings& settings = {}, std::int64_t stuck_ns = 0)
       : sensor(settings, std::make_unique<ModelBus>(chip), stuck_ns) {}
 
@@ -52,7 +52,8 @@ struct Bench {
     }
     chip.run_until(end_ns);
   }
-  /// Runs until the driver says this; how long that took [s].
+  /// Runs until the driver reports this state.
+  /// @return time that took [s]
   double time_until(BarometerState state, double limit_s) {
     const std::int64_t start_ns = chip.now_ns();
     const auto elapsed_s = [&] { return static_cast<double>(chip.now_ns() - start_ns) * 1e-9; };
@@ -77,7 +78,7 @@ struct Bench {
 
 }  // namespace
 
-TEST_CASE("from power-up to samples in 0.3 s, then at the rate that was set") {
+TEST_CASE("first sample 0.3 s after power-up, then at the configured rate") {
   Bench bench;
   bench.run(0.3);
   CHECK_FALSE(bench.samples.empty());
@@ -96,7 +97,7 @@ TEST_CASE("from power-up to samples in 0.3 s, then at the rate that was set") {
   CHECK(bench.sensor.place() == "DPS310 on /dev/i2c-1 at 0x77");
 }
 
-TEST_CASE("a sample's stamp is when the air had that pressure, to half a poll") {
+TEST_CASE("a sample's stamp is the time of its pressure, to half a poll") {
   for (const Settings& settings :
        {with_rates(32, 16, 4, 8), with_rates(8, 64, 1, 1), with_rates(128, 2, 8, 1)}) {
     Bench bench(settings);
@@ -116,7 +117,7 @@ TEST_CASE("a sample's stamp is when the air had that pressure, to half a poll") 
   }
 }
 
-TEST_CASE("every pair of rate and oversampling that fits in a second gives right values at its rate") {
+TEST_CASE("every rate and oversampling that fit into a second give correct values at the rate") {
   for (int rate_hz = 1; rate_hz <= 128; rate_hz *= 2) {
     for (int times = 1; times <= 128; times *= 2) {
       const Settings settings = with_rates(rate_hz, times, std::min(rate_hz, 4), std::min(times, 16));
@@ -135,7 +136,7 @@ TEST_CASE("every pair of rate and oversampling that fits in a second gives right
   }
 }
 
-TEST_CASE("coefficients are read only when the chip says that they are there") {
+TEST_CASE("coefficients are read only after the chip reports them ready") {
   Bench slow;
   slow.chip.coefficients_ready_ns = 90'000'000;  // twice what the data sheet allows
   slow.run(1.0);
@@ -185,7 +186,7 @@ TEST_CASE(
   CHECK(bench.largest_error_pa(96'000.0) < 0.3);
 }
 
-TEST_CASE("a bus that loses one transaction in a hundred costs samples, not the sensor") {
+TEST_CASE("a bus that loses one transaction in a hundred loses samples, but the sensor keeps measuring") {
   Bench bench;
   bench.run(1.0);
   bench.chip.nak_share = 0.01;
@@ -196,7 +197,7 @@ TEST_CASE("a bus that loses one transaction in a hundred costs samples, not the 
   CHECK(bench.sensor.status().counters.io_errors > 50);
 }
 
-TEST_CASE("a sensor that answers, but measures no more, is flagged within 0.5 s and reset") {
+TEST_CASE("a sensor that answers without new results is reported within 0.5 s and reset") {
   Bench bench;
   bench.run(2.0);
   bench.chip.stops = true;
@@ -209,7 +210,7 @@ TEST_CASE("a sensor that answers, but measures no more, is flagged within 0.5 s 
   CHECK(bench.sensor.status().counters.silent >= 1);
 }
 
-TEST_CASE("a thermometer that measures no more is a fault of the sensor: every pressure needs one") {
+TEST_CASE("a thermometer without new results is a fault: every pressure needs its temperature") {
   Bench bench;
   bench.run(2.0);
   bench.chip.thermometer_stops = true;
@@ -217,7 +218,7 @@ TEST_CASE("a thermometer that measures no more is a fault of the sensor: every p
   CHECK(bench.fault().find("temperature") != std::string::npos);
 }
 
-TEST_CASE("a sensor whose bits freeze is flagged within 2 s and gives no sample until they move again") {
+TEST_CASE("a sensor whose bits freeze is reported within 2 s and gives no sample until they change again") {
   Bench bench({}, kStuckNs);
   bench.chip.noise_pa = 0.35;
   bench.run(3.0);
@@ -232,7 +233,7 @@ TEST_CASE("a sensor whose bits freeze is flagged within 2 s and gives no sample 
   CHECK(bench.time_until(BarometerState::kMeasuring, 10.0) < 5.5);
 }
 
-TEST_CASE("values that cannot be air are refused, counted, flagged within 0.5 s and gone when they are") {
+TEST_CASE("implausible values are refused, counted and reported within 0.5 s; good values clear the fault") {
   Bench bench;
   bench.run(2.0);
   const std::size_t good = bench.samples.size();
@@ -248,7 +249,7 @@ TEST_CASE("values that cannot be air are refused, counted, flagged within 0.5 s 
   CHECK(bench.time_until(BarometerState::kMeasuring, 10.0) < 5.5);
 }
 
-TEST_CASE("noise of data-sheet size is never mistaken for a frozen sensor") {
+TEST_CASE("noise of the data sheet never counts as a frozen sensor") {
   for (const Settings& settings :
        {with_rates(32, 16, 4, 8), with_rates(8, 64, 1, 1), with_rates(64, 8, 4, 1)}) {
     Bench bench(settings, kStuckNs);
@@ -259,7 +260,8 @@ TEST_CASE("noise of data-sheet size is never mistaken for a frozen sensor") {
   }
 }
 
-TEST_CASE("a brown-out is noticed by the lost settings and over in half a second, without one wrong sample") {
+TEST_CASE(
+    "a brown-out is detected by the lost settings and recovered in half a second, without a wrong sample") {
   Bench bench;
   bench.run(2.0);
   for (int i = 0; i < 20; ++i) {
@@ -272,7 +274,7 @@ TEST_CASE("a brown-out is noticed by the lost settings and over in half a second
   CHECK(bench.largest_error_pa(96'000.0) < 0.3);
 }
 
-TEST_CASE("another device at the address is named, and nothing is written to it") {
+TEST_CASE("another device at the address is reported, and nothing is written to it") {
   Bench other;
   other.chip.id = 0x58;
   other.run(1.0);
@@ -281,7 +283,7 @@ TEST_CASE("another device at the address is named, and nothing is written to it"
   CHECK(other.chip.soft_resets == 0);
 }
 
-TEST_CASE("a bus that cannot be opened is named with the reason") {
+TEST_CASE("a bus that cannot be opened is reported with the reason") {
   ChipModel chip;
   auto bus = std::make_unique<ModelBus>(chip);
   ModelBus& model = *bus;
@@ -332,7 +334,7 @@ TEST_CASE("a chip whose oscillator is 20 % slow still measures") {
 
 namespace {
 
-/// A bus without a chip: every read gives what the test wants.
+/// Bus without a chip: the test supplies every read.
 class FreeBus final : public RegisterBus {
  public:
   explicit FreeBus(std::function<std::uint8_t(std::uint8_t)> byte) : byte_(std::move(byte)) {}
@@ -347,7 +349,7 @@ class FreeBus final : public RegisterBus {
   std::function<std::uint8_t(std::uint8_t)> byte_;
 };
 
-/// Runs a driver on such a bus for so many steps; the samples that it gave.
+/// Runs a driver on such a bus for a number of steps; returns its samples.
 std::vector<PressureSample> run_free(Sensor& sensor, int steps) {
   std::vector<PressureSample> samples;
   std::int64_t now_ns = 1'000'000'000;
@@ -362,7 +364,7 @@ std::vector<PressureSample> run_free(Sensor& sensor, int steps) {
 
 }  // namespace
 
-TEST_CASE("a bus held low or high gives no sample and is no sensor") {
+TEST_CASE("a bus held low or high is not a sensor and gives no sample") {
   for (const std::uint8_t level : {0x00, 0xFF}) {
     Sensor sensor({}, std::make_unique<FreeBus>([level](std::uint8_t) { return level; }), kStuckNs);
     CHECK(run_free(sensor, 200).empty());
@@ -370,7 +372,7 @@ TEST_CASE("a bus held low or high gives no sample and is no sensor") {
   }
 }
 
-TEST_CASE("whatever bytes the bus delivers, every sample that comes out is finite and can be real") {
+TEST_CASE("for all bytes on the bus, every sample is finite and plausible") {
   std::mt19937 random(17);
   const auto any = [&random] { return static_cast<std::uint8_t>(random()); };
   std::uint64_t samples = 0;
@@ -380,8 +382,8 @@ TEST_CASE("whatever bytes the bus delivers, every sample that comes out is finit
     for (int flips = run % 3; flips > 0; --flips) coefficients[any() % kCoefficientBytes] = any();
     std::array<std::uint8_t, kResultBytes> results{};
     std::array<std::uint8_t, 256> written{};
-    // A chip whose status and settings read well, so that the driver believes the rest; one status in 50 does
-    // not.
+    // Status and settings read correctly, so that the driver proceeds to the results; one status in 50 is
+    // random.
     const auto byte = [&](std::uint8_t address) -> std::uint8_t {
       if (address >= kCoefficients && address < kCoefficients + kCoefficientBytes) {
         return coefficients[address - kCoefficients];
@@ -418,8 +420,8 @@ TEST_CASE("whatever bytes the bus delivers, every sample that comes out is finit
   CHECK(implausible > 1'000);
 }
 
-TEST_CASE("neither samples nor faults nor new starts allocate memory") {
-  // A chip that is sound for 2000 accesses, silent for 500, and sound again.
+TEST_CASE("samples, faults and restarts allocate no memory") {
+  // The chip works for 2000 accesses, is silent for 500, and works again.
   std::uint64_t accesses = 0;
   std::array<std::uint8_t, 3> written{0x54, 0x23, kShiftPressure};
   std::uint8_t count = 0;
@@ -459,7 +461,7 @@ TEST_CASE("neither samples nor faults nor new starts allocate memory") {
   CHECK(sensor.status().counters.starts > 1);
 }
 
-TEST_CASE("a bus of the kernel that is not there, or is none, is an error of the system and no crash") {
+TEST_CASE("a missing bus, or a file that is not a bus, gives an errno and no crash") {
   SmbusDevice missing("/dev/i2c-no-such-bus", 0x77);
   CHECK(missing.open() == ENOENT);
   SmbusDevice none("/dev/null", 0x77);

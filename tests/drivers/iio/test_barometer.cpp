@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Barometers of the kernel, on a folder that looks like theirs in sysfs.
+// Kernel barometers, on an imitation of their sysfs folder.
 #include <doctest/doctest.h>
 #include <unistd.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::int64_t kStuckNs = 1'500'000'000;
 
-/// A device's folder, gone at the end.
+/// A device's folder, removed at the end.
 class Folder {
  public:
   Folder() {
@@ -46,7 +46,7 @@ class Folder {
 struct Bench {
   template <class Settings>
   explicit Bench(const Settings& settings, std::int64_t stuck_ns = 0) : device(settings, stuck_ns) {}
-  /// Runs for so long; `before_each` sets what the next reading finds.
+  /// Runs for a time; `before_each` prepares the next reading.
   void run(double seconds, const std::function<void()>& before_each = {}) {
     const std::int64_t end_ns = now_ns + static_cast<std::int64_t>(seconds * 1e9);
     while (now_ns < end_ns) {
@@ -70,7 +70,7 @@ iio::SetraSettings setra_at(const Folder& folder) { return {at(folder), "in_volt
 
 }  // namespace
 
-TEST_CASE("a processed pressure in kPa and a temperature in thousandths of a degree become a sample") {
+TEST_CASE("a processed pressure in kPa and a temperature in millidegrees become a sample") {
   const Folder folder;
   folder.put("in_pressure_input", "100.843250");
   folder.put("in_temp_input", "21400");
@@ -84,7 +84,7 @@ TEST_CASE("a processed pressure in kPa and a temperature in thousandths of a deg
   CHECK(bench.device.place() == "barometer " + folder.path());
 }
 
-TEST_CASE("a raw pressure takes scale and offset, its own or those of all channels of its kind") {
+TEST_CASE("a raw pressure uses scale and offset of its channel, or those shared by its kind") {
   const Folder folder;
   folder.put("in_pressure_raw", "4130000");
   folder.put("in_pressure_scale", "0.000024414");
@@ -107,7 +107,8 @@ TEST_CASE("a raw pressure takes scale and offset, its own or those of all channe
   CHECK(volts.device.place() == "Setra 278 on " + adc.path() + " in_voltage0");
 }
 
-TEST_CASE("a Setra whose wire opens is flagged within 0.5 s with the reason, and measures again afterwards") {
+TEST_CASE(
+    "an open wire of a Setra is reported within 0.5 s with the reason, and it measures again afterwards") {
   const Folder folder;
   folder.put("in_voltage0_raw", "1600");
   folder.put("in_voltage0_scale", "1");
@@ -127,18 +128,18 @@ TEST_CASE("a Setra whose wire opens is flagged within 0.5 s with the reason, and
   CHECK(bench.samples.back().pressure_pa == doctest::Approx(60e3 + 1.601 / 2.5 * 50e3));
 }
 
-TEST_CASE("a device that vanishes is asked for again, and comes back with another scale") {
+TEST_CASE("a device that vanishes is retried, and may return with another scale") {
   const Folder folder;
   folder.put("in_pressure_raw", "100000");
   folder.put("in_pressure_scale", "0.001");
   Bench bench(at(folder));
   bench.run(1.0);
   REQUIRE(bench.state() == BarometerState::kMeasuring);
-  // The open file of a real sysfs fails with ENODEV; here its content goes.
+  // In sysfs the open file would fail with ENODEV; here it becomes empty.
   { std::ofstream(folder.path() + "/in_pressure_raw", std::ios::trunc); }
   bench.run(0.5);
   CHECK(bench.state() == BarometerState::kNoAnswer);
-  CHECK(bench.fault().find("the file holds no number") == 0);
+  CHECK(bench.fault().find("the file does not hold a number") == 0);
   folder.remove("in_pressure_raw");
   bench.run(3.0);
   CHECK(bench.fault() == "no such device or channel (No such file or directory)");
@@ -149,7 +150,7 @@ TEST_CASE("a device that vanishes is asked for again, and comes back with anothe
   CHECK(bench.samples.back().pressure_pa == doctest::Approx(100e3));
 }
 
-TEST_CASE("a value that freezes is flagged within 2 s; where that is switched off, it is not") {
+TEST_CASE("a frozen value is reported within 2 s, unless the detection is off") {
   for (const bool watched : {true, false}) {
     const Folder folder;
     Bench bench(at(folder), watched ? kStuckNs : 0);
@@ -167,7 +168,7 @@ TEST_CASE("a value that freezes is flagged within 2 s; where that is switched of
   }
 }
 
-TEST_CASE("hPa where the kernel promises kPa, text and infinities are refused and counted, never taken") {
+TEST_CASE("hPa instead of kPa, text and infinities are refused and counted") {
   for (const char* text : {"1008.43", "0", "-5", "nan", "inf", "1e999", "pressure", "", "100.8abc"}) {
     CAPTURE(text);
     const Folder folder;
@@ -181,7 +182,7 @@ TEST_CASE("hPa where the kernel promises kPa, text and infinities are refused an
   }
 }
 
-TEST_CASE("a thermometer that fails costs the temperature, not the pressure") {
+TEST_CASE("a failed thermometer makes the temperature NaN and keeps the pressure") {
   const Folder folder;
   folder.put("in_pressure_input", "100.0");
   folder.put("in_temp_raw", "85");

@@ -12,7 +12,7 @@ namespace isobar::test::test_span {
 
 using namespace isobar::setra278;
 
-TEST_CASE("the spans that the transducer is sold with give the pressures of their order code") {
+TEST_CASE("the spans of the order codes give their pressures") {
   CHECK(pressure_of({0.0, 2.5, 60e3, 110e3}, 1.25).pressure_pa == doctest::Approx(85e3));
   CHECK(pressure_of({0.0, 5.0, 50e3, 110e3}, 4.0).pressure_pa == doctest::Approx(98e3));
   CHECK(pressure_of({0.0, 5.0, 80e3, 110e3}, 4.0).pressure_pa == doctest::Approx(104e3));
@@ -20,7 +20,7 @@ TEST_CASE("the spans that the transducer is sold with give the pressures of thei
         doctest::Approx(100e3));  // behind a divider
 }
 
-TEST_CASE("an open wire and a saturated converter are named, at the very end of the span and beyond") {
+TEST_CASE("an open wire and a saturated converter are reported, at the ends of the span and beyond") {
   const Span span;
   for (const double volts : {-5.0, -0.001, 0.0, 0.001, 0.012}) {
     CHECK(std::string(pressure_of(span, volts).fault).find("below") != std::string::npos);
@@ -32,7 +32,7 @@ TEST_CASE("an open wire and a saturated converter are named, at the very end of 
   CHECK(pressure_of(span, 2.48).fault == nullptr);
 }
 
-TEST_CASE("no voltage whatever gives a pressure outside the span or none that is a number") {
+TEST_CASE("no voltage gives a pressure that is outside the span or not a number") {
   std::mt19937 random(9);
   std::normal_distribution<double> any(1.0, 3.0);
   constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -49,7 +49,7 @@ TEST_CASE("no voltage whatever gives a pressure outside the span or none that is
   for (const double volts : {kInf, -kInf, std::nan("")}) CHECK(pressure_of(span, volts).fault != nullptr);
 }
 
-TEST_CASE("a span that runs backwards or nowhere is refused") {
+TEST_CASE("a reversed or empty span is refused") {
   CHECK(broken_rule(Span{}) == nullptr);
   CHECK(broken_rule({2.5, 0.0, 60e3, 110e3}) != nullptr);
   CHECK(broken_rule({1.0, 1.0, 60e3, 110e3}) != nullptr);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Builds Velodyne packets byte by byte, from the manuals and without the project's format constants, so that
-// the tests of the decoder do not share its mistakes.
+// Builder of Velodyne packets from the manuals, without the project's format constants: independent of the
+// decoder.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads the recorded data of other projects that the decoder is held against. None of it is part of this
+// Readers of recorded data of other projects, the reference for the decoder. The data are not part of this
 // project.
 #pragma once
 

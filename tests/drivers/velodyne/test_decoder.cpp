@@ -68,7 +68,8 @@ struct Run {
 
 }  // namespace
 
-TEST_CASE("Each laser's point lies where manual and geometry put it, azimuth advanced to its own firing") {
+TEST_CASE(
+    "Each laser's point has the position of the manual's geometry, with the azimuth at its own firing") {
   PacketPlan plan;
   plan.first_azimuth_deg = 90.0;
   plan.step_deg = 0.4;
@@ -99,7 +100,7 @@ TEST_CASE("Each laser's point lies where manual and geometry put it, azimuth adv
   }
 }
 
-TEST_CASE("At every rotation up to 10 degrees a block, azimuths are the nearest hundredth, halves upwards") {
+TEST_CASE("At every rotation up to 10 degrees a block, azimuths round to the nearest hundredth, halves up") {
   struct Timing {
     velodyne::Model model;
     std::uint8_t product_id;
@@ -132,7 +133,7 @@ TEST_CASE("At every rotation up to 10 degrees a block, azimuths are the nearest 
   }
 }
 
-TEST_CASE("A packet that closes a scan is decoded the same when the caller's memory is gone by the next") {
+TEST_CASE("A packet that closes a scan needs the caller's memory only during its own call") {
   Run kept;
   Run reused;
   std::vector<std::uint8_t> buffer;
@@ -167,7 +168,7 @@ TEST_CASE("Azimuths interpolate through 360 degrees") {
   CHECK(azimuth_deg == doctest::Approx(-0.2 + 0.4 * (55.296 + 15 * 2.304) / 110.592).epsilon(0.05));
 }
 
-TEST_CASE("A revolution ends inside a packet and no point is lost at the seam") {
+TEST_CASE("A revolution that ends within a packet loses no point") {
   Run run;
   const int packets = 200;  // 265 ms: 955 degrees, passes 0 twice
   for (int n = 0; n < packets; ++n) {
@@ -205,7 +206,7 @@ TEST_CASE("Scan times follow the host's clock across the sensor's hourly wrap") 
   }
 }
 
-TEST_CASE("Dual return keeps both returns, and one where they are the same") {
+TEST_CASE("Dual return keeps both returns, or one when they are equal") {
   PacketPlan plan;
   plan.return_mode = 0x39;
   plan.distance = [](int block, int channel) {
@@ -237,7 +238,7 @@ TEST_CASE("HDL-32E: 32 lasers 1.152 us apart in a cycle of 46.08 us, lowest at -
   CHECK(run.done[0]->end_stamp_ns - run.done[0]->stamp_ns == 11 * 46'080 + 31 * 1'152);
 }
 
-TEST_CASE("Range limits and the masked sector drop exactly what they name") {
+TEST_CASE("Range limits and the masked sector drop exactly the returns inside them") {
   VelodyneConfig config;
   config.min_range_m = 1.0;
   config.max_range_m = 5.0;
@@ -258,7 +259,7 @@ TEST_CASE("Range limits and the masked sector drop exactly what they name") {
   CHECK(run.decoder.counters().returns == 12 * 8);
 }
 
-TEST_CASE("Broken packets are refused, each counted as what it is, and lose nothing around them") {
+TEST_CASE("Broken packets are refused and counted by kind, and do not affect other packets") {
   Run run;
   std::mt19937 random(7);
   for (int n = 0; n < 100; ++n) {
@@ -296,7 +297,7 @@ TEST_CASE("Broken packets are refused, each counted as what it is, and lose noth
         "packets of VLP-32C (product id 0x28), but VLP-16 is configured");
 }
 
-TEST_CASE("Swapped packets are decoded too, also across the seam of two revolutions, and are no loss") {
+TEST_CASE("Swapped packets are decoded, also across two revolutions, and do not count as lost") {
   Run run;
   std::vector<int> order(300);
   for (int n = 0; n < 300; ++n) {
@@ -320,7 +321,7 @@ TEST_CASE("Swapped packets are decoded too, also across the seam of two revoluti
   }
 }
 
-TEST_CASE("Lost packets are counted in the scan where they are missing") {
+TEST_CASE("Lost packets are counted in the scan that misses them") {
   Run run;
   for (int n = 0; n < 150; ++n) {
     if (n != 20 && n != 21 && n != 90) {
@@ -348,7 +349,7 @@ TEST_CASE("Five seconds without packets end the scan, and the next one has the r
   CHECK(std::abs(static_cast<double>(run.done[1]->stamp_ns - host_of(3'800))) < 1e6);
 }
 
-TEST_CASE("A sensor clock that is set in the middle costs one extra cut, no point and no time") {
+TEST_CASE("A step of the sensor's clock ends the scan, and loses no point and no time") {
   Run run;
   for (int n = 0; n < 300; ++n) {
     run.feed(build_packet(turning(n, 0.0, n < 120 ? 1e6 : 1.8e9)), host_of(n));
@@ -363,7 +364,7 @@ TEST_CASE("A sensor clock that is set in the middle costs one extra cut, no poin
   }
 }
 
-TEST_CASE("A sensor that stands still fills scans up to their capacity and the next ones, without loss") {
+TEST_CASE("A sensor that does not rotate fills scan after scan to capacity, without loss") {
   Run run;
   for (int n = 0; n < 400; ++n) {
     auto plan = turning(n);

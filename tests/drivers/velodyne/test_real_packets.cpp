@@ -43,7 +43,7 @@ std::vector<Scan*> decode_all(velodyne::VelodyneDecoder& decoder, const std::vec
   return scans;
 }
 
-/// Finds the nearest decoded point of the same laser through a grid of 5 cm.
+/// Nearest decoded point of the same laser, by a 5 cm grid.
 class Grid {
  public:
   void add(const ScanPoint& p) { cells_[key(p.x_m, p.y_m, p.z_m, 0, 0, 0)].push_back(p); }
@@ -101,15 +101,14 @@ TEST_CASE("Every ground-truth point of a real dual-return VLP-16 recording is de
   MESSAGE("median " << errors_m[errors_m.size() / 2] * 1e3 << " mm, largest " << errors_m.back() * 1e3
                     << " mm");
   CHECK(errors_m[errors_m.size() / 2] <= 1e-4);
-  // The decoder that made the file gives the last firing of each packet the azimuth of its block, without
-  // interpolation: one firing in six is off by up to 0.4 deg there, 7 mm/m. Our own interpolation goes on
-  // through it.
+  // The reference decoder does not interpolate the last firing of a packet: its azimuth is that of the block,
+  // so one firing in six is off by up to 0.4 deg, 7 mm/m. Ours interpolates it, too.
   CHECK(errors_m.back() <= 0.05);
   const auto exact = std::count_if(errors_m.begin(), errors_m.end(), [](double e) { return e <= 1e-3; });
   CHECK(static_cast<double>(exact) > 5.0 / 6.0 * static_cast<double>(truth.size()));
 }
 
-TEST_CASE("A real recording is cut into revolutions of the rotation time") {
+TEST_CASE("A real recording is divided into revolutions of the rotation time") {
   const auto folder = kData / "vlp16-dual-return";
   if (data_is_missing(folder)) {
     return;
@@ -154,7 +153,7 @@ TEST_CASE("HDL-32E packets are refused where a VLP-16 is configured and decoded 
   }
 }
 
-TEST_CASE("A real VLP-16 data packet gives points, a real position packet is told apart") {
+TEST_CASE("A real VLP-16 data packet gives points, a real position packet is recognised") {
   const auto folder = kData / "velodyne-small";
   if (data_is_missing(folder)) {
     return;

@@ -13,7 +13,7 @@
 #include <thread>
 
 #include "daemon/health.hpp"
-#include "drivers/datagram/udp.hpp"
+#include "drivers/clock/robot_clock.hpp"
 #include "drivers/dps310/sensor.hpp"
 #include "tests/drivers/dps310/chip_model.hpp"
 
@@ -148,7 +148,7 @@ TEST_CASE(
   rig.count(2'000ms);
   std::tie(level, words) = rig.health();
   CHECK(level == ipc::HealthLevel::kError);
-  CHECK(words == "DPS310 on /dev/i2c-1 at 0x77: the same bits again and again");
+  CHECK(words == "DPS310 on /dev/i2c-1 at 0x77: the result no longer changes");
 }
 
 TEST_CASE("a thread that waits five seconds before its next try stops at once") {

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "drivers/datagram/datagram.hpp"
-#include "drivers/datagram/udp.hpp"
+#include "drivers/udp/udp.hpp"
 #include "tests/integration/dds/listener.hpp"
 #include "tests/ipc/child_process.hpp"
 

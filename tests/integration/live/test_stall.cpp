@@ -17,7 +17,7 @@
 #include <thread>
 #include <vector>
 
-#include "drivers/datagram/udp.hpp"
+#include "drivers/clock/robot_clock.hpp"
 #include "ipc/shared_memory.hpp"
 #include "tests/integration/live/stopped_thread.hpp"
 #include "tests/ipc/child_process.hpp"

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "run/evaluation/evaluated_run.hpp"
+#include "run/recording/reference.hpp"
 #include "simulation/simulate.hpp"
 
 namespace isobar::test {

@@ -82,7 +82,7 @@ TEST_CASE("status.csv requires t_ns only, ignores unknown columns, and errors na
   CHECK(std::isnan(rows[0].scan_ms));
   CHECK(rows[1].scan_ms == 3.5);
   CHECK(std::isnan(rows[1].sd_z_m));
-  CHECK(message_of([] { parse_status_csv("scan_ms\n1\n", "s"); }) == "s:1: the column 't_ns' is missing");
+  CHECK(message_of([] { parse_status_csv("scan_ms\n1\n", "s"); }) == "s:1: column 't_ns' is missing");
   CHECK(message_of([] { parse_status_csv("t_ns,scan_ms\n1,fast\n", "s"); }) ==
         "s:2: scan_ms: 'fast' is not a number");
 }

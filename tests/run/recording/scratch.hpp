@@ -11,7 +11,7 @@
 
 namespace isobar::test {
 
-/// A folder of its own that goes away with the test.
+/// Temporary folder, removed at the end of the test.
 class Scratch {
  public:
   Scratch() {

@@ -26,7 +26,7 @@ std::string stamp(double seconds) {
   return std::to_string(kStart + static_cast<std::int64_t>(seconds * 1e9));
 }
 
-/// A barometer's file of these rows after the usual header.
+/// Reads a recording with this barometer file; returns its pressures.
 std::vector<double> read_pressures(const Scratch& scratch, const std::string& csv,
                                    std::unique_ptr<RecordingReader>& reader) {
   scratch.write("recording.toml", kBarometerOnly);
@@ -42,7 +42,7 @@ std::vector<double> read_pressures(const Scratch& scratch, const std::string& cs
 
 }  // namespace
 
-TEST_CASE("Folders and files that are not what they should be are named in the error") {
+TEST_CASE("Missing folders and files, and files of the wrong kind, are named in the error") {
   Scratch scratch;
   const auto fails = [](const std::filesystem::path& folder, const char* words) {
     CHECK_THROWS_WITH_AS(RecordingReader{folder}, doctest::Contains(words), DataError);
@@ -97,7 +97,7 @@ TEST_CASE("Every rule of recording.toml is checked with file, line and key; unkn
   CHECK(warnings[0].find("recording.toml:2: colour: unknown, ignored") != std::string::npos);
 }
 
-TEST_CASE("Columns stand in any order, unknown ones and line ends do not matter") {
+TEST_CASE("Columns may have any order; unknown columns and line ends do not matter") {
   Scratch scratch;
   std::unique_ptr<RecordingReader> reader;
   CHECK(read_pressures(scratch,
@@ -106,7 +106,7 @@ TEST_CASE("Columns stand in any order, unknown ones and line ends do not matter"
                        reader) == std::vector<double>{100'000, 100'001});
 }
 
-TEST_CASE("Broken rows are skipped and counted, the first one is quoted, and the good ones stay") {
+TEST_CASE("Broken rows are skipped and counted, the first one is quoted, and the good ones are kept") {
   Scratch scratch;
   std::unique_ptr<RecordingReader> reader;
   const std::string csv = "t_ns,pressure_pa,temperature_c\n" +                   //
@@ -133,7 +133,7 @@ TEST_CASE("Broken rows are skipped and counted, the first one is quoted, and the
             ->first_message.find("b.csv:9: pressure must lie") != std::string::npos);
 }
 
-TEST_CASE("Absurd stamps are left out, single or in a short run, at the start too, and later samples stay") {
+TEST_CASE("Absurd stamps are dropped, single or in a short run, also at the start; later samples are kept") {
   Scratch scratch;
   std::unique_ptr<RecordingReader> reader;
   const std::string head = "t_ns,pressure_pa,temperature_c\n";
@@ -160,7 +160,7 @@ TEST_CASE("Absurd stamps are left out, single or in a short run, at the start to
   CHECK(read_pressures(scratch, head + row("0", 90'000) + rows, reader) == all);
 }
 
-TEST_CASE("A gap, repeated stamps and overtaken rows keep every good row, in order") {
+TEST_CASE("Gaps, repeated stamps and reordered rows keep every good row, in order") {
   Scratch scratch;
   std::unique_ptr<RecordingReader> reader;
   const auto row = [](double t, int p) { return stamp(t) + "," + std::to_string(p) + ",20\n"; };
@@ -175,7 +175,7 @@ TEST_CASE("A gap, repeated stamps and overtaken rows keep every good row, in ord
   CHECK(count_of(*reader, "barometer: absurd stamps") == 0);
 }
 
-TEST_CASE("A slow stream loses no row to the watch for jumps") {
+TEST_CASE("A slow stream loses no row to the detection of clock steps") {
   Scratch scratch;
   std::unique_ptr<RecordingReader> reader;
   std::string csv = "t_ns,pressure_pa,temperature_c\n";
@@ -196,7 +196,7 @@ TEST_CASE("A clock that is set back in the middle loses no row") {
   CHECK(count_of(*reader, "barometer: clock set back") == 1);
 }
 
-TEST_CASE("The base station's clock is tied to the robot's by what the two files span") {
+TEST_CASE("The base station's clock offset follows from the spans of the two files") {
   const std::int64_t s = 1'000'000'000;
   const StampSpan robot{1'000 * s, 1'600 * s};
   CHECK(tie_base_clock(robot, StampSpan{1'000 * s, 1'600 * s}).offset_ns == 0);

@@ -136,7 +136,7 @@ TEST_CASE("Both byte orders and both time resolutions give the same payloads and
   }
 }
 
-TEST_CASE("VLAN tags, stacked ones too, and other link types are looked through") {
+TEST_CASE("VLAN tags (also stacked) and the other link types are decoded") {
   Scratch scratch;
   const Bytes payload = payload_of(512, 2);
   PcapText text({});
@@ -161,7 +161,7 @@ TEST_CASE("VLAN tags, stacked ones too, and other link types are looked through"
                        DataError);
 }
 
-TEST_CASE("IP fragments are put together in any order; a missing one is counted") {
+TEST_CASE("IP fragments are reassembled in any order; a missing one is counted") {
   Scratch scratch;
   const Bytes payload = payload_of(1'206, 3);
   auto fragments = fragments_of(frame_of(payload), 64);
@@ -188,7 +188,7 @@ TEST_CASE("IP fragments are put together in any order; a missing one is counted"
   CHECK(packets->extractor().incomplete() == 6);  // four are still waiting
 }
 
-TEST_CASE("Other ports and protocols, broken lengths and cut frames are counted apart") {
+TEST_CASE("Other ports and protocols, broken lengths and truncated frames have separate counters") {
   Scratch scratch;
   const Bytes payload = payload_of(1'206, 4);
   PcapText text({});
@@ -222,7 +222,7 @@ TEST_CASE("Other ports and protocols, broken lengths and cut frames are counted 
   CHECK(packets->tallies().malformed.first_message.find("frame 5") != std::string::npos);
 }
 
-TEST_CASE("A file that ends in the middle of a packet gives all packets before it and says so") {
+TEST_CASE("A file that ends within a packet gives all packets before it and reports the truncation") {
   Scratch scratch;
   PcapText text({});
   for (std::uint32_t i = 0; i < 5; ++i) {
@@ -255,7 +255,7 @@ TEST_CASE("No packet is dropped for its stamp; an absurd stamp becomes the last 
   CHECK(packets->tallies().absurd_stamp.count == 2);
 }
 
-TEST_CASE("The frames that are written carry valid checksums") {
+TEST_CASE("Written frames have valid checksums") {
   const Bytes frame = frame_of(payload_of(33, 5));
   // RFC 1071: the sum over a header with its checksum is all ones.
   CHECK(internet_checksum(internet_sum({frame.data() + 14, 20})) == 0);

@@ -70,7 +70,7 @@ TEST_CASE("A data logger's file with lines around the header, quotes and hPa is 
   CHECK(says(log, "pressure is in hPa (column 'P_Avg', as the line of units says)"));
 }
 
-TEST_CASE("Semicolons and tabs separate, too; columns are named by the person or known by their names") {
+TEST_CASE("Semicolons and tabs separate fields, too; columns are named by the user or recognised") {
   CHECK(log_of("Time;p_mbar;Temp\n1586000000;985.5;20\n").samples[0].pressure_pa ==
         doctest::Approx(98'550.0));
   CHECK(log_of("Time\tp_kPa\tTemp\n1586000000\t98.55\t20\n").samples[0].pressure_pa ==
@@ -84,7 +84,7 @@ TEST_CASE("Semicolons and tabs separate, too; columns are named by the person or
   CHECK(says(log, "the only unit in which its median, 985.5, is an air pressure"));
 }
 
-TEST_CASE("What could be two things is asked for, with all names") {
+TEST_CASE("An ambiguous column is an error that lists the candidates") {
   const std::string two = error_of("Time,1_P,2_P,Ta\n1586000000,985.5,986,20\n");
   CHECK(contains(two, "log.csv:1: '1_P', '2_P' could all be the pressure: name one of them"));
   CHECK(contains(error_of("Time,P,in_temp,out_temp\n1586000000,985.5,986,20\n"),
@@ -94,7 +94,7 @@ TEST_CASE("What could be two things is asked for, with all names") {
   CHECK(error_of("Time,P,in_temp,out_temp\n1586000000,985.5,986,20\n", reference).empty());
 }
 
-TEST_CASE("Missing columns, files without a header, without rows or without any line say so") {
+TEST_CASE("Missing columns, headers and rows, and empty files are named in the error") {
   PressureColumns named;
   named.pressure = "P_mbar";
   CHECK(contains(error_of("Time,Pressure,Ta\n1586000000,985.5,20\n", named),
@@ -106,7 +106,7 @@ TEST_CASE("Missing columns, files without a header, without rows or without any 
   CHECK_THROWS_AS(read_pressure_log("/nonexistent.csv", {}), DataError);
 }
 
-TEST_CASE("Rows that are no numbers, implausible, torn or older than the newest are left out and counted") {
+TEST_CASE("Rows that are not numbers, implausible, torn or older than the newest are skipped and counted") {
   const PressureLog log = log_of(
       "t_s,p_hPa,temp\n100,985,20\n101,nan,20\n102,,20\n103,985,20,7\n104,9850,20\n105,985,20\n105,985,20\n"
       "99,985,20\nnan,985,20\n106,985,20\n");
@@ -119,10 +119,11 @@ TEST_CASE("Rows that are no numbers, implausible, torn or older than the newest 
   CHECK(contains(error_of("t_s,p_hPa,temp\n1,985,293\n2,985,294\n"), "temperature must lie within"));
 }
 
-TEST_CASE("Units that contradict the values, each other, or nothing at all are errors, never a guess") {
-  CHECK(contains(error_of("t_s,pressure_pa\n1,985\n"),
-                 "pressure is in Pa, as the column's name says, but its median, 985 Pa, is no air pressure"));
-  CHECK(contains(error_of("t_s,p\n1,29.9\n"), "the unit of pressure cannot be told: its median, 29.9"));
+TEST_CASE("Units that contradict the values or each other, and unknown units, are errors, never a guess") {
+  CHECK(contains(
+      error_of("t_s,pressure_pa\n1,985\n"),
+      "pressure is in Pa, as the column's name says, but its median, 985 Pa, is not an air pressure"));
+  CHECK(contains(error_of("t_s,p\n1,29.9\n"), "the unit of pressure is unknown: its median, 29.9"));
   CHECK(contains(error_of("t_s,p_hPa_kPa\n1,98\n"), "more than one unit"));
   PressureColumns chosen;
   chosen.pressure_unit = "kPa";
@@ -134,7 +135,7 @@ TEST_CASE("Units that contradict the values, each other, or nothing at all are e
   CHECK_FALSE(unit_of_word("bar").has_value());
 }
 
-TEST_CASE("Time is a date, or a number whose unit is named or makes it one of this century") {
+TEST_CASE("Time is a date, or a number whose unit is named or gives a date of this century") {
   const auto stamp = [](const std::string& time, const std::string& name = "time") {
     return log_of(name + ",p\n" + time + ",985\n").samples[0].stamp_ns;
   };
@@ -151,7 +152,7 @@ TEST_CASE("Time is a date, or a number whose unit is named or makes it one of th
   CHECK_THROWS_AS(log_of("time,p\n12.5,985\n", named), UsageError);
 }
 
-TEST_CASE("Dates are those that exist, with their zone") {
+TEST_CASE("Only existing dates are accepted, with their zone") {
   const auto ns = [](const char* text) {
     std::int64_t stamp_ns = -1;
     return parse_date(text, stamp_ns) ? stamp_ns : -1;

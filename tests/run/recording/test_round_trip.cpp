@@ -9,6 +9,8 @@
 #include "core/errors.hpp"
 #include "run/recording/recording_reader.hpp"
 #include "run/recording/recording_writer.hpp"
+#include "run/recording/reference.hpp"
+#include "run/text/segments.hpp"
 #include "tests/run/recording/scratch.hpp"
 
 namespace isobar::test::test_round_trip {
@@ -33,7 +35,7 @@ Manifest full_manifest() {
 
 }  // namespace
 
-TEST_CASE("What is written is read back bit for bit, merged in order of time") {
+TEST_CASE("A written recording reads back bit for bit, merged in order of time") {
   Scratch scratch;
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise;
@@ -137,20 +139,20 @@ TEST_CASE("Trajectories and segments survive writing and reading") {
   CHECK(poses[0].stamp_ns == kStart + 7);
   CHECK(poses[0].T_map_base.translation() == pose.translation());
   CHECK((poses[0].T_map_base.linear() - pose.linear()).norm() < 1e-14);  // through a quaternion and back
-  const auto segments = read_segments(scratch.path() / "segments.csv");
+  const auto segments = text::read_segments(text::TextLines(scratch.path() / "segments.csv"));
   REQUIRE(segments.size() == 1);
   CHECK(segments[0].start_ns == kStart);
   CHECK(segments[0].end_ns == kStart + 10);
   CHECK(segments[0].label == "stairs");
 }
 
-TEST_CASE("A recording is not written over another one") {
+TEST_CASE("A recording never overwrites another one") {
   Scratch scratch;
   RecordingWriter(scratch.path(), Manifest{}).close();
   CHECK_THROWS_AS(RecordingWriter(scratch.path(), Manifest{}), DataError);
 }
 
-TEST_CASE("A trajectory with a broken row says which row and why") {
+TEST_CASE("The error of a broken trajectory names row and rule") {
   Scratch scratch;
   for (const char* row : {"1.0 0 0 0 0 0 0", "1.0 0 0 0 0 0 0 1 5", "x 0 0 0 0 0 0 1", "1 nan 0 0 0 0 0 1",
                           "1 0 0 0 0 0 0 0"}) {

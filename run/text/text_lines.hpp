@@ -10,28 +10,36 @@
 #include <string_view>
 #include <vector>
 
-namespace isobar::recording {
+namespace isobar::text {
 
-/// Reads a text file line by line in bounded memory. Ends of line may be \n or \r\n, the last may lack, a
-/// byte order mark is skipped. A line longer than kMaxLineBytes comes as an empty line with too_long() set.
+/// Line reader in bounded memory. A line ends with \n or \r\n (optional on the last one); a UTF-8 byte-order
+/// mark is skipped. A line longer than kMaxLineBytes reads as an empty line with too_long() set.
 class TextLines {
  public:
   static constexpr std::size_t kMaxLineBytes = 4096;
 
-  /// Throws DataError when the file is missing, a folder or cannot be read.
+  /// Opens a file.
+  /// @throws DataError when the file is missing, a folder or cannot be read
   explicit TextLines(const std::filesystem::path& file);
+  /// Reads a text that is loaded already.
+  /// @param name what errors call the text
+  TextLines(std::string_view text, std::string name);
 
-  /// The next line without its end; valid until the next call.
+  /// The next line without its line end, valid until the next call; false at the end of the text.
   bool next(std::string_view& line);
 
-  /// Goes to the first line that begins in the last `bytes` of the file, unless that is behind already. Line
-  /// numbers then count from there.
+  /// Skips ahead to the first line that begins in the last `bytes` of the file; does nothing when already
+  /// past it. Line numbers then count from there.
   void skip_to_last(std::uint64_t bytes);
 
   [[nodiscard]] bool too_long() const { return too_long_; }
+  /// "name:line: rule" for a line that is too long.
+  [[nodiscard]] std::string too_long_message() const {
+    return place() + "the line is longer than " + std::to_string(kMaxLineBytes) + " bytes";
+  }
   [[nodiscard]] std::size_t line_number() const { return line_number_; }
-  [[nodiscard]] const std::string& file_name() const { return name_; }
-  /// "file:line: "
+  [[nodiscard]] const std::string& name() const { return name_; }
+  /// "name:line: " of the current line.
   [[nodiscard]] std::string place() const { return name_ + ":" + std::to_string(line_number_) + ": "; }
   [[nodiscard]] std::uint64_t bytes_read() const { return bytes_read_; }
 
@@ -52,4 +60,4 @@ class TextLines {
   bool at_end_ = false;
 };
 
-}  // namespace isobar::recording
+}  // namespace isobar::text

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "core/errors.hpp"
-#include "drivers/datagram/udp.hpp"
+#include "drivers/clock/robot_clock.hpp"
+#include "drivers/udp/udp.hpp"
 
 namespace isobar::test::test_udp {
 
@@ -44,18 +45,19 @@ TEST_CASE("stop() from another thread ends an endless wait") {
   CHECK(receiver.receive(datagram, -1) == UdpReceiver::Status::kStopped);
 }
 
-TEST_CASE("A socket that cannot be had is explained with address and port") {
+TEST_CASE("A socket that cannot be opened is reported with address, port and reason") {
   UdpReceiver first("127.0.0.1", 0);
   const std::string in_use = "127.0.0.1:" + std::to_string(first.port()) + ": the port is in use";
   CHECK_THROWS_WITH_AS(UdpReceiver("127.0.0.1", first.port()), doctest::Contains(in_use.c_str()),
                        ServiceError);
   CHECK_THROWS_WITH_AS(UdpReceiver("203.0.113.7", 2'368),
                        doctest::Contains("203.0.113.7:2368: no network interface"), ServiceError);
-  CHECK_THROWS_WITH_AS(UdpReceiver("localhost", 2'368), doctest::Contains("no IPv4 address"), ServiceError);
+  CHECK_THROWS_WITH_AS(UdpReceiver("localhost", 2'368), doctest::Contains("is not an IPv4 address"),
+                       ServiceError);
   CHECK_THROWS_AS(UdpSender("300.1.1.1", 1), ServiceError);
 }
 
-TEST_CASE("Sending where nobody listens is no failure") {
+TEST_CASE("Sending without a receiver is not an error") {
   UdpSender sender("127.0.0.1", 9);
   const std::vector<std::uint8_t> payload(10);
   for (int i = 0; i < 5; ++i) {

@@ -6,9 +6,9 @@
 #include "core/errors.hpp"
 #include "core/statistics/distribution.hpp"
 #include "run/evaluation/segments.hpp"
-#include "run/evaluation/text_table.hpp"
+#include "run/text/segments.hpp"
 
-namespace isobar::test::test_text_table {
+namespace isobar::test::test_segments {
 
 using namespace isobar::evaluation;
 using doctest::Approx;
@@ -17,7 +17,7 @@ namespace {
 
 std::string message_of(const std::string& text) {
   try {
-    parse_segments_csv(text, "s.csv");
+    text::read_segments(text::TextLines(text, "s.csv"));
   } catch (const isobar::DataError& error) {
     return error.what();
   }
@@ -26,10 +26,10 @@ std::string message_of(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("segments are read by column name in any order, with unknown columns, blanks, CRLF and a BOM") {
-  const std::vector<Segment> s = parse_segments_csv(
+TEST_CASE("Segments are read by column name in any order, with unknown columns, blanks, CRLF and a BOM") {
+  const std::vector<Segment> s = text::read_segments(text::TextLines(
       "\xEF\xBB\xBFlabel, t_end_ns ,floor,t_start_ns\r\nflat,20,3,10\r\n\r\nstairs , 30,,20\r\nflat,9,1,5",
-      "s.csv");
+      "s.csv"));
   REQUIRE(s.size() == 3);
   CHECK(s[0].start_ns == 10);
   CHECK(s[0].end_ns == 20);
@@ -39,11 +39,11 @@ TEST_CASE("segments are read by column name in any order, with unknown columns, 
   CHECK(flat[0].start_ns == 5);
 }
 
-TEST_CASE("a broken segments file is refused with file, line, column and rule") {
-  CHECK(message_of("") == "s.csv:1: has no header line");
-  CHECK(message_of("t_start_ns,label\n") == "s.csv:1: the column 't_end_ns' is missing");
-  CHECK(message_of("label,label\n") == "s.csv:1: the column 'label' stands twice");
-  CHECK(message_of("t_start_ns,t_end_ns,label\n1,2\n") == "s.csv:2: 2 cells under 3 columns");
+TEST_CASE("A broken segments file is refused with file, line, column and rule") {
+  CHECK(message_of("") == "s.csv:1: is empty, must start with a line that names the columns");
+  CHECK(message_of("t_start_ns,label\n") == "s.csv:1: column 't_end_ns' is missing");
+  CHECK(message_of("t_start_ns,t_end_ns,label,label\n") == "s.csv:1: column 'label' is named twice");
+  CHECK(message_of("t_start_ns,t_end_ns,label\n1,2\n") == "s.csv:2: has 2 fields, the header names 3");
   CHECK(message_of("t_start_ns,t_end_ns,label\n1.5,2,flat\n") ==
         "s.csv:2: t_start_ns: '1.5' is not a whole number");
   CHECK(message_of("t_start_ns,t_end_ns,label\n1,99999999999999999999,flat\n") ==
@@ -52,7 +52,7 @@ TEST_CASE("a broken segments file is refused with file, line, column and rule") 
   CHECK(message_of("t_start_ns,t_end_ns,label\n1,2,\n") == "s.csv:2: label: is empty");
 }
 
-TEST_CASE("quantiles of 0 … 100 are the percentages themselves") {
+TEST_CASE("Quantiles of 0 … 100 are the percentages themselves") {
   std::vector<double> values;
   for (int i = 100; i >= 0; --i) values.push_back(i);
   const Distribution d = summarize(values);
@@ -69,4 +69,4 @@ TEST_CASE("quantiles of 0 … 100 are the percentages themselves") {
   CHECK(std::isnan(summarize({}).median));
 }
 
-}  // namespace isobar::test::test_text_table
+}  // namespace isobar::test::test_segments

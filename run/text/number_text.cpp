@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "run/recording/number_text.hpp"
+#include "run/text/number_text.hpp"
 
 #include <cmath>
 
-namespace isobar::recording {
+namespace isobar::text {
 namespace {
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 /// Whole seconds beyond this would overflow nanoseconds.
 constexpr std::int64_t kMaxSeconds = 9'000'000'000;
 
-/// from_chars knows no plus sign.
+/// std::from_chars accepts no plus sign.
 std::string_view without_plus(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') {
     text.remove_prefix(1);
@@ -80,4 +80,4 @@ bool parse_seconds(std::string_view text, std::int64_t& value_ns) {
   return true;
 }
 
-}  // namespace isobar::recording
+}  // namespace isobar::text

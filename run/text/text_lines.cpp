@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "run/recording/text_lines.hpp"
+#include "run/text/text_lines.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "core/errors.hpp"
 
-namespace isobar::recording {
+namespace isobar::text {
 namespace {
 
 constexpr std::size_t kBufferBytes = 16 * TextLines::kMaxLineBytes;
@@ -24,6 +26,11 @@ TextLines::TextLines(const std::filesystem::path& file) : name_(file.string()), 
   }
 }
 
+TextLines::TextLines(std::string_view text, std::string name)
+    : name_(std::move(name)), buffer_(text.size() + 1), end_(text.size()), at_end_(true) {
+  std::copy(text.begin(), text.end(), buffer_.begin());
+}
+
 bool TextLines::refill() {
   std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
   end_ -= begin_;
@@ -36,6 +43,9 @@ bool TextLines::refill() {
 }
 
 void TextLines::skip_to_last(std::uint64_t bytes) {
+  if (file_ == nullptr) {
+    return;
+  }
   std::error_code error;
   const std::uint64_t size = std::filesystem::file_size(name_, error);
   const std::uint64_t position = bytes_read_ - (end_ - begin_);
@@ -59,7 +69,7 @@ bool TextLines::next(std::string_view& line) {
     if (found == nullptr && !at_end_) {
       if (end_ - begin_ > kMaxLineBytes) {
         too_long_ = true;
-        begin_ = end_;  // what was read of the line is of no use
+        begin_ = end_;  // drop the part read so far
       }
       const std::size_t unread = end_ - begin_;
       refill();
@@ -89,4 +99,4 @@ bool TextLines::next(std::string_view& line) {
   return true;
 }
 
-}  // namespace isobar::recording
+}  // namespace isobar::text

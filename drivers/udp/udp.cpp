@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/datagram/udp.hpp"
+#include "drivers/udp/udp.hpp"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -11,30 +11,15 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <ctime>
 
 #include "core/errors.hpp"
+#include "drivers/clock/robot_clock.hpp"
 
 namespace isobar {
 namespace {
 
-constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-/// 3 s of a VLP-16's packets: the kernel caps it at net.core.rmem_max.
+/// Requested socket buffer, 3 s of a VLP-16's packets; the kernel caps it at net.core.rmem_max.
 constexpr int kReceiveBufferBytes = 4 * 1024 * 1024;
-/// A stamp of the kernel that lies farther from now than this met a wall clock that was just set [ns].
-constexpr std::int64_t kMaxAgeNs = kNsPerSecond;
-
-std::int64_t read_clock(clockid_t clock) {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return now.tv_sec * kNsPerSecond + now.tv_nsec;
-}
-
-std::int64_t wall_offset_at_start() {
-  static const std::int64_t offset_ns = read_clock(CLOCK_REALTIME) - read_clock(CLOCK_MONOTONIC);
-  return offset_ns;
-}
-
 std::string place(const std::string& address, std::uint16_t port) {
   return "UDP " + address + ":" + std::to_string(port);
 }
@@ -44,7 +29,7 @@ sockaddr_in parse_address(const std::string& address, std::uint16_t port) {
   result.sin_family = AF_INET;
   result.sin_port = htons(port);
   if (inet_pton(AF_INET, address.c_str(), &result.sin_addr) != 1) {
-    throw ServiceError(place(address, port) + ": is no IPv4 address");
+    throw ServiceError(place(address, port) + ": is not an IPv4 address");
   }
   return result;
 }
@@ -57,7 +42,7 @@ sockaddr_in parse_address(const std::string& address, std::uint16_t port) {
     case EADDRNOTAVAIL:
       throw ServiceError(where + "no network interface of this machine has that address");
     case EACCES:
-      throw ServiceError(where + "ports below 1024 need more rights");
+      throw ServiceError(where + "ports below 1024 need the capability CAP_NET_BIND_SERVICE");
     default:
       throw ServiceError(where + "cannot be opened: " + std::strerror(error));
   }
@@ -67,7 +52,7 @@ void set_option(int socket, int option, int value) {
   setsockopt(socket, SOL_SOCKET, option, &value, sizeof value);
 }
 
-/// What the kernel says beside the bytes.
+/// Ancillary data of a datagram: receive time and drop counter.
 struct Ancillary {
   std::int64_t realtime_ns = 0;
   std::uint32_t overflow = 0;
@@ -83,7 +68,7 @@ Ancillary read_ancillary(msghdr& message) {
     if (entry->cmsg_type == SCM_TIMESTAMPNS) {
       timespec stamp{};
       std::memcpy(&stamp, CMSG_DATA(entry), sizeof stamp);
-      result.realtime_ns = stamp.tv_sec * kNsPerSecond + stamp.tv_nsec;
+      result.realtime_ns = stamp.tv_sec * 1'000'000'000 + stamp.tv_nsec;
     } else if (entry->cmsg_type == SO_RXQ_OVFL) {
       std::memcpy(&result.overflow, CMSG_DATA(entry), sizeof result.overflow);
       result.has_overflow = true;
@@ -94,19 +79,10 @@ Ancillary read_ancillary(msghdr& message) {
 
 }  // namespace
 
-std::int64_t RobotClock::now_ns() { return read_clock(CLOCK_MONOTONIC) + wall_offset_at_start(); }
-
-std::int64_t RobotClock::offset_ns() { return wall_offset_at_start(); }
-
-std::int64_t RobotClock::from_realtime_ns(std::int64_t realtime_ns) {
-  const std::int64_t age_ns = read_clock(CLOCK_REALTIME) - realtime_ns;
-  const bool believable = age_ns >= 0 && age_ns <= kMaxAgeNs;
-  return now_ns() - (believable ? age_ns : 0);
-}
-
 UdpReceiver::UdpReceiver(const std::string& address, std::uint16_t port) : buffer_(65'536) {
   const sockaddr_in where = parse_address(address, port);
-  RobotClock::now_ns();  // ties the clocks now, not with the first datagram
+  [[maybe_unused]] const std::int64_t fixed_ns =
+      RobotClock::offset_ns();  // fixed now, not by the first datagram
   socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   stop_event_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (socket_ < 0 || stop_event_ < 0 ||
@@ -171,13 +147,13 @@ UdpReceiver::Status UdpReceiver::receive(ReceivedDatagram& datagram, int timeout
 
 void UdpReceiver::pause(int duration_ms) noexcept {
   pollfd wait{stop_event_, POLLIN, 0};
-  // Interrupted by a signal the pause is shorter, which harms nobody.
+  // A signal may shorten the pause: harmless.
   [[maybe_unused]] const int ready = poll(&wait, 1, duration_ms);
 }
 
 void UdpReceiver::stop() noexcept {
   const std::uint64_t one = 1;
-  // Fails only when the event is already set many times over: it is set, then.
+  // Fails only when the event's counter is full, and then the event is set.
   [[maybe_unused]] const ssize_t written = write(stop_event_, &one, sizeof one);
 }
 
@@ -199,7 +175,7 @@ UdpSender::~UdpSender() { close(socket_); }
 bool UdpSender::send(std::span<const std::uint8_t> payload) noexcept {
   const auto wanted = static_cast<ssize_t>(payload.size());
   ssize_t sent = ::send(socket_, payload.data(), payload.size(), MSG_NOSIGNAL);
-  if (sent < 0 && errno == ECONNREFUSED) {  // an ICMP answer to an earlier datagram: nobody listened then
+  if (sent < 0 && errno == ECONNREFUSED) {  // ICMP "port unreachable" for an earlier datagram
     sent = ::send(socket_, payload.data(), payload.size(), MSG_NOSIGNAL);
     return sent == wanted || errno == ECONNREFUSED;
   }

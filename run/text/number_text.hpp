@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers as text, without locale and without loss.
+// Conversion between numbers and text: independent of the locale, lossless.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace isobar::recording {
+namespace isobar::text {
 
 /// Longest text of a double or an int64, sign and exponent included.
 inline constexpr std::size_t kNumberTextBytes = 32;
@@ -21,17 +21,17 @@ std::string number_text(Number value) {
   return {text.data(), end};
 }
 
-/// Without blanks and quotation marks around it.
+/// `text` without the blanks and quotation marks around it.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 
-/// Reads a number that fills the whole text. NaN and infinities are numbers here. False for anything else.
+/// Parses a text that is one number and nothing else; "nan" and "inf" count. False for anything else.
 [[nodiscard]] bool parse_number(std::string_view text, double& value);
 
-/// Reads a count of nanoseconds: an integer, or a number in decimal or exponent notation that is whole.
+/// Parses a whole number of 64 bits, also in decimal or exponent notation ("2e9"). False for anything else.
 [[nodiscard]] bool parse_number(std::string_view text, std::int64_t& value);
 
-/// Reads seconds with any number of decimals as nanoseconds, without the rounding of a double. False when it
-/// is no plain decimal number or does not fit.
+/// Parses seconds as nanoseconds digit by digit: exact to 1 ns, where a double of 1.7e9 s holds 240 ns. False
+/// for exponent notation and for numbers that do not fit 64 bits.
 [[nodiscard]] bool parse_seconds(std::string_view text, std::int64_t& value_ns);
 
-}  // namespace isobar::recording
+}  // namespace isobar::text
