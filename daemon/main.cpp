@@ -29,8 +29,8 @@
 #include "daemon/run_files.hpp"
 #include "daemon/sample_thread.hpp"
 #include "daemon/scheduling.hpp"
-#include "drivers/clock/robot_clock.hpp"
 #include "daemon/stage_settings.hpp"
+#include "drivers/clock/robot_clock.hpp"
 
 namespace isobar {
 

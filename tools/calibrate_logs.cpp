@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <system_error>
 #include <utility>
 
 #include "core/calibration/calibration_pairs.hpp"

@@ -6,7 +6,6 @@
 #include "core/pose_carrying.hpp"
 #include "core/stamp.hpp"
 
-
 namespace isobar {
 
 namespace {

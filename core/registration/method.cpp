@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/registration/method.hpp"
 
+#include <initializer_list>
+
 namespace isobar {
 
 namespace {

@@ -39,7 +39,7 @@ class IsobardClock {
 
 /// Counts of received messages, for the diagnostics.
 struct ReceivedCounts {
-  std::uint64_t refused = 0;  ///< implausible
+  std::uint64_t refused = 0;    ///< implausible
   std::uint64_t too_early = 0;  ///< no clock of isobard yet, or no free chunk in shared memory
   /// Base stations with readers, [0 … station_count-1].
   std::array<BaseStationStatus, 2> stations;

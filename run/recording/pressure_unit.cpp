@@ -47,8 +47,9 @@ UnitFinding checked(PressureUnit unit, const std::string& reason, const UnitClue
   if (fits(clues.median, unit)) {
     return {unit, reason};
   }
-  throw DataError(place + "pressure is in " + unit_name(unit) + ", " + reason + ", but its median, " +
-                  short_text(clues.median) + " " + unit_name(unit) + ", is not an air pressure");
+  const std::string name(kPressureUnitNames.name(unit));
+  throw DataError(place + "pressure is in " + name + ", " + reason + ", but its median, " +
+                  short_text(clues.median) + " " + name + ", is not an air pressure");
 }
 
 }  // namespace

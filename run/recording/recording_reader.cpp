@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <system_error>
 
 #include "core/plausibility.hpp"
 #include "run/recording/base_clock.hpp"

@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <stdexcept>
+#include <system_error>
 #include <vector>
 
 #include "core/errors.hpp"

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "core/map/plane_cell.hpp"
 #include "tests/core/map/point_moments.hpp"

@@ -2,6 +2,7 @@
 // Disturbances of the pressure without motion: faults, ventilation, wind, weather.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "tests/core/prior/simulated_robot.hpp"

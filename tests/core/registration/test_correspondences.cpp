@@ -16,7 +16,7 @@ using namespace isobar;  // NOLINT(google-build-using-namespace)
 // A map that finds each point on a plane through itself and records which points had a match before.
 class NotingMap final : public MapSnapshot {
  public:
-  NotingMap() : MapSnapshot(0.25F, 1, 1) {}
+  NotingMap() : MapSnapshot(0.25F, 1) {}
 
   void match(const MatchQuery& /*query*/, std::span<const Eigen::Vector3f> p_local,
              std::span<PlaneMatch> matches) const override {

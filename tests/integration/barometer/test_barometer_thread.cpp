@@ -11,6 +11,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <tuple>
 
 #include "daemon/health.hpp"
 #include "drivers/clock/robot_clock.hpp"
