@@ -4,14 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/plausibility.hpp"
 #include "core/stamp.hpp"
 
 namespace isobar {
 namespace {
 
-// Accepted readings; anything outside is a fault of the thermometer.
-constexpr double kLowestPlausibleC = -60.0;
-constexpr double kHighestPlausibleC = 100.0;
 // A thermometer silent for longer is ignored: its last reading may be from another place.
 constexpr double kForgetSensorS = 60.0;
 
@@ -46,9 +44,9 @@ void AirTemperatureTracker::follow(double lowest_c, double dt_s) {
 
 void AirTemperatureTracker::add(std::size_t sensor, std::int64_t stamp_ns, double temperature_c) {
   if (config_.mode == AirTemperatureMode::kFixed || sensor >= kSensors) return;
-  if (!(temperature_c >= kLowestPlausibleC && temperature_c <= kHighestPlausibleC)) return;
+  if (!kPlausibleTemperatureC.holds(temperature_c)) return;
   smooth(thermometers_[sensor], stamp_ns, temperature_c);
-  double lowest_c = kHighestPlausibleC;
+  double lowest_c = kPlausibleTemperatureC.highest;
   for (const Thermometer& thermometer : thermometers_) {
     const double age_s = seconds_between(thermometer.stamp_ns, stamp_ns);
     if (thermometer.started && age_s < kForgetSensorS) lowest_c = std::min(lowest_c, thermometer.smooth_c);

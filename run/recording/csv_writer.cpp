@@ -20,11 +20,21 @@ void TextFile::close() {
   if (file_ == nullptr) {
     return;
   }
-  const bool failed = std::fflush(file_.get()) != 0 || std::ferror(file_.get()) != 0;
-  const std::string reason = std::strerror(errno);
+  if (std::fflush(file_.get()) != 0 && error_ == 0) {
+    error_ = errno;
+  }
   file_.reset();
-  if (failed) {
-    throw DataError(name_ + ": could not be written completely: " + reason);
+  if (error_ != 0) {
+    throw DataError(name_ + ": could not be written completely: " + std::strerror(error_));
+  }
+}
+
+void TextFile::write(std::string_view text) {
+  if (file_ == nullptr) {
+    throw DataError(name_ + ": cannot be written: it is closed");
+  }
+  if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size() && error_ == 0) {
+    error_ = errno;
   }
 }
 

@@ -17,7 +17,9 @@ class TextFile {
   /// Creates or truncates the file.
   /// @throws DataError when it cannot be opened
   explicit TextFile(const std::filesystem::path& file);
-  void write(std::string_view text) { std::fwrite(text.data(), 1, text.size(), file_.get()); }
+  /// A failure is kept for close().
+  /// @throws DataError when the file is closed
+  void write(std::string_view text);
   /// Flushes and closes.
   /// @throws DataError when any write failed
   void close();
@@ -28,6 +30,7 @@ class TextFile {
   };
   std::string name_;
   std::unique_ptr<std::FILE, Closer> file_;
+  int error_ = 0;  // errno of the first failed write
 };
 
 /// CSV row of numbers, each in the shortest text that reads back as the same bits.

@@ -100,6 +100,9 @@ bool parse_date(std::string_view text, std::int64_t& stamp_ns) {
       !take_zone(text, zone_minutes) || !text.empty() || hour > 24 || minute > 59) {
     return false;
   }
+  if (hour == 24 && (minute > 0 || seconds_ns > 0)) {
+    return false;  // ISO 8601: 24:00 is the end of a day, and nothing follows it
+  }
   const std::int64_t minutes = (days * 24 + hour) * 60 + minute - zone_minutes;
   stamp_ns = minutes * 60 * 1'000'000'000 + seconds_ns;
   return true;

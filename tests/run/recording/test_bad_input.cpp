@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
 
+#include <cerrno>
+#include <cstring>
 #include <string>
 #include <vector>
 
 #include "core/errors.hpp"
 #include "run/recording/base_clock.hpp"
+#include "run/recording/csv_writer.hpp"
 #include "run/recording/recording_reader.hpp"
 #include "run/recording/recording_writer.hpp"
 #include "tests/run/recording/scratch.hpp"
@@ -235,6 +238,20 @@ TEST_CASE("Samples of an offset base station arrive on the robot's clock") {
     }
   }
   CHECK(base == 500);
+}
+
+TEST_CASE("a text file on a full disk names the file and the reason, and nothing is written after its end") {
+  recording::TextFile full("/dev/full");
+  full.write(std::string(100'000, 'x'));  // more than the buffer: the write itself fails, not only the flush
+  errno = 0;
+  std::string message;
+  try {
+    full.close();
+  } catch (const DataError& error) {
+    message = error.what();
+  }
+  CHECK(message == "/dev/full: could not be written completely: " + std::string(std::strerror(ENOSPC)));
+  CHECK_THROWS_AS(full.write("y"), DataError);
 }
 
 }  // namespace isobar::test::test_bad_input
