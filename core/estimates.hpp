@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Messages between the stages of the pipeline.
 //
-// Frames (REP-103, REP-105): base_link is the robot; odom starts with dead reckoning, map with the map. All
-// three are gravity-aligned at the start, z up. The height of base_link is 0 at the start.
+// Frames (REP-103, REP-105): base_link is the robot; odom is the frame of dead reckoning, map that of the
+// registered poses. Both are gravity-aligned at the start, z up. The height of base_link is 0 at the start.
+// T_odom_base here is the raw dead reckoning; the odom frame of Odometry (registration/pose_propagator.hpp)
+// follows the registration and is another one.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,7 +25,7 @@ enum class HeightSource : std::uint8_t {
   kNone,             ///< never had a barometer
 };
 
-/// Output of the prior stage at one IMU sample: all that is known before the scan is used.
+/// Output of the prior stage at one IMU sample: the estimate without the lidar.
 struct Prior {
   std::int64_t stamp_ns = 0;
 
@@ -44,7 +46,7 @@ struct Prior {
   double velocity_variance_m2_s2 = 0.0;    ///< of each axis of v_base_m_s
 
   bool attitude_valid = false;  ///< aligned to gravity
-  bool velocity_valid = false;  ///< wheels present and fresh; else v_base_m_s is zero and xy do not move
+  bool velocity_valid = false;  ///< wheels present and fresh; else v_base_m_s is zero and x, y are constant
   bool standing_still = false;  ///< gyro, accelerometer and wheels agree on standstill
 };
 
@@ -68,12 +70,12 @@ enum class PoseMode : std::uint8_t {
 /// Pose of base_link at the end of a scan (or between scans, with mode kPriorOnly).
 struct PoseEstimate {
   std::int64_t stamp_ns = 0;
-  std::uint32_t sequence = 0;  ///< sequence of the scan; between scans of the last one
+  std::uint32_t sequence = 0;  ///< of the scan; between scans, of the last one
   PoseMode mode = PoseMode::kInitializing;
   Method method = Method::k3Dof;            ///< configured method
   Method effective_method = Method::k3Dof;  ///< method that ran: 3-DOF without any height runs as 4-DOF
   HeightSource height_source = HeightSource::kNone;
-  bool degenerate = false;  ///< the scan did not constrain every free direction; there the prior counts
+  bool degenerate = false;  ///< the scan leaves a free direction unconstrained, which then follows the prior
 
   Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_map_odom = Eigen::Isometry3d::Identity();  ///< T_map_base = T_map_odom * T_odom_base

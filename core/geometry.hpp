@@ -18,7 +18,7 @@ inline Eigen::Matrix3d rotation_from_rpy_deg(const Eigen::Vector3d& rpy_deg) {
   return rotation_from_rpy(rpy_deg * kRadPerDeg).toRotationMatrix();
 }
 
-/// Where a sensor sits on the robot.
+/// Mounting position and rotation of a sensor on the robot.
 struct Mount {
   Eigen::Vector3d xyz_m = Eigen::Vector3d::Zero();  ///< origin of the sensor in base_link
   Eigen::Vector3d rpy_deg =

@@ -20,8 +20,8 @@ struct PlausibleRange {
   [[nodiscard]] constexpr bool holds(double value) const { return value >= lowest && value <= highest; }
 };
 
-/// Absolute pressure [Pa]: 10 kPa is 16 km above the sea, 120 kPa is 1.4 km below it (deepest mines end at 4
-/// km, but are ventilated); barometers for robots measure 30 … 120 kPa.
+/// Absolute pressure [Pa]: 10 kPa is 16 km above the sea, 120 kPa is 1.4 km below it; barometers for robots
+/// measure 30 … 120 kPa. The deepest mines, 4 km, are outside.
 inline constexpr PlausibleRange kPlausiblePressurePa{10e3, 120e3};
 /// Air pressure where robots drive [Pa]: from 9 km above the sea to a mine 1.1 km below it. Narrower than
 /// kPlausiblePressurePa: default of the altimeter's limits, and narrow enough to tell Pa, hPa and kPa apart.

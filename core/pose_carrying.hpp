@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Dead reckoning: how a pose is carried on. One step from a twist, and a known pose moved by the steps since.
+// Dead reckoning: one step from a twist, and propagation of a known pose by the steps since.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,15 +12,15 @@ namespace isobar {
 /// Displacement in the world [m] of a body that moves by `step_base_m` (its own axes) while it turns at a
 /// constant rate. Midpoint rule: the step is rotated by the attitude half-way, error of third order in time.
 ///
-/// `q_world_base` is the attitude at one end of the step, `half_turn_rad` (base axes) leads from there to the
-/// middle: half of the turn after the start, minus half of the turn before the end.
+/// `q_world_base`: attitude at the start or at the end of the step. `half_turn_rad`: rotation vector (base
+/// axes) from there to the middle: half of the turn from the start, minus half of it from the end.
 inline Eigen::Vector3d midpoint_step(const Eigen::Quaterniond& q_world_base,
                                      const Eigen::Vector3d& half_turn_rad,
                                      const Eigen::Vector3d& step_base_m) {
   return q_world_base * exp_so3(half_turn_rad) * step_base_m;
 }
 
-/// A pose in the map together with dead reckoning's pose at the same time, to be carried on:
+/// Propagation of a pose in the map by dead reckoning since a time (then) at which both poses are known:
 ///
 ///     T_map_base(now) = T_map_base(then) T_odom_base(then)^-1 T_odom_base(now)
 ///

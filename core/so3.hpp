@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rotations: the exponential and logarithm map of SO(3), the only ones in the tree, and their relatives.
+// Rotations: the exponential and logarithm map of SO(3), the only ones in the tree, and related conversions.
 //
 // Source: Sola, "Quaternion kinematics for the error-state Kalman filter", 2017, sections 2.4 and 4.4.
 #pragma once

@@ -19,8 +19,9 @@ namespace isobar {
 /// The estimate starts at the coldest first reading, follows the coldest sensor down within a minute and up
 /// within an hour, and never stays further below it than AirTemperatureConfig::max_self_heating_k. The
 /// expected self-heating of the coldest sensor is subtracted at the end. The estimate is slow and continuous,
-/// so heights computed with it do not jump. Humidity (up to +1.3 K of virtual temperature at 20 degC and 50
-/// %) is neglected: its sign is opposite to the self-heating left in sensors that were already warm.
+/// so heights computed with it do not jump. Humidity is neglected: it raises the virtual temperature, by up
+/// to 1.3 K at 20 degC and 50 %, whereas the self-heating left in sensors that were already warm makes the
+/// estimate too high; the two errors have opposite signs.
 class AirTemperatureTracker {
  public:
   static constexpr std::size_t kSensors = 3;  ///< 0: robot; 1, 2: base stations
@@ -59,7 +60,7 @@ class AirTemperatureTracker {
   std::int64_t start_ns_ = 0;
   std::int64_t stamp_ns_ = 0;
   bool started_ = false;
-  bool time_known_ = false;
+  bool time_known_ = false;  // false until a reading after the start or restart_clock()
 };
 
 }  // namespace isobar

@@ -29,13 +29,13 @@ struct AirTemperatureConfig {
   /// Buildings are heated to 20; outdoors set the actual value.
   double fixed_c = 20.0;
 
-  /// Expected self-heating of the coldest barometer [K], subtracted. Even a ventilated base station's chip
-  /// warms itself by 0.3 to 1.2 K and the thermometers are good to 0.5 K: half a kelvin (2 cm at 12 m) is the
-  /// middle between that and a thermometer in the air itself.
+  /// Expected self-heating of the coldest barometer [K], subtracted. The chip of even a ventilated base
+  /// station warms itself by 0.3 to 1.2 K, a thermometer in free air not at all, and thermometers are
+  /// accurate to 0.5 K. The default lies in between; 0.5 K is 2 cm at 12 m.
   double expected_self_heating_k = 0.5;
 
-  /// Largest self-heating of a barometer [K]: the estimate stays at most this far below the coldest sensor,
-  /// so that a visit to a colder place is forgotten. Chips near a processor read 2 to 8 K too warm.
+  /// Largest self-heating of a barometer [K]: bounds how far the estimate stays below the coldest sensor
+  /// after a visit to a colder place. Chips near a processor read 2 to 8 K too warm.
   double max_self_heating_k = 8.0;
 
   /// Time constants of a falling and a rising estimate [s]. Falling: a sensor colder than the estimate proves
@@ -70,9 +70,9 @@ struct AltimeterConfig {
   /// s: its noise shrinks eight times, and the lag behind a storm of 100 Pa an hour is 0.03 Pa.
   double base_walk_pa_sqrt_s = 0.06;
 
-  /// Silence after which a base station is lost [s]: its last pressure is held and the height becomes a
-  /// single barometer's. Weather moves 0.1 to 0.3 Pa meanwhile. Samples older than this on arrival are
-  /// refused.
+  /// Silence after which a base station is lost [s]: its last pressure is held and the height's source
+  /// becomes the single barometer. Weather changes the pressure by 0.1 to 0.3 Pa in that time. Samples older
+  /// than this on arrival are refused.
   double base_timeout_s = 10.0;
 
   /// Spike: difference between successive samples of one sensor that no motion explains [Pa]. 200 Pa is 17 m

@@ -30,7 +30,7 @@ void learn(double& interval_s, double measured_s) {
     interval_s = measured_s;
     return;
   }
-  // Doubling at most: one pause hardly changes the mean, a slower rate is still learnt.
+  // Clipped at twice the mean: one pause hardly changes it, yet a slower rate is learnt.
   interval_s += kIntervalGain * (std::min(measured_s, 2.0 * interval_s) - interval_s);
 }
 

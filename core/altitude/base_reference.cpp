@@ -14,7 +14,7 @@ namespace {
 constexpr double kTakeOverS = 1.5;
 // Time constant of the standby's learnt offset: a station's warm-up, 0.6 Pa within minutes, is tracked.
 constexpr double kOffsetMemoryS = 300.0;
-// Learning time before a difference of the stations counts: the offset is still settling.
+// Learning time of the offset, before which no station is judged: the offset is still settling.
 constexpr double kOffsetLearntS = 20.0;
 // Low-pass of the stations' difference: reduces turbulence of 0.2 Pa over seconds to 0.1 Pa.
 constexpr double kDivergenceSmoothingS = 3.0;

@@ -17,8 +17,8 @@ enum class ReferenceEvent : std::uint8_t {
   kNone,
   kBaseJoined,    ///< first base station: weather no longer moves the height
   kBaseLost,      ///< the last pressure is held: weather moves the height
-  kBaseReturned,  ///< height_m now includes the weather during the outage, see weather_shift_m
-  kBaseSwitched,  ///< the other station took over; weather_shift_m is the error of the old one
+  kBaseReturned,  ///< height_m steps by the weather during the outage, weather_shift_m
+  kBaseSwitched,  ///< the other station took over; height_m steps by weather_shift_m, the old one's error
 };
 
 /// One active and one standby station. The standby's offset is learnt while both agree, so that it can take
@@ -83,7 +83,7 @@ class BaseReference {
   double shift_log_ = 0.0;
   double learnt_s_ = 0.0;        // learning time of the standby's offset
   double divergence_log_ = 0.0;  // smoothed difference of the stations
-  double stopped_log_ = 0.0;     // difference of a condemned station since it last moved
+  double stopped_log_ = 0.0;     // difference of the stations since the condemned one last moved
   double stopped_s_ = 0.0;       // time since it last moved
   std::int64_t good_ns_ = 0;     // last time with a usable station
   std::int64_t updated_ns_ = 0;

@@ -71,7 +71,7 @@ BarometerFault BaseStation::fault(std::int64_t now_ns) const {
 void BaseStation::restart_clock() {
   monitor_.restart_clock();
   jumping_ = false;
-  // Unknown elapsed time, so unknown weather: the filter starts again.
+  // The elapsed time, and so the change by weather, is unknown: the filter starts again.
   filter_.restart();
 }
 

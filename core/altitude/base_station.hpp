@@ -17,8 +17,8 @@ double weather_sigma_pa(double age_s);
 /// Largest change by weather in sigmas: a larger one is a jump or a drift of the sensor.
 inline constexpr double kLargestWeatherSigmas = 4.0;
 
-/// Kalman filter in the station's own time that holds its value between samples: a station slower than the
-/// robot, or delayed, does no harm.
+/// Kalman filter that runs on the station's stamps and holds its value between samples, so that slow and
+/// delayed stations are usable.
 ///
 /// A static barometer does not jump: values that no weather explains (a gust into the housing, a door, a
 /// fault) are left out and the last good value is held. A lasting new level is followed without moving the

@@ -32,7 +32,8 @@ struct AltimeterReading {
 };
 
 /// Hypsometric height of the robot's barometer against the base station's, or, without a base station,
-/// against the robot's own first pressure (see `source`). Continuous when a base joins, jumps or takes over.
+/// against the robot's own first pressure (see `source`). Continuous when a base station joins or jumps;
+/// steps by weather_shift_m when one returns or takes over.
 class DifferentialAltimeter {
  public:
   explicit DifferentialAltimeter(const AltimeterConfig& config);

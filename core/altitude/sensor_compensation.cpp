@@ -29,7 +29,7 @@ Compensation compensation_of(const CompensationConfig& config) {
 }
 
 bool has_foreign_coefficient(const CompensationConfig& config) {
-  // Offset and slope of p_cal are set in every model, even if the fit did not choose them.
+  // c_00 and c_10 are set in every model: p_cal = p_raw + correction, and they hold p_raw.
   const CompensationMask mask = free_coefficients(config.model) | coefficient(0, 0) | coefficient(1, 0);
   for (std::size_t k = 0; k < kCoefficients; ++k) {
     if (((mask >> k) & 1U) == 0 && config.coefficients[k] != 0.0) return true;

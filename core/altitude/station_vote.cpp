@@ -13,7 +13,8 @@ namespace {
 
 // Averaging time: reduces turbulence and noise, short against a drift.
 constexpr double kMeanS = 2.0;
-// Ratio of the robot's distances to the two stations at which it decides for the nearer one.
+// Ratio of the two deviations, of each station's change of pressure from the robot's, above which the station
+// with the larger deviation is wrong.
 constexpr double kNearerRatio = 2.0;
 // Smallest divergence for a decision: more than turbulence at the robot (0.2 Pa) and the error of slipping
 // wheels on a climb within the averaging time.

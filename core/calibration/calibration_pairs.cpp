@@ -12,7 +12,7 @@ namespace {
 
 // Spike: deviation from the median above this many median absolute deviations, far beyond any noise.
 constexpr double kSpikeDeviations = 20.0;
-// Smallest deviation of a spike: temperature moves poor sensors as far.
+// Smallest deviation of a spike [Pa]: the temperature error of poor sensors is as large.
 constexpr double kLeastSpikePa = 200.0;
 
 double median_interval_s(std::span<const PressureSample> samples) {

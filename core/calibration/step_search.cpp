@@ -104,7 +104,7 @@ class Viterbi {
  private:
   struct State {
     double cost = kUnreachable;
-    double drift = 0.0;  // present reading of the first level [steps]
+    double drift = 0.0;  // drift estimate: present height of the first level [steps]
   };
 
   [[nodiscard]] std::size_t states() const {
@@ -182,7 +182,7 @@ Sequence sequence_of_number(Viterbi& viterbi, std::size_t number, double penalty
 }
 
 /// Best monotonic staircase (up or down). One that reverses is preferred only if its misfit beyond white
-/// noise is far smaller, because drafts as high as a step come and go.
+/// noise is far smaller, because a draft as large as a step looks like a step up and down.
 Sequence best_sequence(const Blocks& blocks, const StepSearch& search, double penalty, double noise_misfit) {
   constexpr double kFarSmallerShare = 0.35;
   const auto of = [&](Direction direction) {
@@ -244,8 +244,9 @@ FoundSteps find_steps(const HeightTrack& track, const StepSearch& search) {
   const double density = noise_density(track, search.step_m);
   found.uncertainty_s = std::sqrt(26.0) * density;
   const Blocks blocks = blocks_of(track, search.step_m);
-  // A detour to another level costs two penalties: less than a deviation of one step for min_dwell_s, more
-  // than white noise can gain, which over T seconds is z sqrt(4 density T) - T, at most z^2 density.
+  // A detour to another level and back costs two penalties. They must stay below the cost of missing a true
+  // level: a deviation of one step for min_dwell_s. They must exceed what a detour can gain on white noise:
+  // over T seconds z sqrt(4 density T) - T, at most z^2 density.
   constexpr double kNoiseSigmas = 3.5;
   const double penalty = std::max(0.4 * search.min_dwell_s, 0.5 * kNoiseSigmas * kNoiseSigmas * density);
   const double span_s = track.times_s.back() - track.times_s.front();

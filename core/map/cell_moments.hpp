@@ -39,7 +39,7 @@ class MomentSum {
 struct CellMoments {
   /// Units per edge: coordinates are -256 … 256.
   static constexpr int kUnits = 512;
-  /// Capacity: 127 * 256 is the last sum of coordinates that fits into 16 bits.
+  /// Capacity: the sum of 127 coordinates is at most 127 * 256, the last multiple of 256 within int16.
   static constexpr int kMostPoints = 127;
 
   std::array<std::int32_t, 6> outer{};  ///< xx, yy, zz, xy, xz, yz

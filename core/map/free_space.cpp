@@ -13,10 +13,9 @@ constexpr float kPixelRad = 2.0F * std::numbers::pi_v<float> / FreeSpace::kColum
 // Cosine of the angle between ray and normal below which the ray counts as grazing: beyond 78 degrees of
 // incidence, small errors of attitude or height carry the ray across the surface.
 constexpr float kMinIncidenceCosine = 0.2F;
-// Factor on the margin of a point without a normal: its surface may be grazed, so the rays must pass it by
-// more.
+// Factor on the margin of a point without a normal: its angle of incidence is unknown and may be grazing.
 constexpr float kMarginFactorWithoutNormal = 2.0F;
-// Nothing nearer to the lidar than this counts as seen through [m]: so close, one cell covers many pixels.
+// Minimum range of a point that is tested [m]: nearer, one cell covers many pixels.
 constexpr float kMinRangeM = 0.3F;
 constexpr float kHalfPi = std::numbers::pi_v<float> / 2;
 

@@ -33,7 +33,7 @@ class LocalMap {
 
   /// Inserts a registered scan if the robot moved or the place is new (see MapConfig). Points of a scan with
   /// mode kPriorOnly are inserted only where the map has no planes yet. In a known place, scans less than 0.2
-  /// s apart are decimated, in turn. Returns true if snapshot() changed.
+  /// s apart are decimated: each inserts another share of its points. Returns true if snapshot() changed.
   bool update(const RegisteredScan& scan);
 
   /// Newest snapshot, never null, to be published by a SnapshotExchange.

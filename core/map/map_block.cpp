@@ -13,8 +13,8 @@ namespace {
 // between normal and direction to the lidar, below zero so that grazing rays stay on the near side.
 constexpr float kOtherSideCosine = -0.15F;
 // A plane is refitted when the number of its cell's points has grown by this factor. Over 24 recordings this
-// is as accurate as a refit after every eighth more: most planes use points of neighbouring cells, too, and
-// those are up to date at every fit.
+// is as accurate as a refit after every growth by an eighth: most planes also use the points of neighbouring
+// cells, which are up to date at every fit.
 constexpr int kRefitFactor = 4;
 
 std::uint32_t sub_cell_bit(const Eigen::Vector3f& fraction) {

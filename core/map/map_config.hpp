@@ -32,13 +32,13 @@ struct MapConfig {
   double update_distance_m = 0.15;
   /// The map takes a scan that is rotated by this much from the last one it took [deg].
   double update_angle_deg = 4.0;
-  /// The map takes a scan this long after the last one it took [s]: things move while the robot stands.
+  /// The map takes a scan this long after the last one it took [s]: the scene changes while the robot stands.
   double update_interval_s = 1.0;
   /// The map takes a scan of which less than this share was matched (0 … 1): a door opened, or the place is
   /// new.
   double update_overlap = 0.75;
   /// Number of observations after which a cell's plane is frozen. Enough to average the lidar's noise; few
-  /// enough that the plane keeps the pose of the first visit, so that drift does not enter on the second.
+  /// enough that the plane stays as it was at the first visit, unaffected by the drift at later ones.
   int freeze_observations = 80;
   /// Maximum thickness (standard deviation along the normal) of a plane [m]. The noise of a VLP-16 is
   /// 0.01 … 0.03 m.

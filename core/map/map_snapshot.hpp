@@ -28,7 +28,7 @@ struct PlaneMatch {
   Eigen::Vector3f p_searched =
       Eigen::Vector3f::Zero();  ///< point at the last search for the nearest plane [m]
   bool nearest_known = false;   ///< that search found a plane
-  float clear_m = 0.0F;         ///< that search found no second plane closer than this to p_searched
+  float clear_m = 0.0F;         ///< lower bound of the distance from p_searched to all other planes [m]
 };
 
 /// Base class of the snapshots, and the snapshot of an empty map. Immutable: any number of threads may read

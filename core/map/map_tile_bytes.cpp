@@ -48,7 +48,7 @@ class ByteWriter {
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
-  // Returns false if fewer bytes are left than that.
+  // Returns false if fewer than count * sizeof(T) bytes are left.
   template <typename T>
   bool read(T* values, std::size_t count) {
     static_assert(std::is_trivially_copyable_v<T>);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Matcher: nearest plane by one k-d tree per tile. nearest_plane.cpp is the only file that names nanoflann.
+// Matcher: nearest plane by one k-d tree per tile. nearest_plane.cpp is the only file that includes
+// nanoflann.
 #pragma once
 
 #include <memory>

@@ -27,8 +27,8 @@ class PlaneFitter {
   bool refit(const MapTile& tile, std::size_t block_index, const SlotSet& waiting);
 
  private:
-  // Factor on the allowed deviation of the normal for a fit to the cell's own points: twice as good as
-  // required, or else the neighbours' points are used.
+  // Factor on the allowed deviation of the normal for a fit to the cell's own points: it must be twice as
+  // good as required, or else the neighbours' points are used.
   static constexpr float kOwnCellDeviationFactor = 0.5F;
 
   // A block and its 26 neighbours, looked up on first use.

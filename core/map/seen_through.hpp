@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Removal of moved objects: cells that rays pass through, where a door opened or a person walked on.
+// Removal of moved objects: finds the cells that rays now pass through (a door opened, a person left).
 #pragma once
 
 #include <Eigen/Geometry>

@@ -18,22 +18,24 @@ constexpr int kVelocity = 3;
 constexpr int kGyroBias = 6;
 constexpr int kAccelBiasRow = 9;
 
-// Gates against outliers; the last is none, for pseudo-measurements that are always true.
+// Innovation gates in standard deviations; the last one is wide open, for pseudo-measurements, which have no
+// outliers.
 constexpr double kWheelGateSigmas = 5.0;
 constexpr double kBiasGateSigmas = 5.0;
 constexpr double kNoGateSigmas = 1e3;
-// After wheels outside the gate for this long the filter's velocity is taken for wrong, not the wheels.
+// Time with the wheels outside the gate after which the filter's velocity counts as wrong, not the wheels.
 constexpr double kGatedLimitS = 1.0;
-// Variance that is then added to the velocity, and the one it starts with: 1 m/s.
+// Variance added to the velocity then, and its initial variance: (1 m/s)^2.
 constexpr double kUnknownVelocityM2S2 = 1.0;
-// Correlation time of vibration and sensor noise: white only above it.
+// Correlation time of vibration and sensor noise: both are white over longer intervals only.
 constexpr double kNoiseCorrelationS = 0.005;
 // Time over which Prior::yaw_rate_variance_rad2_s2 averages the gyro's noise: one scan.
 constexpr double kRateMeanS = 0.1;
-// Rocking of a standing robot, 1 sigma, and how long it lasts.
+// Rocking of a standing robot: 1 sigma and correlation time.
 constexpr double kRockingRadS = 1e-4;
 constexpr double kRockingS = 1.0;
-// A hanging load is lowered steadily for minutes: its vertical velocity is not zero on average.
+// Factor on the variance of the vertical velocity without wheels: a hanging load is lowered steadily for
+// minutes, so its mean is not zero.
 constexpr double kVerticalVarianceFactor = 100.0;
 
 }  // namespace
@@ -119,7 +121,7 @@ void AttitudeFilter::update_wheels(double vx_m_s, double vy_m_s, double dt_s, bo
   const double white = std::max(1.0, 2.0 * config_.wheel_correlation_s / dt_s);
   bool agreed = true;
   for (int axis = 0; axis < (use_vertical ? 3 : 2); ++axis) {
-    // v_base = R^T v - rate x r, after the updates of the axes before.
+    // v_base = R^T v - rate x r, evaluated anew after the update of each axis.
     const Eigen::Matrix3d R_now = q_world_base_.toRotationMatrix().transpose();
     const Eigen::Vector3d predicted = R_now * velocity_ - rate_rad_s_.cross(p_base_imu_);
     Row H = Row::Zero();
@@ -180,7 +182,7 @@ bool AttitudeFilter::update(const Row& H, double residual, double variance, doub
   const Eigen::Matrix<double, kStates, 1> K = PH / S;
   apply(K * residual);
   P_.noalias() -= K * PH.transpose();
-  // Against rounding: symmetric, variances not negative.
+  // Rounding errors: restore the symmetry, clamp the variances at zero.
   P_ = (0.5 * (P_ + P_.transpose())).eval();
   P_.diagonal() = P_.diagonal().cwiseMax(0.0);
   return true;

@@ -13,18 +13,19 @@
 
 namespace isobar {
 
-/// State: rotation world <- base, velocity of the IMU's place in the world, bias of gyro and accelerometer.
+/// State: rotation world <- base, velocity of the IMU's position in the world, bias of gyro and
+/// accelerometer.
 ///
 /// Measurement of gravity: the specific force is integrated to a velocity, which is compared with the wheels'
 /// (rotated by the attitude; lever arm of the IMU included), so that accelerations of the motion cancel.
 /// Without wheels the pseudo-measurement is zero velocity with the variance of a bounded motion (a pendulum):
 /// the tilt then comes from the mean over seconds. All inputs are in base_link's axes.
 ///
-/// World: z up, yaw 0 at the start. Heading is unobservable, so the world is *defined* to have the filter's
-/// heading: the yaw error is zero, the velocity error counts in that world, and no update turns the heading,
-/// which is the gyro's integral and nothing else, as dead reckoning must be. (A heading in the error state
-/// would be correlated with the gyro bias; the first standstill after minutes of driving would then turn the
-/// robot by degrees in one step.)
+/// World: z up, yaw 0 at the start. Heading is unobservable, so the filter's heading *defines* the world's:
+/// the yaw error is zero by definition, the velocity error is expressed in that world, and no update changes
+/// the heading. It remains the pure integral of the gyro, as dead reckoning requires. (A yaw error in the
+/// state would be correlated with the gyro bias; the first standstill after minutes of driving would then
+/// turn the robot by degrees in one step.)
 ///
 /// Error state: [angle (world; its z is 0), velocity (world), gyro bias, accel bias] (base axes).
 class AttitudeFilter {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mean climb speed from wheels and attitude, at the rate at which the height filter takes it.
+// Mean climb speed from wheels and attitude, at the update rate of the height filter.
 #pragma once
 
 namespace isobar {
@@ -23,7 +23,8 @@ class ClimbMeter {
   [[nodiscard]] double forward_m_s() const { return forward_m_ / elapsed_s_; }
 
  private:
-  // Wheels constrain the climb this often at most: their error is correlated over seconds.
+  // Interval of updates: the wheels' error is correlated over seconds, so that more frequent ones gain
+  // nothing.
   static constexpr double kUpdateS = 0.04;
 
   double elapsed_s_ = 0.0;

@@ -11,7 +11,7 @@ namespace {
 
 // A jump of speed is accepted with the fifth consecutive sample that shows it.
 constexpr int kConfirmingSamples = 5;
-// Jump of the speed from the quantisation of encoders, without any acceleration.
+// Change of the speed by the encoders' quantisation alone.
 constexpr double kSpeedNoiseMS = 0.5;
 
 Eigen::Vector2d velocity(const WheelSample& sample) { return {sample.vx_m_s, sample.vy_m_s}; }
@@ -38,7 +38,7 @@ WheelStatus WheelOdometer::add(const WheelSample& sample) {
   if (started_ && dt_s <= config_.wheel_timeout_s) {
     rolled_m_ += 0.5 * dt_s * (velocity(last_) + velocity(sample));
   } else {
-    rolled_m_ = taken_m_;  // unknown distance over a gap: none
+    rolled_m_ = taken_m_;  // distance during a gap: unknown, counts as zero
   }
   interval_s_ = started_ ? dt_s : 0.0;
   last_ = sample;

@@ -8,11 +8,13 @@
 namespace isobar {
 namespace {
 
-// Interval of updates: the device's errors are correlated over seconds, more often would gain nothing.
+// Interval of updates: the device's errors are correlated over seconds, so that more frequent ones gain
+// nothing.
 constexpr double kDeviceUpdateS = 0.1;
-// The attitude's rate is used where it agrees with the gyro within this: beyond, the device has reset itself.
+// Tolerance of the attitude's rate against the gyro: beyond it the device has reset its attitude, and the
+// rate is not used.
 constexpr double kDeviceRateToleranceRadS = 0.1;
-// Quaternions whose norm is off by more are not attitudes.
+// Tolerance of a quaternion's norm: beyond it the values are not an attitude.
 constexpr double kQuaternionNormTolerance = 0.05;
 
 }  // namespace

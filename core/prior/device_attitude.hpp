@@ -18,7 +18,7 @@ class DeviceAttitude {
   /// One IMU sample, with its gyro in base axes and the filter's bias. True when an update is due.
   bool add(const ImuSample& sample, const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& gyro_bias_rad_s,
            double dt_s);
-  /// The next sample follows a jump of the clock: no rate between the two.
+  /// After a jump of the clock: no rate is computed across it.
   void restart() { has_before_ = false; }
 
   /// The due update; taking it starts the next interval.

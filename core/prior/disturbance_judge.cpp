@@ -10,14 +10,14 @@
 namespace isobar {
 namespace {
 
-// Smallest step: less is within what still air does over three floors.
+// Smallest step: smaller differences occur in still air over three floors.
 constexpr double kLeastStepM = 0.3;
 // Vertical speed that accelerometer and wheels can miss, beyond the filter's own uncertainty: HeightFilter
 // detects the start of every faster lift.
 constexpr double kUnfeltSpeedMS = 0.05;
 constexpr double kUnfeltSigmas = 4.0;
-// How long a pressure must be steady to count as returned: a broken sensor crosses the old level now and
-// then, and so does the back swing of a door.
+// Time that a pressure must be steady to count as returned: a broken sensor, and the back swing of a door,
+// also cross the old level.
 constexpr double kBackS = 0.7;
 
 }  // namespace
@@ -65,7 +65,7 @@ void DisturbanceJudge::watch_steadiness(const Evidence& evidence) {
 }
 
 DisturbanceJudge::Verdict DisturbanceJudge::back(const Evidence& evidence, bool here) {
-  // Steps and motions do not return: their wait starts anew.
+  // A return rules out step and motion so far: restart their wait.
   gated_since_ns_ = evidence.stamp_ns;
   if (!is_back_) back_since_ns_ = evidence.stamp_ns;
   is_back_ = true;
@@ -93,7 +93,7 @@ DisturbanceJudge::Verdict DisturbanceJudge::judge(const Evidence& evidence) {
     return Verdict::kWait;
   }
   accept(evidence);
-  // The verdict's state absorbs the innovation.
+  // The caller absorbs the innovation: kStep by the step state, kMotion by the height.
   used_m_ = 0.0;
   return unfelt_ ? Verdict::kStep : Verdict::kMotion;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Innovation monitoring of the pressure: does the robot move, or the pressure?
+// Innovation monitoring of the pressure: tells motion of the robot from disturbances of the pressure.
 #pragma once
 
 #include <cstdint>

@@ -7,7 +7,7 @@ namespace isobar {
 namespace {
 
 // A robot's mean specific force is gravity within a third: anything else is another unit (g) or a broken
-// sensor, and would put the map on its side.
+// sensor, and would tilt the map.
 constexpr double kLeastGravityMS2 = 6.5;
 constexpr double kMostGravityMS2 = 13.0;
 

@@ -10,14 +10,14 @@
 namespace isobar {
 namespace {
 
-// Forks. Lifetime: the older of the two is always between half of it and all of it old.
+// Lifetime of a fork. The two restart in turn, so that the age of the older one is always 50 … 100 % of it.
 constexpr double kForkLifeS = 3.0;
 // A younger fork is still too close to the filter to compare.
 constexpr double kForkMinAgeS = 0.5;
 // Wheels and fork must disagree for this long before the ground counts as moving: longer than a bump.
 constexpr double kDisagreementS = 0.08;
-// In a ride the pressure fits the fork, not the wheels. A fork whose innovation is larger than the filter's
-// by more than this was shaken by vibration.
+// Largest excess of the fork's pressure innovation over the filter's in a ride, where the pressure fits the
+// fork and not the wheels. A larger excess is the effect of vibration on the fork.
 constexpr double kForkMisfitM = 0.15;
 
 // End of a ride: low-pass of the vertical acceleration, and the value below which it counts as zero.
@@ -28,24 +28,25 @@ constexpr double kBoundedSpeedMS = 0.3;
 constexpr double kBoundedSpeedTimeS = 2.0;
 // Vertical speed of an unobserved ride during a gap, 1 sigma.
 constexpr double kRideSpeedMS = 0.7;
-// Longest gating in a ride: only pressure holds the vertical speed then, and a door leaves it off by 0.3 m/s.
+// Longest gating in a ride: only pressure constrains the vertical speed then, and a door leaves an error of
+// 0.3 m/s.
 constexpr double kRideGateS = 1.0;
-// Wheels hold the vertical speed for this long after their last update.
+// Time after the last update by the wheels for which they still constrain the vertical speed.
 constexpr double kHeldS = 0.5;
 
-// Share of the weather added to the reported variance: the wheels' correlated errors separate weather from
-// climb less well than the filter believes.
+// Share of the weather's standard deviation added to the reported variance: the filter's own is too small,
+// because the wheels' correlated errors hinder the separation of weather and climb.
 constexpr double kWeatherDoubt = 0.5;
 // Largest delay of a pressure sample that is compensated.
 constexpr double kMaxDelayS = 1.0;
-// A pressure that kept moving by more than this, as a share of its innovation and in metres, is a ramp, not a
-// step.
+// Limits between ramp and step: change of the innovation while gated, as a share of the innovation and in
+// metres. A ramp exceeds both.
 constexpr double kRampShare = 0.5;
 constexpr double kRampMinM = 0.3;
 
-// Prior of a step's size, 1 sigma, after the prediction has been subtracted: far above any error of it.
+// A-priori error of the predicted size of a step, 1 sigma: far above any true one.
 constexpr double kOpenStepSigmaM = 30.0;
-// A larger step is no door, which would be over in a second or two: the wait is shorter.
+// A larger innovation is no door (over in one or two seconds), so that the wait for its end is shorter.
 constexpr double kAbsurdM = 20.0;
 constexpr double kAbsurdWaitS = 0.3;
 // Lower bound of the pressure ratio after subtracting a fault: it stays positive.
@@ -90,7 +91,8 @@ void HeightFilter::predict(double up_accel_m_s2, double dt_s, double accel_densi
   }
   Fork& older = older_fork();
   if (older.age_s < kForkLifeS) return;
-  // The other one counts as half as old from now on: one fork always dates from before a ride's start.
+  // The other one's age is set to half a lifetime at most, which staggers the two: one fork always predates a
+  // ride.
   older = {filter_, 0.0};
   Fork& other = older_fork();
   other.age_s = std::min(other.age_s, 0.5 * kForkLifeS);
@@ -221,7 +223,7 @@ DisturbanceJudge::Evidence HeightFilter::evidence_of(const AltimeterReading& rea
   evidence.step_open = filter_.step_open();
   evidence.without_step =
       filter_.innovation_without_step(reading.height_m - lever_m, delay_s, reading.noise_variance_m2);
-  // Also the fork's, which is larger: the error of the prediction may come from the wheels.
+  // The fork's is larger, being without the wheels: the error of the prediction may come from them.
   evidence.climb_sigma_m_s = std::sqrt(
       std::max(filter_.variance(VerticalFilter::kVz), older_fork().filter.variance(VerticalFilter::kVz)));
   evidence.wait_s = ground_moves_ ? std::min(kRideGateS, config_.gate_time_s) : config_.gate_time_s;
@@ -231,8 +233,8 @@ DisturbanceJudge::Evidence HeightFilter::evidence_of(const AltimeterReading& rea
   return evidence;
 }
 
-// Height with an open step subtracted. A step adds pascals, not metres: it is subtracted from the ratio of
-// pressures, since for large steps the same climb is a different ratio.
+// Height with an open step subtracted. A step is an additive error of the pressure, so it is subtracted from
+// the ratio of pressures: subtracted as a height, a large step would falsify the scale of later climbs.
 double HeightFilter::without_fault_m(const AltimeterReading& reading) const {
   if (fault_share_ == 0.0) return reading.height_m;
   const double ratio = std::exp(-reading.height_m / reading.scale_m) - fault_share_;
@@ -258,8 +260,9 @@ void HeightFilter::compare_fork(const AltimeterReading& reading, double lever_m,
   fork_misfit_m_ = std::abs(of_fork.value) - std::abs(innovation_m);
 }
 
-// In a ride only pressure holds the vertical speed: an error from the first samples of a disturbance would
-// stay. The older fork has used no pressure since it was split off, before the disturbance.
+// Rolls back to the older fork, which has used no pressure since it was split off, before the disturbance. In
+// a ride only pressure constrains the vertical speed: an error from the first disturbed samples would
+// persist.
 void HeightFilter::roll_back() {
   filter_ = older_fork().filter;
   rolled_back_ = true;

@@ -17,7 +17,7 @@ namespace isobar {
 enum class PressureUse : std::uint8_t {
   kUsed,
   kGated,  ///< rejected: outside the gate and undecided
-  kStep,   ///< used after a long gating: the height or the pressure's own step was moved to it
+  kStep,   ///< used after a long gating: absorbed by the height or by the step state
 };
 
 /// Height of the IMU from acceleration, wheels and pressure.
@@ -25,17 +25,17 @@ enum class PressureUse : std::uint8_t {
 /// Wheels and attitude measure the climb well over seconds, pressure measures the height well over minutes;
 /// each enters with its own noise. Two events break the model and are detected:
 ///
-/// - *Moving ground* (elevator): the wheels stand, the robot rises. Two forks of the filter, split off one to
-///   three seconds ago, run along without the wheels. Where the older fork's vertical speed leaves the
-///   wheels', that fork becomes the filter (the wheels have not held it down since before the ride began),
-///   and the wheels are left out until both agree again.
+/// - *Moving ground* (elevator): the wheels stand, the robot rises. Two forks (copies) of the filter, split
+///   off one to three seconds ago, are predicted from the acceleration alone. Where the older fork's vertical
+///   speed departs from the wheels', that fork replaces the filter (it has had no update by the wheels since
+///   before the ride), and the wheels are left out until both agree again.
 /// - *Disturbed pressure* (door, gust, ventilation zone, fault): DisturbanceJudge classifies it from
 ///   acceleration and wheels.
 ///     pulse    rejected
 ///     step     becomes a state of its own: the height stays, later pressures still measure changes, and
 ///              after the step the height is as certain as before it
 ///     motion   followed: by a step of the height, or by a vertical speed where it is a ramp (a ride whose
-///              start was not felt)
+///              start was not detected)
 class HeightFilter {
  public:
   explicit HeightFilter(const HeightConfig& config);
@@ -60,13 +60,13 @@ class HeightFilter {
   /// `lever_m`: height of the pressure port above the IMU. `now_ns`: time of the last predict().
   PressureUse update_pressure(const AltimeterReading& reading, double lever_m, std::int64_t now_ns);
 
-  /// Reported height: corrections by a reference that came back enter at a limited rate.
+  /// Reported height: corrections after the return or the switch of a base station enter at a limited rate.
   [[nodiscard]] double z_m() const { return filter_.value(VerticalFilter::kZ) + slew_.rest_m(); }
   [[nodiscard]] double variance_m2() const;
   [[nodiscard]] bool ground_moves() const { return ground_moves_; }
   /// State of the innovation monitor.
   [[nodiscard]] const DisturbanceJudge& disturbance() const { return judge_; }
-  /// The pressure is further off than any weather or ventilation: a sensor fault, at present subtracted.
+  /// The error of the pressure exceeds any weather or ventilation: a sensor fault, gated or subtracted.
   [[nodiscard]] bool pressure_faulty() const { return faulty_; }
 
  private:
@@ -100,7 +100,7 @@ class HeightFilter {
   double disagreeing_s_ = 0.0;
   double fork_misfit_m_ = 0.0;  // |innovation| of the last used pressure: older fork minus filter
   DisturbanceJudge judge_;
-  double fault_share_ = 0.0;  // pressure that an open step adds, over the reference pressure
+  double fault_share_ = 0.0;  // open step of the pressure / reference pressure
   Slew slew_;
   double since_climb_s_ = 1e9;  // since the last update by the wheels
   double alone_s_ = 0.0;        // time without a base station

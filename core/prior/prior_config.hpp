@@ -107,7 +107,7 @@ struct HeightConfig {
 
   /// Local slow pressure noise (turbulence, ventilation, doors), as a height: rms [m] and correlation time
   /// [s]. 0.5 Pa over 10 s: twice the difference of two good barometers in still air after averaging their
-  /// white noise, because the air of buildings is not still.
+  /// white noise, because the air in buildings moves.
   double turbulence_sigma_m = 0.04;
   double turbulence_time_s = 10.0;
 
@@ -115,10 +115,11 @@ struct HeightConfig {
   /// afterwards. Long enough to average turbulence; short enough that no ventilation zone entered later
   /// becomes part of the offset, which would shift all heights for good.
   double offset_learning_s = 15.0;
-  /// Weather without a base station: its rate, 1 sigma [m/s], and a random walk [m/sqrt(s)]. Fronts move 1 to
-  /// 4 hPa in three hours, one way for hours: 0.025 Pa/s rms, 8.5 cm a pascal. The walk is that of open air,
-  /// 0.05 to 0.2 Pa/sqrt(s), and of gusts of 0.3 to 1 Pa over a minute, which no base station cancels: 0.2
-  /// Pa/sqrt(s) together. After 120 s the standard deviation is 32 cm, after ten minutes 1.4 m.
+  /// Weather without a base station: its rate, 1 sigma [m/s], and a random walk [m/sqrt(s)]. Fronts change
+  /// the pressure by 1 to 4 hPa in three hours, in one direction for hours: 0.025 Pa/s rms; 1 Pa is 8.5 cm.
+  /// The walk is that of open air, 0.05 to 0.2 Pa/sqrt(s), plus gusts of 0.3 to 1 Pa over a minute, which no
+  /// base station cancels: 0.2 Pa/sqrt(s) together. After 120 s the standard deviation is 32 cm, after ten
+  /// minutes 1.4 m.
   double weather_rate_m_s = 0.0021;
   double weather_walk_m_sqrt_s = 0.018;
 
@@ -175,8 +176,8 @@ struct PriorConfig {
   /// Position of the barometer's pressure port in base_link [m].
   Eigen::Vector3d p_base_port = Eigen::Vector3d::Zero();
 
-  /// Calibrations of the robot's barometer and of the first base station's, unless that compensates its own
-  /// samples.
+  /// Calibrations of the robot's barometer and of the first base station's; the latter is empty where the
+  /// station compensates its own samples.
   CompensationConfig compensation;
   CompensationConfig base_compensation;
 

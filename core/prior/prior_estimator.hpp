@@ -29,7 +29,7 @@ struct PriorCounters {
   std::uint64_t pressure_bad_time = 0;
   std::uint64_t pressure_repeated = 0;  ///< the same value again: polled faster than it converts
   std::uint64_t pressure_gated = 0;     ///< not used: outside of the gate (doors)
-  std::uint64_t pressure_steps = 0;     ///< steps of the height or of the offset after a long gating
+  std::uint64_t pressure_steps = 0;     ///< steps of the height or of the pressure, used after a long gating
   std::uint64_t base_accepted = 0;
   std::uint64_t base_outside_calibration = 0;
   std::uint64_t base_without_temperature = 0;
@@ -51,9 +51,9 @@ struct PriorCounters {
 struct BarometerHealth {
   BarometerFault robot = BarometerFault::kOff;
   std::array<BarometerFault, 2> base{BarometerFault::kOff, BarometerFault::kOff};
-  std::uint8_t base_active = 0;      ///< index of the base station in use, or the last one that was
+  std::uint8_t base_active = 0;      ///< index of the base station in use, or of the last one in use
   std::uint8_t base_usable = 0;      ///< number of usable base stations
-  std::array<bool, 2> base_heard{};  ///< a sample has ever come
+  std::array<bool, 2> base_heard{};  ///< at least one sample has arrived
   bool base_undecided = false;       ///< two stations disagree and neither is known to be wrong
 };
 

@@ -9,7 +9,7 @@
 namespace isobar {
 namespace {
 
-// Longest gap between two priors that counts as dense: over it a constant twist is still a good model.
+// Longest gap between two priors that counts as dense: a constant twist is still a good model of it.
 constexpr std::int64_t kLongestBlindNs = 500'000'000;
 
 double lerp(double a, double b, double f) { return a + f * (b - a); }

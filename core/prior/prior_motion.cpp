@@ -17,7 +17,7 @@ constexpr double kConstantRateS = 0.3;
 // Unobserved turn during a gap: 1 sigma per second, and its upper bound.
 constexpr double kUnseenRateRadS = 0.2;
 constexpr double kUnseenTurnRad = 0.3;
-// Roll and pitch from the first accelerations of a robot that may be moving, 1 sigma.
+// Error of roll and pitch from the first accelerations of a robot that may be moving, 1 sigma.
 constexpr double kStartSigmaRad = 0.02;
 // Vertical speed at the start, 1 sigma: on wheels, and of a hanging platform.
 constexpr double kStartClimbOnWheelsMS = 0.05;

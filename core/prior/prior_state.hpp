@@ -65,7 +65,7 @@ struct PriorEstimator::State {
   HeightFilter height;
 
   Eigen::Vector3d p_odom_base = Eigen::Vector3d::Zero();
-  double yaw_before_rad = 0.0;                            // where the attitude starts anew after a clock jump
+  double yaw_before_rad = 0.0;                            // yaw of a restart after a clock jump
   Eigen::Vector3d gyro_before = Eigen::Vector3d::Zero();  // of the sample before, base axes [rad/s]
   bool new_wheels = false;                                // since the last IMU sample
   double since_bounded_s = 0.0;                           // since the last bounded-velocity update

@@ -16,7 +16,7 @@ class Slew {
   void begin() { open_s_ = kOpenS; }
   [[nodiscard]] bool open() const { return open_s_ > 0.0; }
 
-  /// Holds back a correction by `step_m` that the height has just taken.
+  /// Holds back a correction: subtracts `step_m`, by which the height was just corrected, from rest_m().
   void hold_back(double step_m) { rest_m_ = std::clamp(rest_m_ - step_m, -bound_m_, bound_m_); }
 
   void advance(double dt_s) {
@@ -27,11 +27,12 @@ class Slew {
 
   void restart() { open_s_ = rest_m_ = 0.0; }
 
-  /// Remainder, to be added to the corrected height [m].
+  /// Part of the corrections that is still held back, to be added to the height [m].
   [[nodiscard]] double rest_m() const { return rest_m_; }
 
  private:
-  // The filter absorbs a correction over several pressures; longer would delay corrections of the motion.
+  // Duration of holding back: the filter spreads a correction over several pressure samples; a longer one
+  // would delay corrections of the motion.
   static constexpr double kOpenS = 3.0;
 
   double rate_m_s_;

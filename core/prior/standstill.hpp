@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Standstill detection: gyro, accelerometer and wheels must agree. Without wheels it is undecidable: a sphere
-// on a rope is lowered and turns as evenly as if it lay on the ground.
+// lowered on a rope moves and turns so evenly that its IMU reads the same as on the ground.
 #pragma once
 
 #include <Eigen/Core>

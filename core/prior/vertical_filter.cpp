@@ -177,7 +177,7 @@ void VerticalFilter::update(const Vector& h, double measured, double variance) {
   const Vector K = Ph / S;
   x_ += K * (measured - h.dot(x_));
   P_.noalias() -= K * Ph.transpose();
-  // Against rounding: symmetric, variances not negative.
+  // Rounding errors: restore the symmetry, clamp the variances at zero.
   P_ = (0.5 * (P_ + P_.transpose())).eval();
   P_.diagonal() = P_.diagonal().cwiseMax(0.0);
 }

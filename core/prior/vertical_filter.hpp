@@ -41,7 +41,7 @@ class VerticalFilter {
 
   /// Innovation of a barometric height of the IMU, measured `delay_s` ago.
   [[nodiscard]] Innovation pressure_innovation(double height_m, double delay_s, double variance_m2) const;
-  /// The same without the step q: as if it were over.
+  /// The same with the step q taken as zero: the innovation if the step is over.
   [[nodiscard]] Innovation innovation_without_step(double height_m, double delay_s, double variance_m2) const;
   void update_pressure(double height_m, double delay_s, double variance_m2);
 
@@ -56,8 +56,9 @@ class VerticalFilter {
   /// A base station has joined: the weather so far becomes part of the constant offset.
   void fold_weather_into_offset();
 
-  /// The pressure has stepped by an unknown amount, which the next update finds; `sigma_m` is far larger. The
-  /// offset's estimate is kept for the end of the step.
+  /// The pressure has stepped: the state q becomes unknown, to be estimated by the next update. `sigma_m`:
+  /// its a-priori standard deviation, far above the step. The offset's estimate is kept for the end of the
+  /// step.
   void open_step(double sigma_m);
   /// The step is over: the pressure is back at its old level.
   void close_step();

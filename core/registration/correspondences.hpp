@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Correspondences: the plane of the map for each sampled point of the scan. The search itself is the map's.
+// Correspondences: the plane of the map for each sampled point of the scan. The search itself is
+// MapSnapshot::match().
 #pragma once
 
 #include <Eigen/Geometry>
@@ -36,7 +37,7 @@ class Correspondences {
 
  private:
   /// Rearranges matches_ for a new stride with `count` points: points of both strides keep their last match
-  /// as a starting guess (from every sixth to every second point: each third has one).
+  /// as a starting guess (from stride 6 to stride 2: every third point has one).
   void keep_matches_of_common_points(std::size_t stride, std::size_t count);
 
   LocalFrame frame_;

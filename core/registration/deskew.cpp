@@ -10,8 +10,9 @@ namespace isobar {
 
 namespace {
 
-// One prior every 2.048 ms, finer than an IMU's samples; matrices between them are interpolated linearly,
-// error below 1e-4 at 10 rad/s. One knot every 256 us: at most 128 us off, 0.13 mrad at 1 rad/s.
+// Two-level sampling of the motion. A prior every 2.048 ms, finer than an IMU's samples. Between them a knot
+// every 256 us: its matrix is interpolated linearly (error below 1e-4 at 10 rad/s) and used for points at
+// most 128 us away (0.13 mrad at 1 rad/s).
 constexpr std::int64_t kUnitsPerKnot = 64;
 constexpr std::int64_t kKnotsPerPrior = 8;
 constexpr std::int64_t kPriorStepNs = kUnitsPerKnot * kKnotsPerPrior * kPointTimeUnitNs;
@@ -31,7 +32,7 @@ Eigen::Isometry3d Deskewer::T_end_base(std::int64_t stamp_ns, const PriorHistory
   if (!history.at(stamp_ns, prior) && !history.empty() && stamp_ns <= history.oldest().stamp_ns) {
     prior = history.oldest();
   }
-  // The frame of the scan's end takes the place of the map.
+  // PoseAnchor with base_link at the scan's end in place of the map frame.
   const PoseAnchor end(Eigen::Isometry3d::Identity(), motion.end.T_odom_base);
   Eigen::Isometry3d T = end.carried_to(prior.T_odom_base);
   if (!motion.from_wheels) {

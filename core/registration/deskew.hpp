@@ -29,8 +29,8 @@ class Deskewer {
   /// and points that are not finite are dropped.
   Deskewer(const Eigen::Isometry3d& T_base_lidar, double min_range_m, double max_range_m);
 
-  /// Samples the motion of the lidar during `scan`, for move(). Times outside of `history` use its nearest
-  /// prior.
+  /// Samples the motion of the lidar during `scan`, for move(). Times before `history` use its oldest prior;
+  /// times past its extrapolation, motion.end.
   void start(const Scan& scan, const PriorHistory& history, const ScanMotion& motion);
   /// Writes the points in range, moved to p_base at scan.end_stamp_ns, to `out` and returns their number.
   /// `points` are a part of the scan of start(). `out` holds as many points and may be `points.data()`.

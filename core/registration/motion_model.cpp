@@ -15,13 +15,13 @@ namespace {
 // Upper bound of the predicted error of a lost robot: beyond it the search would cover everything.
 constexpr double kLargestDeviationM = 2.0;
 constexpr double kLargestDeviationRad = 0.5;
-// Gain of the velocity's alpha filter, horizontal and vertical. Half follows a swinging rope and halves the
-// noise.
+// Gain of the velocity's alpha filter, horizontal and vertical. A gain of 0.5 follows a platform swinging on
+// a rope and halves the noise.
 constexpr double kVelocityGain = 0.5;
 constexpr double kVerticalVelocityGain = 0.3;
 // Registrations further apart give no velocity: between them it has changed.
 constexpr double kLongestVelocityStepS = 0.5;
-// Smallest error of a step without wheels: what a velocity from registrations is off by.
+// Smallest error of a step without wheels: the error of a velocity from registrations.
 constexpr double kFreeMotionFloorM = 0.02;
 // Turn rate of a robot whose IMU is silent, 1 sigma.
 constexpr double kUnseenRateRadS = 0.5;
@@ -61,7 +61,8 @@ Eigen::Vector3d MotionModel::step_at_velocity_map(const Prior& now) const {
 }
 
 Prediction MotionModel::predict(const Prior& now, const MethodTraits& method) const {
-  // The turn between two priors is only known where both are; else it is zero and the scan finds it.
+  // The turn between two priors is known only where both have a valid attitude; else it is predicted as zero,
+  // and the registration estimates it.
   const bool followed = now.attitude_valid && last_.attitude_valid;
   const bool on_wheels = now.velocity_valid && last_.velocity_valid;
   const Eigen::Isometry3d& T_odom_before = followed ? last_.T_odom_base : now.T_odom_base;

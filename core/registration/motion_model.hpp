@@ -21,8 +21,8 @@ struct Prediction {
   Eigen::Isometry3d T_map_odom = Eigen::Isometry3d::Identity();
 };
 
-/// Carries the last registered pose on with the prior: increments of dead reckoning with wheels, the decaying
-/// velocity of the registrations without.
+/// Propagates the last registered pose: with wheels by the increments of dead reckoning, without wheels by
+/// the decaying velocity of the registrations.
 class MotionModel {
  public:
   explicit MotionModel(const RegistrationConfig& config) : config_(config) {}

@@ -89,7 +89,7 @@ Eigen::Isometry3d PosePropagator::best_pose(const Prior& prior) const {
       std::clamp(seconds_between(anchor_.pose.stamp_ns, prior.stamp_ns), 0.0, config_.max_extrapolation_s);
   best.translation() += anchor_.v_map_m_s * ahead_s;
   if (anchor_.follows_altimeter) {
-    // In an elevator only the altimeter sees the motion.
+    // In an elevator only the altimeter measures the motion.
     best.translation().z() = anchor_.pose.T_map_base.translation().z() + prior.height_m - anchor_.height_m;
   }
   return best;

@@ -11,7 +11,8 @@ namespace isobar {
 
 namespace {
 
-// The start of the map waits this many scans for gravity, then goes on without it.
+// Number of scans for which the start of the map waits for a valid attitude (gravity); then it starts
+// without.
 constexpr std::uint32_t kMaxScansWithoutGravity = 30;
 // Bootstrap scans before registration must succeed: they enter the map at the predicted pose.
 constexpr std::uint32_t kMaxBootstrapScans = 20;
@@ -136,7 +137,8 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
                                  traits.attitude_from_gravity && traits.basis.cols() == 3;
   set_fixed_variances(end, traits.attitude_from_gravity, altimeter_fixes_z, pose.covariance);
 
-  // Without the IMU the last scan with a known prior stays the start of the next prediction.
+  // A scan with neither IMU nor registration does not become the start of the next prediction: the scan
+  // before it stays the start.
   if (registered) {
     motion_.correct(end, pose.T_map_base);
   } else if (end.attitude_valid) {
@@ -157,7 +159,7 @@ MatchResult Registration::match(const MapSnapshot& map, const Prior& prior, cons
 
 PoseMode Registration::mode_after(bool registered, const MethodTraits& traits) {
   // Bootstrap: until the first success scans enter the map at the predicted pose. The first revolution may be
-  // cut, and one scan may not be enough of the place.
+  // incomplete, and one scan may cover too little of the place.
   bootstrapping_ =
       bootstrapping_ && !registered && traits.registers && bootstrap_scans_++ < kMaxBootstrapScans;
   if (registered) return PoseMode::kRegistered;

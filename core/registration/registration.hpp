@@ -35,8 +35,8 @@ class Registration {
   /// `out`. Never fails: a scan that cannot be registered gets the predicted pose and mode kPriorOnly.
   void register_scan(const Scan& scan, const MapSnapshot& map, RegisteredScan& out);
 
-  /// Pose at the newest prior, between scans and while the lidar is silent. False before the first scan that
-  /// started the map.
+  /// Pose at the newest prior, between scans and while the lidar is silent. False before the first scan with
+  /// a pose in the map.
   bool propagate(PoseEstimate& out) const;
 
  private:

@@ -53,8 +53,8 @@ struct RegistrationConfig {
   double step_distance_error = 0.05;
   /// Smallest error of a step's translation [m].
   double step_translation_floor_m = 0.002;
-  /// Smallest error of a step's rotation [deg]. A gyro is better over a tenth of a second; the attitude
-  /// filter, whose corrections are steps, is not.
+  /// Smallest error of a step's rotation [deg]. A gyro alone is better over a tenth of a second; the attitude
+  /// filter is not, since its corrections are steps.
   double step_rotation_floor_deg = 0.2;
   /// Error of a step's rotation as share of the turn: an offset of 5 ms between the
   /// clocks of lidar and IMU is 5 % of a scan.

@@ -43,7 +43,7 @@ class SearchSchedule {
   }
 
  private:
-  // The first iterations only have to come near: a third of the points does that.
+  // The first iterations need a coarse result only: a third of the points suffices.
   static constexpr int kCoarseIterations = 2;
   static constexpr std::size_t kCoarseStride = 3;
   // A coarse step smaller than this needs no second one.

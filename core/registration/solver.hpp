@@ -39,9 +39,10 @@ struct Step {
   bool solved = false;  ///< false: singular (neither scan nor prior constrain a direction) or not finite
 };
 
-/// Minimises sum w e^2 * pair_information + deviation^T information deviation over the span of `basis`:
-/// with B the basis, (B^T (H + L) B) d = -B^T (g + L x). Equation (12) of the paper is the case of three
-/// columns and no prior. Directions that the scan does not constrain follow the prior.
+/// Minimises sum w e^2 * pair_information + deviation^T information deviation over the span of `basis`: with
+/// B the basis, H and g the scan's weighted Hessian and gradient, L the prior's information and x its
+/// deviation, (B^T (H + L) B) d = -B^T (g + L x). Equation (12) of the paper is the case of three columns and
+/// no prior. Directions that the scan does not constrain follow the prior.
 Step solve_step(const NormalEquations& equations, const PriorTerm& prior, const Basis& basis,
                 const SolverWeights& weights);
 

@@ -29,7 +29,7 @@ VoxelFilter::VoxelFilter(std::size_t max_voxels)
 }
 
 void VoxelFilter::start() {
-  // The last pass's size; grows on demand.
+  // Table of the size that the last pass needed; grows on demand.
   const std::size_t slots = std::max(std::bit_ceil(2 * voxels_.size()), kFewestSlots);
   voxels_.clear();
   resize(std::min(slots, table_.size()));

@@ -30,7 +30,7 @@ class VoxelGrid {
   static constexpr float kReachM = 500.0F;
   static constexpr unsigned kBitsPerAxis = 15;
 
-  // Through signed 32 bits: one instruction (cvttss2si).
+  // Conversion by way of a signed 32-bit integer: one instruction (cvttss2si).
   [[nodiscard]] std::uint64_t cell(float along_m) const {
     return static_cast<std::uint64_t>(static_cast<std::int32_t>((along_m + kReachM) * voxels_per_m_));
   }

@@ -9,7 +9,8 @@ namespace {
 
 /// Largest sample interval: base stations may send every few seconds.
 constexpr std::int64_t kMaxCadenceNs = 10'000'000'000;
-/// Silence after which another new sender may become the candidate: only one is confirmed at a time.
+/// Silence of the candidate after which another sender may become the candidate: only one is confirmed at a
+/// time.
 constexpr std::int64_t kCandidateSilenceNs = 5'000'000'000;
 
 ClockAnchor new_anchor() {

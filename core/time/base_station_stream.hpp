@@ -20,15 +20,15 @@ struct BaseStationConfig {
   /// base's clock was set.
   std::int64_t max_early_ns = 50'000'000;
   /// Confirmation of a new clock or a new sender: this many samples that agree on one clock, while no sample
-  /// of the known sender and clock arrives. One message can then not replace a base.
+  /// of the known sender and clock arrives. So a single message cannot replace a base station.
   std::uint32_t confirm_samples = 3;
   /// Largest disagreement of these samples [ns]: network jitter.
   std::int64_t agreement_ns = 250'000'000;
   /// Shortest duration of these samples, on both clocks [ns].
   std::int64_t confirm_ns = 500'000'000;
   /// Silence after which another base station of the same name, heard beside the one in use, replaces it
-  /// [ns]. Longer than the altimeter's default time-out: the altimeter reports the loss before it sees the
-  /// other one.
+  /// [ns]. Longer than the altimeter's default time-out: the altimeter reports the loss before it receives
+  /// samples of the other one.
   std::int64_t takeover_ns = 15'000'000'000;
 };
 
@@ -75,7 +75,8 @@ struct BaseStationStatus {
 /// received samples while there is no base, which looks like a base with a wrong clock.
 ///
 /// The first sender is used; a new one replaces it after it is lost. A sender heard beside it is another base
-/// station at another place and is never mixed with it. No allocation; single thread.
+/// station at another place: its samples are never mixed in, and it replaces the one in use only after a
+/// silence of takeover_ns. No allocation; single thread.
 class BaseStationStream {
  public:
   explicit BaseStationStream(const BaseStationConfig& config = {});
@@ -117,8 +118,8 @@ class BaseStationStream {
   };
   static constexpr std::size_t kBuckets = 1024;
   static constexpr std::size_t kRivals = 4;
-  /// Sender other than the one in use: a restart of that one, or another base station beside it. It is beside
-  /// it if the one in use is heard again.
+  /// Sender other than the one in use: a restart of that one, or another base station beside it. is_beside is
+  /// set once the one in use is heard again.
   struct Rival {
     std::uint64_t sender = 0;
     bool known = false;

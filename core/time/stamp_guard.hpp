@@ -27,8 +27,9 @@ enum class StampVerdict : std::uint8_t {
 ///
 /// A stream slower than max_forward_ns is recognised by its even steps; the limit then follows its interval.
 ///
-/// Verdict after kHeld: kConfirmed, the held sample is good and comes before this one; kHeld, the held one
-/// was absurd and this one is held instead; any other, the held one was absurd.
+/// Verdict after kHeld: kConfirmed, the held sample is good and comes before this one; kHeld with the same
+/// stamp, a copy of the held one, which stays held; kHeld with another stamp, the held one was absurd and
+/// this one is held instead; any other, the held one was absurd.
 class StampGuard {
  public:
   explicit StampGuard(const StampGuardConfig& config = {})

@@ -18,7 +18,7 @@ struct MapBox {
   Eigen::Vector3d lowest = Eigen::Vector3d::Zero();
   Eigen::Vector3d highest = Eigen::Vector3d::Zero();
 
-  /// The space of a tile; its nominal size, without the overhang of the cells at its edge.
+  /// Nominal box of a tile. Points in the cells at its edge may lie up to one cell outside.
   [[nodiscard]] static MapBox of_tile(const TileKey& key, double tile_m);
 
   [[nodiscard]] bool contains(const Eigen::Vector3d& p_map) const {

@@ -49,7 +49,7 @@ Manifest read_manifest(const std::filesystem::path& folder, std::vector<std::str
 
 /// Parses the text of a recording.toml.
 /// @param file name in errors
-/// @throws DataError "file:line: key: rule"
+/// @throws DataError "file:line: key: rule" when the text breaks the format
 Manifest parse_manifest(std::string_view content, const std::string& file,
                         std::vector<std::string>& warnings);
 

@@ -15,7 +15,7 @@
 namespace isobar::recording {
 namespace {
 
-// 200 packets a read() instead of three.
+// Size of the file buffer: 200 packets per read() instead of three.
 constexpr std::size_t kBufferBytes = std::size_t{256} * 1024;
 
 }  // namespace

@@ -63,8 +63,8 @@ class PcapPackets {
   UdpExtractor extractor_;
   StampGuard guard_;
   Tallies tallies_;
-  std::optional<StampedPacket> held_;
-  std::optional<StampedPacket> following_;
+  std::optional<StampedPacket> held_;       // its stamp jumped; the next verdict of guard_ decides
+  std::optional<StampedPacket> following_;  // already read, returned by the next call of next()
 };
 
 }  // namespace isobar::recording

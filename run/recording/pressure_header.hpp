@@ -19,7 +19,7 @@ struct PressureHeader {
 
 /// Finds the header among the first lines: the line with every column that `wanted` names, and with exactly
 /// one candidate for each that it leaves open.
-/// @throws DataError naming the missing column or the ambiguous candidates
+/// @throws DataError when a column is missing or several could be meant; the text names them
 PressureHeader find_pressure_header(const std::filesystem::path& file, const PressureColumns& wanted);
 
 /// True when `name` contains `word` as a whole word (letters and digits), in upper or lower case.

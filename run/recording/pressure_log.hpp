@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pressure from any logger's CSV; columns, units and clock are detected and reported.
+// Pressure from any logger's CSV; columns and units, also the unit of time, are detected and reported.
 #pragma once
 
 #include <filesystem>

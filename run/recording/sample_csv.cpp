@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kNoStamp = "t_ns must be a whole number of nanoseconds";
 constexpr const char* kNoNumber = "must be a finite number";
-/// Largest deviation of a quaternion's norm from 1 that is left alone, so that written samples keep their
+/// Largest deviation of a quaternion's norm from 1 that is not normalised, so that written samples keep their
 /// bits.
 constexpr double kExactNorm = 1e-12;
 
@@ -36,8 +36,8 @@ const char* parse_column(const text::CsvReader& csv, std::size_t column, double&
   return kNoNumber;
 }
 
-/// The four attitude columns. An attitude that is not available yet (NaN, zeros) does not spoil rates and
-/// forces.
+/// The four attitude columns. An attitude that is not available yet (NaN, zeros) does not make the sample
+/// invalid: rates and forces are used.
 void parse_attitude(const text::CsvReader& csv, ImuSample& sample) {
   constexpr std::size_t kFirst = 7;
   double q[4] = {};  // NOLINT(modernize-avoid-c-arrays)

@@ -147,11 +147,11 @@ class StampOrder {
 
   StampGuard guard_;
   Counts counts_;
-  std::deque<Sample> ordered_;
+  std::deque<Sample> ordered_;     // the look-ahead, by stamp
   std::deque<Sample> after_step_;  // samples after a step back of the clock
-  std::optional<Sample> held_;
-  bool stepped_ = false;
-  bool handed_out_ = false;
+  std::optional<Sample> held_;     // its stamp jumped; the next verdict of guard_ decides
+  bool stepped_ = false;           // the clock stepped back; ordered_ still holds samples before the step
+  bool handed_out_ = false;        // a sample was returned since the start or the last step back
   bool at_end_ = false;
   std::int64_t newest_out_ns_ = 0;
 };

@@ -7,7 +7,7 @@
 
 namespace isobar::recording {
 
-/// Counter with the message of the first occurrence; later ones format no text.
+/// Counter with the message of the first occurrence; the others cost no text formatting.
 struct Tally {
   std::uint64_t count = 0;
   std::string first_message;

@@ -42,7 +42,7 @@ class UdpExtractor {
   FrameKind extract(LinkType link, std::span<const std::uint8_t> frame,
                     std::span<const std::uint8_t>& payload);
 
-  /// Datagrams dropped incomplete: kSlots newer ones needed the memory.
+  /// Incomplete datagrams that were dropped because kSlots newer ones needed the memory.
   [[nodiscard]] std::uint64_t incomplete() const { return incomplete_; }
   [[nodiscard]] std::uint64_t reassembled() const { return reassembled_; }
 

@@ -11,7 +11,7 @@
 
 namespace isobar::text {
 
-/// How a CSV file differs from the project's own.
+/// Layout of a CSV file; the defaults are those of the project's own files.
 struct CsvFormat {
   char separator = ',';
   std::size_t header_line = 1;  ///< the line that names the columns

@@ -22,7 +22,7 @@ class TextLines {
   /// @throws DataError when the file is missing, a folder or cannot be read
   explicit TextLines(const std::filesystem::path& file);
   /// Reads a text that is loaded already.
-  /// @param name what errors call the text
+  /// @param name names the text in errors
   TextLines(std::string_view text, std::string name);
 
   /// The next line without its line end, valid until the next call; false at the end of the text.
