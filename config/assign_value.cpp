@@ -9,7 +9,7 @@
 namespace isobar {
 namespace {
 
-/// One overload for each type of target.
+/// Visitor of Setting::Target: checks and assigns the value, one overload for each type of target.
 class Assign {
  public:
   Assign(const Setting& setting, const TomlPlace& place)

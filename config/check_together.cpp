@@ -8,7 +8,7 @@
 namespace isobar {
 namespace {
 
-/// Throws for the broken rules of one file.
+/// Throws ConfigError for the first broken rule, with the name of the file.
 class Requirements {
  public:
   explicit Requirements(const std::string& file) : file_(file) {}
@@ -23,7 +23,7 @@ class Requirements {
   const std::string& file_;
 };
 
-/// Why a DPS310 cannot measure at these rates.
+/// Error text for DPS310 rates whose measurements take 1 s or more in a second.
 std::string busy_text(const dps310::Settings& settings) {
   const auto product = [](int rate_hz, int oversampling) {
     return std::to_string(rate_hz) + " x " +

@@ -20,17 +20,17 @@ bool is_in_range(const Setting& setting, double value);
 /// Whether a text or a number, spelled as a text, is one of the choices of a setting.
 bool is_choice(const Setting& setting, const std::string& value);
 
-/// Whether a text keeps a rule.
+/// Whether a text obeys a rule.
 bool keeps_rule(TextRule rule, const std::string& text);
 
-/// Whether the value in the setting's place keeps the rule.
+/// Whether the current value of a setting obeys the setting's rule.
 bool keeps_rule(const Setting& setting);
 
 /// Checks a calibration as a whole.
 /// @throws ConfigError "PLACEkey: rule" when it cannot be used
 void check_compensation(const CompensationConfig& compensation, const std::string& place);
 
-/// Checks the rules that tie several settings together.
+/// Checks the rules between settings, such as min_range_m < max_range_m.
 /// @throws ConfigError "file: key: rule" when one is broken
 void check_together(const Config& config, const std::string& file);
 

@@ -10,7 +10,7 @@
 namespace isobar {
 namespace {
 
-constexpr std::size_t kLineBytes = 110;  // as the source's lines
+constexpr std::size_t kLineBytes = 110;  // line length of the sources, too
 
 /// Comment lines of at most kLineBytes, broken between words.
 void append_comment(std::string_view text, std::string& out) {
@@ -57,8 +57,8 @@ void append_setting(const Setting& setting, const std::string& spelled, std::str
   out += spelled + " = " + value_text(setting) + "\n";
 }
 
-/// The settings of one audience under a heading. Keys are spelled with their section, as TOML allows a
-/// section to stand only once and a section may have settings of both audiences.
+/// The settings of one audience, under a heading. Keys are dotted (section.name): a section may have settings
+/// of both audiences, and TOML allows each [section] only once.
 void append_audience(const std::vector<Setting>& settings, Audience audience, const char* heading,
                      std::string& out) {
   out += "\n";

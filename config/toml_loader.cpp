@@ -23,7 +23,7 @@ void TomlLoader::load(const toml::table& table, const std::string& prefix) {
   }
 }
 
-/// A key that is no setting: a section, or an error.
+/// Handles a key that is not in the settings table: a section, or an error.
 void TomlLoader::load_unknown(const TomlPlace& place, const std::string& key) {
   const bool is_section = std::any_of(settings_.begin(), settings_.end(), [&key](const Setting& setting) {
     return setting.key.starts_with(key + ".");

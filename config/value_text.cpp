@@ -11,7 +11,7 @@
 namespace isobar {
 namespace {
 
-/// A TOML float, which needs a dot or an exponent.
+/// A number as a TOML float: with a dot or an exponent, as TOML requires.
 std::string float_text(double value) {
   std::string text = number_text(value);
   return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;

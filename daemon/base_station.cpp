@@ -3,7 +3,7 @@
 //
 //   barometer ─ samples ─▶ station ─ samples with their noise ─▶ isobar-dds ──▶ DDS ──▶ all robots
 //
-// Programs, topics in shared memory and health report are those of a robot.
+// Programs, shared-memory topics and the type of the health report are the same as on a robot.
 #include "daemon/base_station.hpp"
 
 #include <spdlog/fmt/fmt.h>

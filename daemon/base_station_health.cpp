@@ -10,7 +10,8 @@ namespace {
 
 using ipc::HealthLevel;
 
-/// A second base station counts as present for this long after its last sample: base stations may send only once a second.
+/// Time after its last sample for which a second base station is reported: ten samples of a base station that
+/// sends once a second.
 constexpr std::int64_t kRivalMemoryNs = 10'000'000'000;
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }

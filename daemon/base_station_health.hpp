@@ -14,7 +14,7 @@ namespace isobar {
 /// Adds one entry: name, level, message, value.
 using AddEntry = std::function<void(const std::string&, ipc::HealthLevel, const std::string&, double)>;
 
-/// Adds the entry `name`: state, rate, clock offset, a competing station.
+/// Adds the entry `name`: state, rate and clock offset of the base station, or a second one with its name.
 /// @param now_ns robot clock
 /// @param where the input that receives it, such as a topic
 void add_base_station_state(const std::string& name, const BaseStationStatus& status, std::int64_t now_ns,

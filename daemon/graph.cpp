@@ -22,8 +22,8 @@ std::vector<std::string> refusals_of(const WorkerGroup& workers, const RealtimeS
   return refusals;
 }
 
-/// The supervise loop: health reports to shared memory, level
-/// changes to the log, a fed watchdog while all threads live.
+/// The supervise loop: publishes health reports, logs level changes, and feeds the watchdog while no thread
+/// hangs.
 void supervise(Graph& graph, Service& service, std::vector<std::string> realtime_refusals) {
   HealthReporter reporter(graph, std::move(realtime_refusals));
   ReportSchedule schedule;

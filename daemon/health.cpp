@@ -45,7 +45,7 @@ void HealthMonitor::fill_deadlines(const StatusSnapshot& now, HealthReport& repo
   add_deadline(report, "registration/deadline", now.registration.punctuality, last_.registration.punctuality,
                "poses");
   add_deadline(report, "map/deadline", now.map.punctuality, last_.map.punctuality, "updates");
-  // With locked memory there should be none.
+  // Only with locked memory, where no page fault should occur after the warm-up.
   if (config_.realtime.enabled) {
     add_count(report, "registration/page_faults", now.registration.page_faults,
               last_.registration.page_faults, "page faults of the registration, some microseconds each");
@@ -123,7 +123,7 @@ void HealthMonitor::fill_base_stations(const StatusSnapshot& now, HealthReport& 
                                     double value) { add_entry(report, name, level, message, value); });
 }
 
-// Faults found in the values; silence is in the entry of the stream.
+// Faults detected from the values of the samples; silence is reported by the entry of the stream.
 void HealthMonitor::fill_faults(const StatusSnapshot& now, HealthReport& report) {
   const BarometerHealth& health = now.prior.barometers;
   const auto add = [&report](const char* name, BarometerFault fault) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The health report of a robot: are all sensors alive, are all stages in time, what was refused.
+// Health report of a robot: state of each sensor, punctuality of each stage, counts of refused data.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +26,8 @@ struct StatusSnapshot {
   MapStatus map;
 };
 
-/// Adds the status of the threads to a health report. Rates and
-/// growth are relative to the last call. One thread.
+/// Adds the health entries of a robot's stages to a report. Rates and growth of counters refer to the time
+/// since the last call. One thread.
 class HealthMonitor {
  public:
   explicit HealthMonitor(const Config& config) : config_(config) {}

@@ -16,7 +16,8 @@ class HealthReporter {
   HealthReporter(Graph& graph, std::vector<std::string> realtime_refusals)
       : graph_(graph), refusals_(std::move(realtime_refusals)) {}
 
-  /// Checks the threads and fills an empty report.
+  /// Checks the heartbeats and fills an empty report.
+  /// @param now_ns robot clock
   /// @return true when all threads are alive
   bool fill(std::int64_t now_ns, ipc::HealthReport& report);
 

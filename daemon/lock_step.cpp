@@ -5,7 +5,7 @@ namespace isobar {
 
 namespace {
 
-/// Without a tolerance in time: a scan waits for the prior at its end, or for finish().
+/// Admission in lock step: a scan is admissible once a prior reaches its end (no tolerance), or in finish().
 constexpr ScanQueueConfig kLockStepQueue{.reach_ns = 0, .wait_ns = 1, .admission = ScanAdmission::kEvery};
 
 }  // namespace

@@ -21,6 +21,7 @@
 
 namespace isobar {
 
+/// The pipeline in lock step, in the caller's thread.
 class LockStep {
  public:
   /// @param sink receives the poses

@@ -63,7 +63,8 @@ class RobotGraph final : public Graph {
     workers_.add(registration_.worker());
     workers_.add(prior_.worker());
     workers_.add(samples_.worker());
-    // Not watched: it can only hang in the kernel, where a restart does not help, and poses go on without it.
+    // Not watched: it can hang only in the kernel, which a restart does not cure, and poses continue without
+    // it.
     if (barometer_) workers_.add(barometer_->worker(), Watch::kNo);
     workers_.add(lidar_.worker());
   }

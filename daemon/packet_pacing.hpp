@@ -5,16 +5,16 @@
 
 namespace isobar {
 
-/// Pauses between reads of the lidar's socket, like interrupt moderation of a network card. To wake for each of 750
-/// packets a second costs four times as much as decoding them, and the packets of the middle of a scan are not urgent:
-/// they are read several at a time, those near the expected end of the scan (last end + last period) one by one. The
-/// kernel stamps packets on arrival, so their times do not change. One thread.
+/// Pauses between reads of the lidar's socket, like interrupt moderation of a network card: waking up for
+/// each of 750 packets a second costs four times as much as decoding them. Packets of the middle of a scan
+/// are read several at a time, those near its expected end (last end + last period) one by one. The kernel
+/// stamps packets on arrival, so the pauses do not change their times. One thread.
 class PacketPacing {
  public:
   /// Pause between two reads: six or seven packets of a VLP-16; the kernel buffers 90.
   static constexpr std::int64_t kPauseNs = 8'000'000;
-  /// No pause starts later than this before the expected end: the motor holds its speed to a few percent, and a pause
-  /// must not reach the end.
+  /// Shortest time from the start of a pause to the expected end of the scan: the pause itself, and 4 ms
+  /// because the motor holds its speed only to a few percent.
   static constexpr std::int64_t kMarginNs = kPauseNs + 4'000'000;
   /// Longest period of a rotating lidar: 4 Hz. A longer gap between scans gives no period.
   static constexpr std::int64_t kLongestScanNs = 250'000'000;

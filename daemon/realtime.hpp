@@ -20,7 +20,8 @@ struct ThreadSettings {
 /// @return empty, or what the system refused and how to allow it
 [[nodiscard]] std::string apply_to_this_thread(const ThreadSettings& settings) noexcept;
 
-/// Applies each of the settings to a thread that ends at once, so that refusals are known before the pipeline starts.
+/// Applies each of the settings to a thread that ends at once, so that refusals are known before the pipeline
+/// starts.
 /// @return one sentence for each refusal
 [[nodiscard]] std::vector<std::string> try_settings(const std::vector<ThreadSettings>& settings);
 

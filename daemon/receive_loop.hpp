@@ -9,7 +9,7 @@
 namespace isobar {
 
 /// Loop of a thread that receives datagrams: `take(datagram)` for each datagram; a beat and `report()` after
-/// each datagram and every 200 ms without one. Returns after the receiver was stopped. Both must not throw.
+/// each datagram and every 200 ms without one. Returns after the receiver was stopped. Neither may throw.
 template <class Take, class Report>
 void receive_until_stopped(UdpReceiver& receiver, Heartbeat& heartbeat, const Take& take,
                            const Report& report) noexcept {

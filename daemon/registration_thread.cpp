@@ -74,8 +74,9 @@ void RegistrationThread::register_scan(const Scan& scan) noexcept {
   if (loaned != nullptr) registered_scans_.publish(loaned);
 }
 
-// Poses of waiting scans go first, since a pose at the newest prior would make theirs out of order. For the
-// same reason not just after this thread or the whole machine was held up: scans may still be on their way.
+// Bridges only while no scan waits: a pose at the newest prior would put the older poses of waiting scans out
+// of order. For the same reason not directly after a stall of this thread or of the machine, when scans may
+// still be in transit.
 void RegistrationThread::bridge_silence(bool scan_arrived, std::int64_t now_ns) noexcept {
   if (scan_arrived || now_ns - last_round_ns_ > kHeldUpNs) quiet_since_ns_ = now_ns;
   last_round_ns_ = now_ns;

@@ -46,11 +46,11 @@ class RegistrationThread final : private EstimateSink {
   [[nodiscard]] RegistrationStatus status() const noexcept { return status_.get(); }
 
  private:
-  /// Scans until every page in use has been touched once; page faults count from here.
+  /// Warm-up, after which every page in use has been touched once; page faults are counted from its end.
   static constexpr std::uint64_t kWarmUpScans = 20;
-  /// Longest pause between two rounds of a thread that polls every 50 ms; after a longer one it was held up.
+  /// Pause between two rounds beyond which this thread, which polls every 50 ms, counts as stalled.
   static constexpr std::int64_t kHeldUpNs = 200'000'000;
-  /// Time without a scan after which none is on its way.
+  /// Time without a scan after which no scan is in transit.
   static constexpr std::int64_t kQuietNs = 90'000'000;
 
   void loop() noexcept;

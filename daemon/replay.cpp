@@ -17,7 +17,8 @@ namespace isobar {
 
 namespace {
 
-/// Writes the poses and counts the scans that were registered with a method of fewer inputs than the configured one.
+/// Writes the poses; counts the scans whose registration fell back to a method with fewer inputs than the
+/// configured one.
 class OutputSink : public EstimateSink {
  public:
   explicit OutputSink(files::RunOutput& output) : output_(output) {}

@@ -11,7 +11,7 @@ namespace isobar {
 inline constexpr std::int64_t kReportEveryNs = 1'000'000'000;
 
 /// Decides when a health report is due: every second, and when the state of the barometer changes. The first
-/// one after a second, by which time every sensor has sent. One thread.
+/// report is due one second after the first call, by which time every working sensor has sent. One thread.
 class ReportSchedule {
  public:
   [[nodiscard]] bool due(std::int64_t now_ns, BarometerState barometer) {

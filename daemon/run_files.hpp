@@ -12,7 +12,7 @@
 namespace isobar {
 
 /// Files of a live run: the run folder of [output] and the tile store of the map, each only if configured.
-/// Main thread, except while a thread of the graph uses one of them.
+/// Main thread only; output() and store() belong to the output thread and the map thread while these run.
 class RunFiles {
  public:
   /// Creates the folders and writes the settings of the run.

@@ -20,7 +20,7 @@ enum class ScanAdmission : std::uint8_t {
 /// When a scan is admissible: once priors reach its end.
 struct ScanQueueConfig {
   std::int64_t reach_ns =
-      6'000'000;  ///< age of the newest prior, against the end of the scan, that is still accepted
+      6'000'000;  ///< largest age of the newest prior, counted back from the end of the scan
   std::int64_t wait_ns = 50'000'000;  ///< longest wait for priors after the arrival of the scan
   ScanAdmission admission = ScanAdmission::kNewest;
 };
@@ -32,14 +32,14 @@ struct DroppedScan {
 };
 
 /// Scans that wait for their priors or for the registration. Dropped and lost scans are counted and listed,
-/// so that their poses can come from the prior. `Handle` is a movable pointer to something with `sequence`
-/// and `end_stamp_ns`; empty when default-constructed. Allocates nothing. One thread.
+/// so that their poses can come from the prior. `Handle`: movable pointer to a scan (members `sequence` and
+/// `end_stamp_ns`), empty when default-constructed. Allocates nothing. One thread.
 template <class Handle>
 class ScanQueue {
  public:
   /// Capacity for kNewest: each waiting scan holds a chunk of shared memory.
   static constexpr std::size_t kMaxWaiting = 3;
-  /// Capacity for kEvery: so many wait only when the IMU is silent.
+  /// Capacity for kEvery: reached only while the IMU is silent.
   static constexpr std::size_t kMaxWaitingEvery = 5;
   /// Length of the list of dropped scans, the newest ones: 3 s of a lidar at 10 Hz. All are counted.
   static constexpr std::size_t kMaxListed = 32;
@@ -88,7 +88,7 @@ class ScanQueue {
   [[nodiscard]] std::uint64_t dropped_count() const noexcept { return dropped_count_; }
 
  private:
-  /// Largest loss: a larger step of the sequence number is a restart of the lidar thread.
+  /// Largest step of the sequence number that counts as loss; a larger one is a restart of the lidar thread.
   static constexpr std::uint32_t kMaxMissing = 1U << 16U;
 
   struct Waiting {

@@ -9,9 +9,9 @@
 
 namespace isobar {
 
-/// Sequence lock: the newest value of one writer thread for any number of reader threads. The writer never waits; a
-/// reader retries when a write interferes. The words are atomics, so there is no data race (H.-J. Boehm, "Can seqlocks
-/// get along with programming language memory models?", 2012).
+/// Sequence lock: the newest value of one writer thread for any number of reader threads. The writer never
+/// waits; a reader retries when a write interferes. The words are atomics, so there is no data race (H.-J.
+/// Boehm, "Can seqlocks get along with programming language memory models?", 2012).
 template <class T>
 class SeqLock {
   static_assert(std::is_trivially_copyable_v<T>);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a program owes its service manager: signals, sd_notify(3), and the supervise loop of its main thread.
-// The same for isobard, in both roles, and isobar-dds.
+// Service interface of a program: stop signals, sd_notify(3) and the supervise loop of the main thread.
+// Used by isobard, in both roles, and by isobar-dds.
 #pragma once
 
 #include <chrono>
@@ -27,8 +27,8 @@ class Service {
   /// Default period of the supervise loop.
   static constexpr std::chrono::milliseconds kTick{100};
   /// The supervise loop: calls `tick` once a period until a stop signal arrives, then reports STOPPING.
-  /// @param tick returns true when it has just checked its threads and all are alive: this
-  ///        feeds the watchdog. False in ticks without a check, or while a thread hangs.
+  /// @param tick returns true when it has just checked its threads and none hangs, which feeds the watchdog;
+  ///        false in a tick without a check or while a thread hangs
   void supervise(const std::function<bool()>& tick, std::chrono::milliseconds period = kTick);
 
   /// READY=1, with the line that `systemctl status` shows. Empty: no line.

@@ -26,8 +26,8 @@ struct StationStatus {
 };
 
 /// Calibrates a base station's samples, adds their measured noise and publishes
-/// them for isobar-dds to send to the robots. A sample that carries its own
-/// variance keeps it; the others get the estimate once it is accurate enough.
+/// them for isobar-dds to send to the robots. A sample with a variance of its own
+/// keeps it; other samples get the estimate once its own error is below a third.
 class StationThread {
  public:
   StationThread(const AltimeterConfig& config, const CompensationConfig& compensation,

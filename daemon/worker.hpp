@@ -24,14 +24,14 @@ class Heartbeat {
   std::atomic<std::int64_t> last_ns_;  // robot clock
 };
 
-/// One thread: its name, scheduling, start, stop, join and heartbeat. A class of the pipeline holds a Worker
-/// as its last member, so that the thread is joined before anything the thread uses is destroyed; besides,
-/// the class is a noexcept loop and the loop's state. Owner's thread only, except heartbeat() and wake().
+/// One thread: name, scheduling, start, stop, join and heartbeat. A thread class consists of a noexcept loop,
+/// the state of that loop and, as its last member, a Worker: its destructor joins the thread before any state
+/// of the loop is destroyed. Owner's thread only, except heartbeat() and wake().
 class Worker {
  public:
-  /// @param source what the loop sleeps on. `source.stop()` ends the current and all
-  ///        later waits. `source.wake()`, where it exists, ends one wait; a source
-  ///        without it must time out several times a second by itself. Outlives this.
+  /// @param source wait primitive of the loop; must outlive the Worker. `source.stop()` ends the current and
+  ///        all later waits. `source.wake()`, if it exists, ends one wait, so that an idle loop beats;
+  ///        without it the loop's waits must have a timeout well below WorkerGroup::kSilenceNs.
   /// @param loop must not throw; beats in every round; returns once the source is stopped
   template <class WaitSource>
   Worker(ThreadSettings settings, WaitSource& source, std::function<void()> loop)
@@ -42,11 +42,12 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  /// Starts the thread; once. The source stays stopped, so a stage is restarted by constructing it anew.
+  /// Starts the thread. Call once: a stopped source stays stopped, so a stage is restarted by constructing it
+  /// anew.
   /// @throws std::system_error when the kernel refuses a thread
   void start();
   void stop() noexcept;  ///< stops the source and joins; does nothing the second time
-  /// Makes a sleeping loop go round once. Any thread.
+  /// Ends one wait of the loop; does nothing if the source has no wake(). Any thread.
   void wake() const {
     if (wake_source_) wake_source_();
   }

@@ -18,8 +18,8 @@ enum class Watch : std::uint8_t { kYes, kNo };
 /// Workers in start order, consumers first. Does not own them: declare the group after them. Main thread.
 class WorkerGroup {
  public:
-  /// A thread without a beat for longer hangs. 20 times the slowest map update; with the 10 s of WatchdogSec=
-  /// a disk that stalls for a moment does not restart the estimator.
+  /// Time without a beat after which a thread counts as hung: 20 times the slowest map update. Together with
+  /// WatchdogSec= of 10 s, a disk that stalls for a moment does not restart the estimator.
   static constexpr std::int64_t kSilenceNs = 5'000'000'000;
 
   WorkerGroup() = default;
@@ -33,15 +33,18 @@ class WorkerGroup {
   /// @return one sentence for each refusal by the system
   [[nodiscard]] std::vector<std::string> refused_settings() const;
 
-  /// Consumers first: nothing is produced without a consumer.
+  /// Starts the threads in the order of add(), consumers first: no message is produced without a consumer.
   /// @throws std::system_error when a thread is refused
   void start();
-  /// Producers first: everything under way still reaches its consumer. Joins.
+  /// Stops and joins the threads in reverse order, producers first: messages in the queues still reach their
+  /// consumers.
   void stop() noexcept;
 
-  /// Checks all heartbeats and wakes all workers, so that an idle one beats before the next check. (A time
-  /// limit on its wait would not do: iceoryx waits on the wall clock, and a clock that is set back would make
-  /// idle look hung.) Call at least once a second.
+  /// Checks the heartbeats of all watched workers, then wakes them, so that an idle one beats before the next
+  /// check. A timeout of the wait would not suffice: iceoryx's timed wait runs on the wall clock, and after
+  /// that clock is set back an idle thread would look hung. Call at least once a second.
+  /// @param now_ns robot clock
+  /// @return true when none hangs
   [[nodiscard]] bool all_alive(std::int64_t now_ns);
   /// Adds the result of the last check, as the entry "threads".
   void fill(ipc::HealthReport& report) const;

@@ -19,6 +19,7 @@ namespace detail {
 /// Publisher of untyped chunks. Belongs to one thread.
 class RawPublisher {
  public:
+  /// @param bytes,alignment of the payload
   RawPublisher(const char* topic, std::uint32_t history, std::size_t bytes, std::size_t alignment);
   ~RawPublisher();
   RawPublisher(const RawPublisher&) = delete;
@@ -37,6 +38,7 @@ class RawPublisher {
 /// Subscriber of untyped chunks. Belongs to one thread.
 class RawSubscriber {
  public:
+  /// @param bytes expected size of the payload; messages of another size are refused, see rejected()
   RawSubscriber(const char* topic, std::uint32_t depth, std::uint32_t history, std::size_t bytes);
   ~RawSubscriber();
   RawSubscriber(const RawSubscriber&) = delete;

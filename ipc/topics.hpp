@@ -88,8 +88,8 @@ struct HealthReport {
   }
 };
 
-/// A topic: one row of the table below. isobard publishes it; isobar-dds publishes samples, too. Any number
-/// of subscribers.
+/// A topic: one row of the table below. Published by isobard, topics of samples also by isobar-dds. Any
+/// number of subscribers.
 template <class Payload>
 struct Topic {
   static_assert(std::is_trivially_destructible_v<Payload>);

@@ -13,9 +13,9 @@ namespace {
 using ipc::HealthLevel;
 using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
 
-/// Longest wait of a thread, so that its round counter shows that it is alive.
+/// Longest wait of a thread, so that rounds() of an idle pose thread still advances.
 constexpr auto kMaxWait = 250ms;
-/// isobard reports its health once a second. After three missed reports the diagnostics say so [ns].
+/// Time without a health report after which the diagnostics report its absence [ns]: three periods of 1 s.
 constexpr std::int64_t kMissingReportNs = 3'000'000'000;
 
 std::int64_t steady_ns() {

@@ -18,7 +18,7 @@
 
 namespace isobar::bridge {
 
-/// Publishes diagnostics that say that isobard is not running. For use before a Forwarding exists.
+/// Publishes a diagnostics error, "isobard is not running". Only while no Forwarding exists.
 void report_absence(Outputs& outputs, dds::DiagnosticsBuilder& builder);
 
 /// Forwards poses and clouds in two threads, so that a cloud of 1 MiB never delays odometry. Requires an

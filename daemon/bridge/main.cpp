@@ -31,12 +31,13 @@ using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
 
 /// Longest wait for isobard in one round of the supervise loop; stop signals are seen between two rounds.
 constexpr auto kAttachTimeout = 400ms;
-/// isobard sends hundreds of priors a second and its health once a second. After this silence the shared
-/// memory no longer reaches this process, for instance because iceoryx unregistered it while it was stopped.
+/// Longest silence of a running isobard: it sends hundreds of priors a second and its health once a
+/// second. After a longer one this process is no longer connected, for instance because iceoryx
+/// unregistered it while it was stopped.
 constexpr auto kMaxSilence = 5s;
-/// Attaching takes milliseconds, but blocks for ever when isobard ends in the middle of it.
+/// Time limit for attaching: milliseconds, but it blocks for ever when isobard ends in the middle of it.
 constexpr auto kAttachLimit = 10s;
-/// Detaching takes less than a second, but blocks for ever when isobard hangs.
+/// Time limit for detaching: less than a second, but it blocks for ever when isobard hangs.
 constexpr auto kDetachLimit = 4s;
 
 /// The DDS side.
@@ -77,8 +78,8 @@ class Connection {
     forwarding_.put_received(receiving_.counts());
     if (const auto reason = reason_to_restart()) {
       spdlog::warn("{}; restarting", *reason);
-      // Remote readers learn that this participant ends. Shared memory is left as it is: without isobard it
-      // cannot be detached from, and the restarted program does not need it.
+      // dds_delete tells remote readers that this participant ends. No detaching from shared memory: that
+      // blocks without isobard, and the restarted program does not need it.
       dds_delete(network_.participant.get());
       replace_process();
     }

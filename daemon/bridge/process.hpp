@@ -9,8 +9,8 @@ namespace isobar::bridge {
 /// Stores program path and arguments for replace_process().
 void remember_arguments(char** argv);
 
-/// Restarts this program in place, by exec: same process id, same arguments, no other state. Safe in whatever
-/// state the libraries are. Ends the process with code 69 when exec fails.
+/// Restarts this program in place, by exec: same process id, same arguments, no other state. Safe in any
+/// state of the libraries. Ends the process with code 69 when exec fails.
 [[noreturn]] void replace_process() noexcept;
 
 /// replace_process() after 1 s, for faults that may recur at once.

@@ -20,12 +20,14 @@ struct Options {
   std::optional<std::string> network_interface;
 };
 
+/// Settings of the bridge, from the configuration and the command line.
 struct Settings {
   bool is_base_station = false;
   dds::DdsConfig dds;
   dds::SensorMounts mounts;
 };
 
+/// Adds the options of the bridge to its command line; parsing fills `options`.
 void add_options(CLI::App& app, Options& options);
 
 /// @throws ConfigError when the file or an option on the command line breaks a rule

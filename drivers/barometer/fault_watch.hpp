@@ -8,8 +8,8 @@
 
 namespace isobar {
 
-/// Detector of frozen results. Air and converter noise always move the last bits of a 24 bit result: sixteen
-/// equal ones in a row happen by chance once in years.
+/// Detector of frozen results. Noise of air and converter moves the last bits of every 24 bit result:
+/// kMinEqual equal ones in a row happen by chance once in years.
 class StuckWatch {
  public:
   static constexpr std::uint64_t kMinEqual = 16;
@@ -68,7 +68,7 @@ class FaultWatch {
 
   static constexpr std::int64_t kFirstWaitNs = 100'000'000;
   static constexpr std::int64_t kLongestWaitNs = 5'000'000'000;
-  /// Time of good results after which the back-off starts at kFirstWaitNs again.
+  /// Duration of good results after which the back-off starts again at kFirstWaitNs.
   static constexpr std::int64_t kWellNs = 2'000'000'000;
 
   std::int64_t silence_ns_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The clock of a live run. Core never reads it: stages get stamps.
+// Clock of a live run. Core never reads it: its stages get time stamps with the data.
 #pragma once
 
 #include <cstdint>

@@ -9,7 +9,7 @@
 //   base,SEQ,t_ns,pressure_pa,temperature_c        the base station's barometer
 //   wheel,SEQ,t_ns,vx,vy,wz                        m/s, m/s, rad/s: twist of base_link in base_link
 //
-// SEQ: number of lines of that kind sent before, 0 … 2^32-1, wraps; 0 out of turn is a restarted sender.
+// SEQ: number of lines of that kind sent before, 0 … 2^32-1, wraps; an unexpected 0 is a restarted sender.
 // t_ns: time of measurement on the sender's clock, int64; 0: unknown, replaced with the time of receipt.
 #pragma once
 

@@ -65,8 +65,8 @@ struct RawResult {
   return kTime[index_of(oversampling) & 7U];
 }
 
-/// Noise of one pressure [Pa rms] (same table; without a value for 128 times, which is no worse than 64
-/// times).
+/// Noise of one pressure [Pa rms] (same table). The table has no value for 128 times; that of 64 times stands
+/// for it, since more averaging is no worse.
 [[nodiscard]] constexpr double pressure_noise_pa(int oversampling) noexcept {
   constexpr std::array<double, 8> kNoise{2.5, 1.0, 0.5, 0.4, 0.35, 0.3, 0.2, 0.2};
   return kNoise[index_of(oversampling) & 7U];

@@ -8,15 +8,17 @@ namespace isobar::dps310 {
 
 namespace {
 
-/// After a reset the data sheet allows 12 ms for the sensor and 40 ms for the coefficients.
+/// Poll interval and timeout of the ready bits after a reset. The data sheet allows 12 ms for the sensor and
+/// 40 ms for the coefficients.
 constexpr std::int64_t kReadyPollNs = 10'000'000;
 constexpr std::int64_t kReadyTimeoutNs = 100'000'000;
 /// Tolerance of the data sheet's typical times: the chip's oscillator may be slower.
 constexpr std::int64_t kSlackNs = 20'000'000;
+/// Bounds of the poll interval, which is a quarter of the measurement period.
 constexpr std::int64_t kFastestPollNs = 4'000'000;
 constexpr std::int64_t kSlowestPollNs = 20'000'000;
 constexpr std::uint8_t kResultsReady = kPressureReady | kTemperatureReady;
-/// Most reads of one result until two agree.
+/// Largest number of reads of one result until two agree.
 constexpr int kMaxReads = 4;
 
 constexpr std::int64_t to_ns(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }

@@ -64,7 +64,7 @@ class Sensor final : public BarometerDevice {
   std::int64_t newest_temperature_ns_ = 0;
   Coefficients coefficients_;
   RawResult raw_;                 ///< newest pressure and newest temperature
-  std::uint8_t thermometer_ = 0;  ///< kExternalThermometer or 0: the one that the coefficients are for
+  std::uint8_t thermometer_ = 0;  ///< thermometer of the coefficients: kExternalThermometer, or 0: the chip's
 };
 
 }  // namespace isobar::dps310

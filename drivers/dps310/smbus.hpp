@@ -7,11 +7,11 @@
 
 namespace isobar::dps310 {
 
-/// Device on a kernel I2C bus, /dev/i2c-N, accessed by SMBus calls only: byte reads and writes, and block
-/// reads where the adapter has them. i2c-stub and the simplest adapters support no more.
+/// Device on a kernel I2C bus, /dev/i2c-N. Uses SMBus byte reads and writes, and block reads if the adapter
+/// has them: i2c-stub and the simplest adapters support nothing else.
 class SmbusDevice final : public RegisterBus {
  public:
-  /// Does not open the bus.
+  /// Does not open the bus; open() does.
   /// @param address 7 bit
   SmbusDevice(std::string bus, std::uint8_t address);
   ~SmbusDevice() override;

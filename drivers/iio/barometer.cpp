@@ -97,7 +97,7 @@ const char* Barometer::convert(double value, double& pressure_pa) const noexcept
   return implausibility(sample);
 }
 
-/// NaN when the thermometer fails: the pressure stays valid.
+/// Temperature [degrees C]; NaN when the thermometer fails, since the pressure stays valid.
 double Barometer::read_temperature() noexcept {
   if (has_thermometer_) {
     const Channel::Value reading = thermometer_.read();

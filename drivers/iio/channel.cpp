@@ -59,7 +59,8 @@ int Channel::open_file(const char* suffix, bool shared) const noexcept {
   return ::open(path.data(), O_RDONLY | O_CLOEXEC);
 }
 
-/// Reads an attribute of the channel, else the one shared by its kind; keeps `value` when neither exists.
+/// Reads an attribute of the channel, or the one shared by all channels of its kind; leaves `value` unchanged
+/// when neither exists.
 int Channel::read_constant(const char* suffix, double& value) const noexcept {
   int file = open_file(suffix, false);
   if (file < 0 && errno == ENOENT) file = open_file(suffix, true);

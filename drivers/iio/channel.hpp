@@ -7,7 +7,7 @@
 
 namespace isobar::iio {
 
-/// Channel of a device of the kernel's industrial I/O, read through sysfs (Linux,
+/// Channel of an industrial-I/O device of the kernel, read through sysfs (Linux,
 /// Documentation/ABI/testing/sysfs-bus-iio). A driver has either `NAME_input`, processed, or `NAME_raw` with
 /// `NAME_scale` and `NAME_offset`: value = (raw + offset) scale. An attribute shared by all channels of a
 /// kind has no channel number: in_voltage0_raw, in_voltage_scale.

@@ -23,7 +23,8 @@ std::uint32_t to_count(double degrees) {
   return static_cast<std::uint32_t>(std::lround((turns - std::floor(turns)) * kFullTurn)) % kFullTurn;
 }
 
-/// azimuth mod kFullTurn for azimuths below two turns. A division a return would double the decoder's cost.
+/// azimuth mod kFullTurn for azimuths below two turns, without a division: one for each return would double
+/// the decoder's cost.
 std::uint32_t within_turn(std::uint32_t azimuth) {
   return azimuth >= kFullTurn ? azimuth - kFullTurn : azimuth;
 }

@@ -7,7 +7,7 @@
 namespace isobar::velodyne {
 namespace {
 
-/// Largest decrease of the azimuth by motor jitter [0.01 deg]; a larger one is the passage through 0.
+/// Largest decrease of the azimuth by motor jitter [0.01 deg]; a larger one is the wrap-around at 0.
 constexpr std::uint32_t kMaxBackwardJitter = 1'000;
 /// Longest scan: range of ScanPoint::time_4us, 2^16 x 4 us.
 constexpr std::int64_t kMaxScanNs = 262'000'000;

@@ -51,7 +51,7 @@ struct VelodyneCounters {
 ///     }
 ///     if (decoder.flush(*scan)) { publish(scan); }
 ///
-/// Points are in the sensor's frame (x at azimuth 0, y left, z up; recording-format.md). Point times within a
+/// Points are in the sensor's frame (x at azimuth 0, y left, z up). Point times within a
 /// scan come from the sensor's clock; ClockAnchor ties Scan::stamp_ns to the host's clock. A scan ends where
 /// the azimuth passes 0, after a gap of about a turn, at a step of the sensor's clock, and when it is full.
 /// No point is lost.

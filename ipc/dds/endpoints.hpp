@@ -44,7 +44,7 @@ class Writer {
   [[nodiscard]] std::uint64_t failures() const noexcept { return failures_; }
   [[nodiscard]] dds_entity_t get() const noexcept { return writer_.get(); }
 
-  /// Whether a reader is matched. Write latched topics in any case.
+  /// Whether a reader is matched. Latched topics must be written even without one: readers may come later.
   [[nodiscard]] bool has_readers() const noexcept {
     dds_publication_matched_status_t status{};
     return dds_get_publication_matched_status(writer_.get(), &status) == DDS_RETCODE_OK &&

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The DDS outputs: which topics are published, and when.
+// DDS outputs: the published topics and their rates.
 #pragma once
 
 #include <array>
@@ -50,6 +50,7 @@ class PoseOutputs {
 
   /// Publishes altitude, odom and tf at their rates.
   void on_prior(const Prior& prior);
+  /// Publishes the pose and passes it to the propagator of odom and tf.
   void on_pose(const PoseEstimate& pose);
 
   [[nodiscard]] std::vector<dds_entity_t> writers() const;
@@ -93,7 +94,7 @@ class StationOutputs {
   Writer<TemperatureMessage> temperature_;
 };
 
-/// registered_scan and map. One thread, possibly another one than that of PoseOutputs.
+/// registered_scan and map. One thread; it may differ from the thread of PoseOutputs.
 class CloudOutputs {
  public:
   /// @throws ServiceError when a DDS entity cannot be created

@@ -26,7 +26,7 @@ ParticipantSettings with_interface(ParticipantSettings settings) {
   return settings;
 }
 
-/// User data of a participant as ROS 2's rmw sets it; ROS 2 tools ignore participants without.
+/// User data of a participant as ROS 2's rmw sets it; ROS 2 tools ignore participants without it.
 constexpr std::string_view kUserData = "enclave=/;";
 
 }  // namespace

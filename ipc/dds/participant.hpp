@@ -41,6 +41,7 @@ class Entity {
 /// @throws ServiceError when the call failed, with its reason
 [[nodiscard]] Entity checked(dds_entity_t handle, const std::string& what);
 
+/// Network settings of a participant, see DdsConfig.
 struct ParticipantSettings {
   int domain_id = 0;
   std::string network_interface;  ///< name or address; empty: chosen automatically

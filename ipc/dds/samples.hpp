@@ -17,7 +17,7 @@ namespace isobar::dds {
 /// positive, which means unknown.
 [[nodiscard]] const char* to_sample(const PressureMessage& message, PressureSample& sample) noexcept;
 
-/// Imu, in the sensor's frame. Without orientation where orientation_covariance[0] is -1 (REP-145).
+/// Imu, in the sensor's frame. orientation_covariance[0] = -1: the message has no orientation (REP-145).
 [[nodiscard]] const char* to_sample(const ImuMessage& message, ImuSample& sample) noexcept;
 
 /// Twist of an Odometry message; its pose is ignored.

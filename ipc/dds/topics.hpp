@@ -11,7 +11,7 @@
 
 namespace isobar::dds {
 
-// ROS 2 types, under short names for those of the generated C code.
+// Short names for the generated C types of the ROS 2 messages.
 using OdometryMessage = nav_msgs_msg_dds__Odometry_;
 using PoseMessage = geometry_msgs_msg_dds__PoseWithCovarianceStamped_;
 using TfMessage = tf2_msgs_msg_dds__TFMessage_;

@@ -24,8 +24,8 @@ inline const iox::mepoo::ChunkHeader& header_of(const void* payload) {
   return *iox::mepoo::ChunkHeader::fromUserPayload(payload);
 }
 
-// The header's address identifies the chunk. The payload's does not: it depends on the alignment of the topic
-// that holds the chunk at the moment.
+// Identified by the address of its header: the payload's address varies with the alignment of the topic that
+// uses the chunk.
 inline void mark_acquired([[maybe_unused]] const void* payload) noexcept {
 #ifdef ISOBAR_TSAN
   __tsan_acquire(const_cast<iox::mepoo::ChunkHeader*>(&header_of(payload)));
