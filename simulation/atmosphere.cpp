@@ -15,8 +15,7 @@ namespace {
 
 constexpr double kDryAirGasJKgK = 287.05;  // specific gas constant
 
-/// Pulse of a door: half a sine wave, then one of opposite sign and half the amplitude. `duration_s`: of
-/// both.
+/// Door pulse: a half sine wave, then one of opposite sign and half the amplitude. `duration_s`: sum of both.
 void add_pulse(std::vector<double>& pressure, double start_s, double duration_s, double peak_pa) {
   const auto first = static_cast<std::size_t>(std::max(0.0, start_s / SplineGrid::kStepS));
   for (std::size_t i = first; i < pressure.size(); ++i) {
@@ -37,8 +36,8 @@ double dynamic_pressure_pa(const std::vector<RawPose>& raw, std::size_t i) {
   return 0.5 * kAirKgM3 * speed * speed;
 }
 
-/// A pressure step at every change of zone, smoothed by a low-pass of 1.5 s, since air takes a second or two
-/// to follow a door.
+/// A pressure step at every change of zone, behind a low-pass of 1.5 s: after a door opens, the pressure
+/// settles within a second or two.
 void add_zones(std::vector<double>& pressure, const std::vector<int>& zones, double sigma_pa,
                Random& random) {
   if (zones.empty() || sigma_pa <= 0.0) return;

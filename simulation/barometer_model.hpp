@@ -29,7 +29,7 @@ struct BarometerErrors {
 class BarometerModel {
  public:
   static constexpr double kRateHz = 32.0;
-  /// Duration of a conversion, at whose end the sample is read: it is the mean pressure over that time.
+  /// Duration of a conversion. A sample is the mean pressure over this time and is read at its end.
   static constexpr double kConversionS = 0.028;
 
   BarometerModel(const BarometerErrors& errors, Random random);

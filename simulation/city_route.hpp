@@ -14,7 +14,7 @@ namespace isobar::simulation {
 /// Sequence of adjacent crossings.
 struct CityWay {
   std::vector<Crossing> crossings;
-  std::size_t first_old = 0;  ///< index of the crossing from which the way returns to streets driven before
+  std::size_t first_old = 0;  ///< index of the crossing where the return through streets driven before starts
 };
 
 /// Requirements on a way.
@@ -33,7 +33,7 @@ struct CityWayWish {
 /// Number of rows that is sufficient for a way.
 [[nodiscard]] int rows_for(const CityWayWish& wish);
 
-/// Route along the way, in its lane, slow in corners and with random stops. In plan: height 0.
+/// Planar route along the way (height 0; see drape()), in its lane, slow in corners, with random stops.
 [[nodiscard]] Route drive_city_way(const CityGrid& grid, const CityWay& way, Random& random);
 
 /// Sets height, pitch and roll of poses in plan to those of the terrain.

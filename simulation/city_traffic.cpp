@@ -18,7 +18,7 @@ constexpr double kStepS = SplineGrid::kStepS;
 /// Distance beyond which objects may appear and disappear: beyond the lidar's range of 100 m.
 constexpr double kSightM = 104.0;
 constexpr double kCarMarginM = 16.0;    ///< distance that cars keep from the centre of a crossing
-constexpr double kPersonMarginM = 9.0;  ///< the same for people: they stay off the cross streets
+constexpr double kPersonMarginM = 9.0;  ///< the same for people, who stay off the cross streets
 
 /// A street between two crossings, and the time for which the robot can see it.
 struct Visit {

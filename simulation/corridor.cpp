@@ -189,8 +189,8 @@ double Corridor::length_m() const {
 
 Rect Corridor::leg_rect(std::size_t leg) const {
   Rect rect = Rect::around(corners_m[leg], corners_m[leg + 1], 0.5 * width_m);
-  // No margin at the two ends of the corridor, at a stairwell or an end wall. The first and last legs lie
-  // along x.
+  // The two ends of the corridor border on a stairwell or an end wall and get no margin. The first and last
+  // legs lie along x.
   if (leg == 0) rect.x0 = corners_m.front().x();
   if (leg + 1 == legs()) rect.x1 = corners_m.back().x();
   return rect;

@@ -33,7 +33,7 @@ struct Space {
   bool has_floor = true;    ///< false: open to the storey below
   bool has_ceiling = true;  ///< false: open to the storey above
   bool outdoors =
-      false;  ///< no surfaces: rays that enter it find nothing; neighbours have no wall towards it
+      false;  ///< open air: no surfaces, no walls of neighbours towards it; rays into it have no return
 };
 
 /// Plan of a storey: spaces cut out of a solid, where a later one replaces earlier ones that it overlaps.

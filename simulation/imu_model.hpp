@@ -25,7 +25,7 @@ struct ImuErrors {
   double vibration_m_s2 = 0.0;                                ///< rms per axis at 0.6 m/s on a flat floor
   double vibration_rad_s = 0.0;                               ///< rms per axis at 0.6 m/s on a flat floor
   bool has_attitude = false;                                  ///< the unit outputs its own attitude estimate
-  double attitude_sigma_rad = 0.0;                            ///< rms error of that per axis
+  double attitude_sigma_rad = 0.0;                            ///< rms error of that estimate, per axis
 
   /// Random errors with the data-sheet figures of the paper's MTi-10 or VN-100; sources in imu_model.cpp.
   /// `tracked`: the robot has tracks, which vibrate.

@@ -20,8 +20,8 @@ struct LidarErrors {
   double azimuth_offset_rad = 0.0;                   ///< azimuth at time 0
   double spin_rate_rad_s = 20.0 * 3.14159265358979;  ///< 600 rpm
   double spin_wobble_rad = 0.0;                      ///< amplitude of a slow oscillation of the speed control
-  double spin_wobble_hz = 0.0;                       ///< its frequency
-  double clock_offset_s = 0.0;                       ///< sensor clock at time 0, past the hour
+  double spin_wobble_hz = 0.0;                       ///< frequency of that oscillation
+  double clock_offset_s = 0.0;                       ///< sensor clock at time 0, since the full hour
   double clock_drift = 0.0;                          ///< rate of the sensor clock minus 1
   double latency_s = 0.0;         ///< minimum time from the last firing to the host's receive stamp
   double latency_jitter_s = 0.0;  ///< mean of the exponentially distributed additional latency

@@ -101,7 +101,8 @@ void LiftDrive::take_lift() {
   doors(!top, 1.0);
 }
 
-/// Extends the lift's samples to the robot's: the lift stood still during the last motion.
+/// Pads the elevator's samples to the length of the robot's: the elevator stands still while the robot
+/// drives.
 void LiftDrive::follow() {
   while (cabin_z_m_.size() < route_.samples().size()) push(cabin_z_m_.back());
 }

@@ -41,8 +41,8 @@ struct Scenario {
   SensorMounts mounts;
   bool has_wheels = true;
   bool tracked = true;                   ///< the wheels are tracks, which slip
-  double air_temperature_c = 20.0;       ///< of the column of air between base station and robot
-  double base_height_m = 1.0;            ///< of the base station's port in the world frame
+  double air_temperature_c = 20.0;       ///< mean over the column of air between base station and robot
+  double base_height_m = 1.0;            ///< height of the base station's port in the world frame
   double start_pressure_pa = 101'325.0;  ///< at height 0 and time 0
 };
 

@@ -11,7 +11,7 @@
 namespace isobar::simulation {
 
 struct RigRequest {
-  std::uint64_t seed = 1;   ///< of the air and of the errors of every sensor
+  std::uint64_t seed = 1;   ///< random seed of the air and of every sensor's errors
   double step_m = 0.03;     ///< height of a step
   int steps = 10;           ///< number of steps, >= 1
   double dwell_s = 20.0;    ///< mean time between steps; each varies by +-20 %, as it is lifted by hand
@@ -38,8 +38,8 @@ struct RigRun {
 ///
 /// Errors: weather, common turbulence, turbulence between the rigs, and offset, scale, flicker, warm-up and
 /// temperature of each sensor. No door pulses and no zones, since the paper's room was quiet.
-/// Turbulence between the rigs: AirErrors::local_turbulence_pa is that of sensors a few metres apart; rigs
-/// nearer to each other share the larger eddies. The structure function of the pressure is proportional to
+/// Turbulence between the rigs: AirErrors::local_turbulence_pa holds for sensors a few metres apart; closer
+/// rigs share the larger eddies. The structure function of the pressure is proportional to
 /// r^(4/3) (Obukhov 1949, Batchelor 1951), hence its rms to r^(2/3), up to kFullTurbulenceM.
 RigRun simulate_rig(const RigRequest& request);
 

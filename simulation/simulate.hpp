@@ -14,7 +14,7 @@ namespace isobar::simulation {
 /// Arguments of simulate().
 struct ScenarioRequest {
   std::string name;         ///< one of scenarios()
-  std::uint64_t seed = 1;   ///< of the world, the path and the errors of every sensor
+  std::uint64_t seed = 1;   ///< random seed of world, path and sensor errors
   bool short_form = false;  ///< a reduced run of 30 to 60 s
   double stop_after_s = std::numeric_limits<double>::infinity();  ///< ends the recording at this time
 };

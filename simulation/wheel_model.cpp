@@ -46,7 +46,7 @@ WheelSample WheelModel::sample(double time_s) {
   const double tilt = std::asin(std::clamp(forward.z(), -1.0, 1.0));
   const double dt_s = 1.0 / kRateHz;
   double slip = slip_.step(dt_s);
-  // On stairs, the tracks run farther than the robot moves when it climbs, and less far when it descends.
+  // Slip on stairs: the tracks run farther than the robot moves when climbing, and less far when descending.
   constexpr double kStairTiltRad = 0.15;
   if (std::abs(tilt) > kStairTiltRad) slip += std::copysign(errors_.stair_slip, tilt * v);
   // The encoders of a robot at rest read exactly zero, also while an elevator moves it.

@@ -62,7 +62,7 @@ FilteredPressure read_base(const AltitudeArguments& arguments, const PressureLog
   const double interval_s = seconds_between(base.samples.front().stamp_ns, base.samples.back().stamp_ns) /
                             static_cast<double>(base.samples.size() - 1);
   const bool slow = interval_s > kSlowBaseS;
-  // The few rows of a weather station are too few to align its clock: it is trusted.
+  // A weather station has too few rows to align its clock, which is therefore trusted.
   std::printf(
       "base: one row per %.2f s, %s\n", interval_s,
       slow ? "smoothed as weather (level and rate); its clock is trusted" : tie_clocks(moved, base).c_str());

@@ -49,8 +49,8 @@ CompensationModel chosen_model(const CalibrateOptions& options, const Calibratio
   return *model;
 }
 
-/// A log at a single temperature cannot show its effect: the user must accept that with --pressure-only.
-/// @throws DataError when the user has not
+/// Logs at a single temperature do not determine temperature terms; the user must accept that.
+/// @throws DataError when temperature terms cannot be fitted and --pressure-only is not given
 void require_temperatures(const CalibrateOptions& options, const AlignedLogs& logs,
                           const Calibration& calibration) {
   const ModelResult& simple = calibration.model(CompensationModel::kSimple);

@@ -13,9 +13,9 @@ namespace isobar::tools {
 
 namespace {
 
-constexpr double kMaxGapS = 0.5;  // as the evaluation's: five scans at 10 Hz
+constexpr double kMaxGapS = 0.5;  // as in the evaluation: five scans at 10 Hz
 
-/// The reference's height at a time; nothing outside its time and in gaps.
+/// Interpolated height of the reference; nullopt outside its time span and in gaps.
 std::optional<double> reference_height_m(const evaluation::Trajectory& reference, std::int64_t stamp_ns) {
   const auto after = std::upper_bound(
       reference.poses.begin(), reference.poses.end(), stamp_ns,

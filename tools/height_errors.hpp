@@ -11,7 +11,7 @@ namespace isobar::tools {
 /// Errors of heights against a reference after subtraction of their mean, because a barometer's zero is
 /// arbitrary. Nothing else is fitted.
 struct HeightErrors {
-  std::size_t count = 0;  ///< of heights compared; without any, all else is 0
+  std::size_t count = 0;  ///< number of heights compared; if 0, all other members are 0
   double offset_m = 0.0;  ///< mean of height minus reference, which was subtracted
   double rms_m = 0.0;
   double largest_m = 0.0;  ///< magnitude

@@ -50,7 +50,7 @@ struct PressureLog {
 PressureLog read_new_values(const std::filesystem::path& file,
                             const recording::PressureColumns& columns = {});
 
-/// Shifts the standing log's stamps to the moved log's clock (recording/base_clock.hpp).
+/// Shifts the standing log's stamps to the moved log's clock (run/recording/base_clock.hpp).
 /// @return a sentence about the shift and its reason
 std::string tie_clocks(const PressureLog& moved, PressureLog& standing);
 

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Progress of a long step for scripts, to be sourced: on a terminal one line that is redrawn every second, in a pipe a line
-# every ten seconds.
+# Progress of a long step, for scripts to source: on a terminal one line that is redrawn every second, in a
+# pipe a line every ten seconds.
 
 # Percentage of ninja edges that are done, from a build log written with NINJA_STATUS='[%f/%t] '.
 percent_of_build() {
   grep -o '^\[[0-9]*/[0-9]*\]' "$1" | tail -n 1 | tr -d '[]' | awk -F/ '{ print int(100 * $1 / $2) }'
 }
 
-# follow_progress LABEL PERCENT_FUNCTION LOG COMMAND…: runs COMMAND with its output in LOG; prints LABEL and the
-# percentage that PERCENT_FUNCTION reads from LOG until COMMAND ends. Returns COMMAND's exit code.
+# follow_progress LABEL PERCENT_FUNCTION LOG COMMAND…: runs COMMAND with its output in LOG. Until it ends,
+# prints LABEL and the percentage that PERCENT_FUNCTION reads from LOG. Returns COMMAND's exit code.
 follow_progress() {
   local label=$1 percent_of=$2 log=$3 seconds=0 interval=10 percent pid
   shift 3

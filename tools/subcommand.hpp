@@ -24,8 +24,8 @@ struct Subcommand {
 std::string typed_command(const CLI::App& command);
 
 /// Adds a subcommand with its own `Options`, which live as long as the parser. After parsing it calls
-/// `run(options)`, or `run(options, typed_command)` for reports that name the command; but not where a
-/// subcommand of its own was chosen.
+/// `run(options)`, or `run(options, typed_command)` for reports that name the command, unless one of the
+/// subcommand's own subcommands was chosen.
 template <typename Options, typename Run>
 Subcommand<Options> add_subcommand(CLI::App& parent, const std::string& name, const std::string& purpose,
                                    Run run) {

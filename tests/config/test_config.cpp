@@ -28,7 +28,7 @@ void fails(const std::string& text, const std::string& words) {
   CHECK_THROWS_WITH_AS(parse_config(text, "c.toml"), doctest::Contains(words.c_str()), ConfigError);
 }
 
-/// Moves a value to another one inside its rules.
+/// Changes a setting to another value within its rules.
 struct Change {
   const Setting& setting;
   void operator()(double* v) const {
@@ -58,9 +58,7 @@ struct Change {
 
 }  // namespace
 
-TEST_CASE(
-    "config/isobar.toml is what `isobar config show` prints, so it holds every key and is never out of "
-    "date") {
+TEST_CASE("config/isobar.toml is up to date: it equals the output of `isobar config show`") {
   std::ifstream in(std::filesystem::path(ISOBAR_SOURCE_DIR) / "config/isobar.toml", std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();
@@ -98,7 +96,7 @@ TEST_CASE("The shown text loads as the same settings, with defaults and with cha
   }
 }
 
-TEST_CASE("Every key stands once, is documented, and its default keeps its own rule") {
+TEST_CASE("Every key is unique and documented, and its default is within its own rule") {
   Config config;
   std::set<std::string> keys;
   for (const Setting& setting : settings_of(config)) {
@@ -106,7 +104,7 @@ TEST_CASE("Every key stands once, is documented, and its default keeps its own r
     CHECK(keys.insert(setting.key).second);
     CHECK(setting.doc.size() > 30);
     CHECK(setting.doc.back() == '.');
-    CHECK(setting.doc.find("…") == std::string::npos);  // no half sentence that the neighbour completes
+    CHECK(setting.doc.find("…") == std::string::npos);  // complete without the next key's text
     CHECK(keeps_rule(setting));
     CHECK(setting.apply == Apply::kRestart);  // neither program reloads its configuration yet
     CHECK((setting.section().empty() || !section_doc(setting.section()).empty()));
@@ -166,7 +164,7 @@ TEST_CASE("Values outside their rules are refused with file, line, column, key, 
   fails("[altimeter]\nmin_pressure_pa = 118000.0\n", "must be below altimeter.max_pressure_pa");
 }
 
-TEST_CASE("Impossible rates of a barometer are refused if it is the one in use") {
+TEST_CASE("Impossible rates of a barometer are refused if that barometer is in use") {
   const std::string greedy = "[barometer.dps310]\npressure_rate_hz = 32\npressure_oversampling = 64\n";
   fails("[barometer]\nsource = \"dps310\"\n" + greedy,
         "c.toml: barometer.dps310.pressure_rate_hz: pressure 32 x 104.4 ms and temperature 4 x 14.8 ms are "
@@ -200,7 +198,7 @@ TEST_CASE("A base station is configured in three lines, and only the keys it use
   }
 }
 
-TEST_CASE("Keys that a base station does not use are refused there, and only there") {
+TEST_CASE("Keys that a base station does not use are refused for that role only") {
   const std::string role = "role = \"base-station\"\n";
   fails(role + "[lidar]\nport = 2369\n", "c.toml:3:8: lidar.port: is not used where role = \"base-station\"");
   fails(role + "method = \"3dof\"\n", "c.toml:2:10: method: is not used");
@@ -286,7 +284,7 @@ TEST_CASE("An unknown key is an error that names the nearest one") {
   fails("[dds.propagator]\nzzzzzzzzzzzzzzz = 3\n", "unknown key");
 }
 
-TEST_CASE("A file that is no configuration is refused with the reason; an empty one gives the defaults") {
+TEST_CASE("A file that is not a configuration is refused with the reason; an empty one gives the defaults") {
   fails("[lidar\n", "c.toml:1:");
   fails("a = 1\na = 2\n", "c.toml:2:");
   CHECK_THROWS_WITH_AS(load_config("/"), doctest::Contains("is a folder"), ConfigError);
@@ -294,7 +292,7 @@ TEST_CASE("A file that is no configuration is refused with the reason; an empty 
   CHECK(show_config(parse_config("", "c.toml")) == show_config(Config{}));
 }
 
-TEST_CASE("A whole number is accepted for a real one") {
+TEST_CASE("An integer is accepted for a floating-point setting") {
   CHECK(parse_config("[map]\ncell_m = 1\n", "c.toml").map.cell_m == 1.0);
 }
 

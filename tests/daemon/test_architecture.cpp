@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The rules of the house that a compiler does not check: which folder may include which, which files may name a library,
-// and how long a file may be.
+// Architecture rules that a compiler does not check: which folder may include which, which files may include
+// a library, and how long a file may be.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -73,7 +73,7 @@ const std::map<std::string, Names> kMayInclude{
     {"tools", {"core", "drivers", "run", "simulation", "ipc", "config", "daemon"}},
 };
 
-/// The same inside core. Headers of core itself (samples, estimates, errors …) are free to all.
+/// The same inside core. Headers of core itself (samples, estimates, errors …) may be included anywhere.
 const std::map<std::string, Names> kMayIncludeInCore{
     {"core/statistics", {}},
     {"core/time", {}},
@@ -84,7 +84,7 @@ const std::map<std::string, Names> kMayIncludeInCore{
     {"core/registration", {"core/map", "core/prior"}},
 };
 
-/// Libraries and the places that may name them. A library that is not listed is free.
+/// Libraries and the places that may include them. A library that is not listed may be included anywhere.
 const std::map<std::string, Names> kNamedOnlyBy{
     {"spdlog/", {"daemon/"}},
     {"iceoryx", {"ipc/iceoryx/"}},
@@ -114,7 +114,7 @@ TEST_CASE("an include points from a folder to itself or to a folder below it") {
   }
 }
 
-TEST_CASE("inside core the estimator includes no fits and studies, and no stage a later one") {
+TEST_CASE("inside core the estimator includes no fits or studies, and a stage includes no later stage") {
   for (const auto& [folder, below] : kMayIncludeInCore) {
     for (const Source& source : sources_below(folder)) {
       for (const std::string& include : source.own_includes) {
@@ -139,7 +139,7 @@ TEST_CASE("core has no threads, no I/O, no logging and no clock, and of librarie
   }
 }
 
-TEST_CASE("a library is named by few places") {
+TEST_CASE("a listed library is included only by its permitted places") {
   for (const auto& [folder, below] : kMayInclude) {
     for (const Source& source : sources_below(folder)) {
       for (const std::string& include : source.foreign_includes) {
@@ -152,7 +152,7 @@ TEST_CASE("a library is named by few places") {
   }
 }
 
-TEST_CASE("the estimator does not name DDS: a fault in its parser cannot stop isobard") {
+TEST_CASE("the estimator does not include DDS: a fault in its parser cannot stop isobard") {
   for (const Source& source : sources_below("daemon")) {
     if (source.path.starts_with("daemon/bridge/")) continue;
     for (const std::string& include : source.own_includes) {
@@ -162,7 +162,7 @@ TEST_CASE("the estimator does not name DDS: a fault in its parser cannot stop is
   }
 }
 
-TEST_CASE("a file has one idea: 300 lines at most, and its licence in the first") {
+TEST_CASE("a source file has at most 300 lines, and its licence in the first one") {
   constexpr std::size_t kMostLines = 300;
   for (const auto& [folder, below] : kMayInclude) {
     for (const Source& source : sources_below(folder)) {

@@ -40,7 +40,7 @@ const ipc::HealthEntry* find(const ipc::HealthReport& report, const std::string&
 
 }  // namespace
 
-TEST_CASE("a report that is too long keeps the threads and counts what it dropped") {
+TEST_CASE("a report that is too long keeps the entry for threads and counts the dropped entries") {
   TalkativeGraph graph(100);
   HealthReporter reporter(graph, {"SCHED_FIFO refused"});
   ipc::HealthReport report;
@@ -50,11 +50,11 @@ TEST_CASE("a report that is too long keeps the threads and counts what it droppe
   const ipc::HealthEntry* dropped = find(report, "health/dropped");
   REQUIRE(dropped != nullptr);
   CHECK(dropped->level == ipc::HealthLevel::kWarning);
-  // "threads", 100 entries and one refusal; one place is the counter's own.
+  // "threads", 100 entries and one refusal; the entry for dropped entries itself takes one place.
   CHECK(dropped->value == 1 + 100 + 1 - (ipc::HealthReport::kMaxEntries - 1));
 }
 
-TEST_CASE("a report that fits drops nothing and says so by having no such entry") {
+TEST_CASE("a report that fits has no entry for dropped entries") {
   TalkativeGraph graph(10);
   HealthReporter reporter(graph, {});
   ipc::HealthReport report;
@@ -64,7 +64,8 @@ TEST_CASE("a report that fits drops nothing and says so by having no such entry"
 }
 
 TEST_CASE(
-    "faults of the shared-memory library have an entry from the first one on, a warning while they grow") {
+    "faults of the shared-memory library have an entry from the first one on, a warning while the count "
+    "grows") {
   ipc::HealthReport report;
   add_library_faults(report, 0, 0);
   CHECK(find(report, "shared_memory/faults") == nullptr);
@@ -88,7 +89,7 @@ TEST_CASE("health is reported once a second, and at once when the barometer fail
     }
   };
   tick(BarometerState::kMeasuring, 10);
-  CHECK(reports == 0);  // within the first second every sensor has had its chance
+  CHECK(reports == 0);  // none in the first second, to give every sensor time to start
   tick(BarometerState::kMeasuring, 1);
   CHECK(reports == 1);
   tick(BarometerState::kMeasuring, 3);

@@ -17,7 +17,7 @@ namespace isobar::test::test_service {
 
 namespace {
 
-/// The service manager's end of sd_notify(3).
+/// Receiving socket of sd_notify(3), in place of the service manager.
 class NotifySocket {
  public:
   NotifySocket() : path_(std::filesystem::temp_directory_path() / ("notify-" + std::to_string(::getpid()))) {
@@ -51,7 +51,7 @@ class NotifySocket {
   int socket_ = -1;
 };
 
-/// Takes the pending SIGTERM off this process and unblocks both signals.
+/// Clears pending stop signals of this process and unblocks both of them.
 void clear_signals() {
   sigset_t set;
   sigemptyset(&set);
@@ -65,7 +65,7 @@ void clear_signals() {
 
 }  // namespace
 
-TEST_CASE("the supervise loop feeds the watchdog in ticks that found all alive, and ends with SIGTERM") {
+TEST_CASE("the supervise loop feeds the watchdog only in ticks with all threads alive, and ends on SIGTERM") {
   using namespace std::chrono_literals;
   NotifySocket manager;
   {

@@ -14,7 +14,7 @@ namespace isobar::test::test_worker_group {
 
 namespace {
 
-/// What a stage sleeps on, as ipc::Waiter: without a time limit, until woken or stopped.
+/// Wait object of a stage, like ipc::Waiter: waits without a time limit until woken or stopped.
 class WaitSource {
  public:
   void wake() {
@@ -37,7 +37,7 @@ class WaitSource {
   std::atomic<bool> stopped_{false};
 };
 
-/// A stage that only beats. Its loop can be made to hang, and it records when it ends.
+/// A stage that does nothing but its heartbeat. Its loop can be made to hang, and it records its end.
 class IdleStage {
  public:
   explicit IdleStage(const char* name, std::vector<std::string>* ended = nullptr)
@@ -65,7 +65,7 @@ class IdleStage {
   Worker worker_;
 };
 
-/// What the loop of a socket sleeps on: it times out by itself, so there is no wake().
+/// Wait object of a socket's loop. The loop has a timeout of its own and needs no wake().
 struct PollingSource {
   void stop() {}
 };
@@ -79,7 +79,7 @@ std::string threads_entry(const WorkerGroup& group, ipc::HealthLevel level) {
   return report.entries[0].message;
 }
 
-/// Waits for a beat after `since_ns`; the time limit of the test ends a failure.
+/// Waits for a heartbeat after `since_ns`, without a limit: a missing one runs into CTest's timeout.
 void wait_for_beat(Worker& worker, std::int64_t since_ns) {
   while (worker.heartbeat().last_ns() <= since_ns) std::this_thread::yield();
 }
@@ -116,7 +116,7 @@ TEST_CASE("one hung worker fails the check and is named; an unwatched worker may
   polling.heartbeat().beat();
   CHECK(group.all_alive(last_ns + WorkerGroup::kSilenceNs));
 
-  // Six seconds later by the clock that the group is given; the polling worker has beaten in between.
+  // Six seconds later on the clock passed to the group; the polling worker had its heartbeat in between.
   const std::int64_t later_ns = last_ns + WorkerGroup::kSilenceNs + 1'000'000'000;
   polling.heartbeat().beat_at(later_ns);
   CHECK_FALSE(group.all_alive(later_ns));
@@ -137,7 +137,8 @@ TEST_CASE("a worker that never starts counts as hung after the same time as any 
 }
 
 TEST_CASE(
-    "workers stop in the reverse of their start order, each joined before the next, and stop twice is once") {
+    "workers stop in the reverse of their start order, each joined before the next; a second stop is "
+    "ignored") {
   std::vector<std::string> ended;  // written by one thread at a time, since each is joined before the next
   IdleStage consumer("map", &ended);
   IdleStage middle("registration", &ended);

@@ -24,7 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       }
     }
   } catch (const isobar::DataError&) {
-    return 0;  // no capture
+    return 0;  // not a capture file
   }
   return 0;
 }

@@ -60,14 +60,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const auto store = isobar::FileTileStore::open_to_continue(folder, {}, {});
       repaired = store->tile_count();
     }
-    // A second repair finds nothing to do and loses no tile.
+    // Idempotence: a second repair changes nothing and loses no tile.
     const auto store = isobar::FileTileStore::open_to_continue(folder, {}, {});
     if (store->counters().torn != 0 || store->tile_count() != repaired) std::abort();
     if (!store->put({1, 2, 3}, std::vector<std::byte>(20))) std::abort();
     take_all(*store);
     if (!store->contains({1, 2, 3})) std::abort();
   } catch (const isobar::DataError&) {
-    return 0;  // no map
+    return 0;  // not a map
   }
   return 0;
 }

@@ -26,7 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::vector<std::string> warnings;
     isobar::recording::parse_manifest(text, "fuzz.toml", warnings);
   } catch (const isobar::DataError&) {
-    return 0;  // refused in words
+    return 0;  // the specified refusal
   }
   return 0;
 }

@@ -59,7 +59,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::uint64_t step_ns =
         (choices & 1U) != 0 ? std::uint64_t{data[at + 3]} << (data[at + 4] % 56U) : 1'327'104;
     host_ns =
-        static_cast<std::int64_t>(static_cast<std::uint64_t>(host_ns) + step_ns);  // any stamp at all, wraps
+        static_cast<std::int64_t>(static_cast<std::uint64_t>(host_ns) + step_ns);  // any stamp, wraps around
     packet.assign(data + at + 5, data + at + 5 + length);
     if ((choices & 6U) != 0) {
       make_valid(packet, config.model, (choices & 4U) != 0);

@@ -44,7 +44,7 @@ void velodyne_seeds() {
       std::string stream(1, static_cast<char>(product_id & 1U));
       for (int n = 0; n < 5; ++n) {
         const auto packet = test::build_packet(plan_of(n, product_id, mode));
-        stream += std::string("\0\xB6\x04\0\0", 5);  // no choices, 1206 bytes
+        stream += std::string("\0\xB6\x04\0\0", 5);  // option byte 0; payload of 1206 (0x04B6) bytes
         stream.append(packet.begin(), packet.end());
       }
       save("fuzz_velodyne", std::to_string(product_id) + "-" + std::to_string(mode), stream);

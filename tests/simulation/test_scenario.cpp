@@ -154,7 +154,7 @@ TEST_CASE("the sphere hangs in the shaft, and the specific force on its accelero
   }
   CHECK(tilt_rad > 0.005);
   CHECK(tilt_rad < 0.15);
-  // No ideal pendulum: the rope's length changes, unevenly.
+  // Not an ideal pendulum, because the length of the rope changes unevenly.
   CHECK(worst_rad < 0.5 * tilt_rad + 0.01);
   CHECK(least_clearance(scenario) > 0.6);
 }

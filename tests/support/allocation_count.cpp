@@ -21,8 +21,8 @@ void* allocate(std::size_t bytes, std::align_val_t alignment = std::align_val_t{
 
 }  // namespace
 
-// All forms are replaced, including the non-throwing ones: std::stable_sort allocates with those and frees with the
-// plain delete, and a sanitizer's own operator would not match ours.
+// All forms are replaced, including the non-throwing ones: std::stable_sort allocates with those and frees
+// with the plain delete, and a sanitizer's own operator would not match ours.
 // NOLINTBEGIN(misc-new-delete-overloads)
 void* operator new(std::size_t bytes) { return allocate(bytes); }
 void* operator new[](std::size_t bytes) { return allocate(bytes); }

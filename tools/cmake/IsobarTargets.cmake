@@ -31,12 +31,13 @@ if(ISOBAR_FUZZ)
   target_compile_options(isobar_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-# Two thirds of a cold build's time went into headers (Eigen, iceoryx, the standard library) that every file parsed
-# again. Unity: files of a target are compiled together, ISOBAR_UNITY_FILES at a time. Precompiled headers: what nearly
-# every file includes is parsed once a build tree. With both off, each file stands alone: `tools/includes` checks that.
+# Unity builds and precompiled headers: without them, two thirds of a cold build's time went into headers
+# (Eigen, iceoryx, the standard library) that every file parsed again. Unity: files of a target are compiled
+# together, in batches (see isobar_compile). Precompiled headers: common headers are parsed once per build
+# tree. Both hide missing includes, which `tools/includes` finds.
 set(isobar_common_headers <algorithm> <array> <cmath> <cstdint> <cstdio> <filesystem> <fstream> <functional> <memory>
   <optional> <sstream> <string> <string_view> <vector> <Eigen/Core> <Eigen/Geometry>)
-function(isobar_precompiled name)  # isobar_precompiled(NAME HEADERS …): makes them, for isobar_use_precompiled()
+function(isobar_precompiled name)  # isobar_precompiled(NAME HEADER…): precompiled headers for isobar_compile()
   if(NOT ISOBAR_PCH)
     return()
   endif()
@@ -49,8 +50,8 @@ function(isobar_precompiled name)  # isobar_precompiled(NAME HEADERS …): makes
   endif()
 endfunction()
 
-# How a target is compiled. UNITY n: files at a time, 0 for all, 1 for each alone. Batches of a library are small enough
-# that a changed file is built again in seconds.
+# isobar_compile(TARGET PCH UNITY): precompiled headers and unity batch of a target. UNITY: files per batch,
+# 0: all, 1: each file alone. Batches of a library are small, so that a changed file is rebuilt in seconds.
 function(isobar_compile target pch unity)
   if(ISOBAR_UNITY AND NOT unity EQUAL 1)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${unity})
@@ -60,10 +61,11 @@ function(isobar_compile target pch unity)
   endif()
 endfunction()
 
-# isobar_library(NAME DEPENDS lib… [UNITY n]): static library of every .cpp in the current folder (not below it).
+# isobar_library(NAME DEPENDS lib… [UNITY n]): static library of every .cpp in the current folder (not below
+# it).
 # OWN_FLAGS: for a library with compile options of its own, to which a shared precompiled header does not fit.
-# TOOL_ONLY: never on a robot (simulator, report). Sanitizer builds compile it without sanitizers: its checks took half of
-# their time and guard nothing that runs.
+# TOOL_ONLY: code that never runs on a robot (simulator, report). Sanitizer builds compile it without
+# sanitizers, because its checks took half of their time.
 function(isobar_library name)
   cmake_parse_arguments(arg "OWN_FLAGS;TOOL_ONLY" "UNITY" "DEPENDS;PRIVATE_DEPENDS;SOURCES" ${ARGN})
   if(NOT DEFINED arg_UNITY)
@@ -92,8 +94,8 @@ function(isobar_library name)
   endif()
 endfunction()
 
-# lld links a test in a tenth of the time of GNU ld. Programs keep the latter: lld 14 does not write the note that names
-# the processor.
+# lld links a test in a tenth of the time of GNU ld. Programs keep GNU ld, because lld 14 does not write the
+# ISA note.
 find_program(ISOBAR_LLD ld.lld)
 function(isobar_link_fast target)
   if(ISOBAR_LLD)
@@ -108,14 +110,15 @@ function(isobar_program name)
   target_link_libraries(${name} PRIVATE isobar_options ${arg_DEPENDS})
   isobar_compile(${name} isobar_common_pch 8)
   if(ISOBAR_CPU MATCHES "^x86-64-v[234]$")
-    # ISA note in the program: on an older machine the loader refuses it with a sentence, before an illegal instruction.
+    # ISA note: on an older machine the loader refuses the program with a message, instead of an illegal
+    # instruction later.
     target_link_options(${name} PRIVATE LINKER:-z,${ISOBAR_CPU})
   endif()
 endfunction()
 
 # isobar_test(NAME LABEL unit|integration COST … SOURCES … DEPENDS …): one doctest program, one CTest entry.
-# COST: seconds under AddressSanitizer, where it is many; the longest ones start first.
-# The sources name no main(); tests/test_main.cpp has the only one, compiled once.
+# COST: duration of a long test under AddressSanitizer [s]; CTest starts the longest ones first.
+# main() is in tests/test_main.cpp, compiled once for all tests.
 function(isobar_test name)
   cmake_parse_arguments(arg "" "LABEL;COST;UNITY" "DEPENDS;SOURCES" ${ARGN})
   if(arg_COST)
@@ -137,8 +140,8 @@ function(isobar_test name)
   set_tests_properties(${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 900 ${cost})
 endfunction()
 
-# isobar_has_threads(NAME …): tests of this folder with a second thread or process. They carry the label `threads`,
-# and the target thread_tests builds them: the ones that ThreadSanitizer has something to say about.
+# isobar_has_threads(NAME…): marks tests of this folder with a second thread or process, which ThreadSanitizer
+# is to check, by the label `threads`; the target thread_tests builds them.
 add_custom_target(thread_tests)
 function(isobar_has_threads)
   foreach(name ${ARGN})

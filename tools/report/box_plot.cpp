@@ -14,7 +14,8 @@ constexpr double kBoxRowHeightPx = 46.0;
 constexpr double kBoxHeightPx = 24.0;
 constexpr double kBoxTopMarginPx = 26.0;    // for the heading "median"
 constexpr double kBoxRightMarginPx = 96.0;  // for the medians
-// A linear axis would draw a box as a line from this ratio of largest whisker to smallest median on.
+// Ratio of largest whisker to smallest median from which a linear axis would shrink the smallest box to a
+// line.
 constexpr double kLogarithmicFrom = 25.0;
 
 bool is_drawn(const BoxPlot::Row& row) { return row.values.count > 0 && std::isfinite(row.values.median); }

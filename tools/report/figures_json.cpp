@@ -59,7 +59,7 @@ std::string figures_json(const evaluation::EvaluatedRun& run) {
             {"methods", Json::array()}};
   for (const evaluation::EvaluatedMethod& method : run.methods)
     json["methods"].push_back(method_json(method));
-  // A name or path that is not UTF-8 must not stop the report.
+  // Invalid UTF-8 in a name or path is replaced, so that it does not stop the report.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

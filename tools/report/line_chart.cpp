@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLegendGapPx = 8.0;
 constexpr double kBandLabelHeightPx = 22.0;
-constexpr double kInvisiblePx = 0.15;  // no screen shows a line moved by less
+constexpr double kInvisiblePx = 0.15;  // displacement of a line that no screen shows
 constexpr const char* kBandColour = "#eef2f7";
 
 void draw_bands(Picture& picture, const LineChart& chart, const Axes& axes) {

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kLevelLabelPx = 84.0;  // room right of the frame for the labels of floors
 constexpr double kMapLegendGapPx = 8.0;
-constexpr double kShades = 48.0;           // of grey, the first is transparent
-constexpr double kImagePixelsPerPx = 1.5;  // sharp on dense screens and in print
+constexpr double kShades = 48.0;           // shades of grey, the first is transparent
+constexpr double kImagePixelsPerPx = 1.5;  // oversampling, for dense screens and print
 constexpr double kMinMovePx = 0.7;         // points of a path that are closer are not drawn
 
 std::vector<std::array<std::uint8_t, 4>> grey_palette() {

@@ -37,7 +37,7 @@ Series method_series(const evaluation::EvaluatedRun& run, const evaluation::Eval
 
 Series reference_series(const evaluation::EvaluatedRun& run) {
   const auto& poses = run.reference.trajectory.poses;
-  // Wide, so that it shows below an estimate that lies on it.
+  // Wide, so that it stays visible below an estimate that coincides with it.
   Series series{"Reference", {"#9ca3af", 6.0}, evaluation::travelled_distance_m(poses), {}};
   for (const evaluation::StampedPose& pose : poses) series.y.push_back(pose.position_m.z());
   return series;
@@ -163,7 +163,7 @@ Picture height_error_picture(const evaluation::EvaluatedRun& run, const PictureS
 }
 
 std::optional<double> close_up_limit_m(const evaluation::EvaluatedRun& run) {
-  // From this ratio of largest errors on, the main method is a flat line in the full picture.
+  // Ratio of largest errors from which the main method is a flat line in the full picture.
   constexpr double kTooFlat = 5.0;
   const evaluation::EvaluatedMethod* contrast = contrast_method(run, false);
   const double main_m = std::max(0.02, largest_height_error_m(main_method(run)));

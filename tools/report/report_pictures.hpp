@@ -30,7 +30,7 @@ Picture height_picture(const evaluation::EvaluatedRun& run, const PictureSize& s
 /// Height error along the way, clipped at ±limit_m if given.
 Picture height_error_picture(const evaluation::EvaluatedRun& run, const PictureSize& size,
                              std::optional<double> limit_m, const std::string& id);
-/// Limit of the close-up of the height error; nothing when the main method shows well in the full picture.
+/// Limit of the close-up of the height error; nullopt if the full picture shows the main method well enough.
 std::optional<double> close_up_limit_m(const evaluation::EvaluatedRun& run);
 
 /// Side elevations of the maps of the main method and of contrast_method(); empty without maps.
@@ -44,7 +44,7 @@ std::vector<SideView> side_view_pictures(const evaluation::EvaluatedRun& run);
 /// Plan view of all paths over the map of the main method, if it has one.
 Picture top_view_picture(const evaluation::EvaluatedRun& run);
 
-/// Time per scan of each method; nothing without times in any status file.
+/// Time per scan of each method; nullopt if no status file has times.
 std::optional<Picture> scan_time_picture(const evaluation::EvaluatedRun& run, double width);
 
 }  // namespace isobar::report

@@ -45,7 +45,7 @@ class DataSet {
 };
 
 struct DataSetOptions {
-  std::uint64_t seed = 1;  ///< of scenarios
+  std::uint64_t seed = 1;  ///< random seed of scenarios
   double stop_after_s = std::numeric_limits<double>::infinity();
   std::filesystem::path cache = "build/benchmark/data";  ///< folder of the scenarios' recordings
   Config config;                                         ///< sensors and mounts come from the recording

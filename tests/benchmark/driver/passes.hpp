@@ -17,8 +17,8 @@ namespace isobar::bench {
 struct ScanCosts {
   double decode_ms = 0.0;        ///< 0 without packets
   double registration_ms = 0.0;  ///< deskew to solve
-  double map_ms = 0.0;           ///< almost 0 if the map did not take the scan
-  double hand_over_ms = 0.0;     ///< if map_changed
+  double map_ms = 0.0;           ///< almost 0 if the map did not insert the scan
+  double hand_over_ms = 0.0;     ///< 0 unless map_changed
   bool map_changed = false;
   bool registered = false;  ///< false: the pose is the prior's, or the map is bootstrapping
   std::size_t registration_allocations = 0;

@@ -13,7 +13,7 @@ namespace {
 
 // Edge of a voxel: small enough for the neighbour search below on a wall, large enough for a small tree.
 constexpr float kVoxelM = 0.2F;
-// Neighbours of a normal: search radius and smallest number.
+// Fit of a normal: search radius of its neighbours, and their smallest number.
 constexpr double kNeighbourM = 0.6;
 constexpr std::size_t kFewestNeighbours = 6;
 // Ratio of variances across and along a line below which neighbours lie on one ring.

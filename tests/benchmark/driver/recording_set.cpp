@@ -15,7 +15,7 @@ namespace isobar::bench {
 
 namespace {
 
-// As in LockStep: more waiting scans than this mean that the IMU is silent.
+// Limit of scans that wait for priors, as in LockStep: with more of them the IMU is silent.
 constexpr std::size_t kMaxWaitingScans = 4;
 
 /// One pass over a recording.
@@ -53,7 +53,7 @@ class RecordingPass {
     recording::Event event;
     std::vector<std::uint8_t> packet;
     std::unique_ptr<Scan> scan;  // completed by this packet
-    double decode_ms;            // of that scan
+    double decode_ms;            // CPU time of decoding that scan
   };
   static constexpr std::size_t kBatch = 16;
 

@@ -49,9 +49,9 @@ struct StageCosts {
   double solve_ms = 0.0;
 };
 
-/// Time of a registration by stage, without clocks inside it: deskewing and sampling are repeated on the same
-/// scan and timed; the rest is divided between matching and solving in the ratio of one timed iteration over
-/// all points at the final pose (both process the same pairs in every iteration).
+/// Time of a registration by stage, without reading clocks inside it. Deskewing and sampling are repeated on
+/// the same scan and timed; the rest is divided between matching and solving in the ratio of one timed
+/// iteration over all points at the final pose (both process the same pairs in every iteration).
 class StageProbe {
  public:
   explicit StageProbe(const StageSettings& settings);

@@ -38,7 +38,7 @@ class Folder {
   std::filesystem::path path_;
 };
 
-// Seven seconds: gravity is found at once; the robot moves in the last three.
+// Seven seconds: gravity is found immediately; the robot drives in the last three.
 DriverOptions short_run() {
   static const Folder folder;  // simulated once
   DriverOptions options;
@@ -102,11 +102,11 @@ TEST_CASE("a run on a simulated recording gives every figure, and registration a
     const std::string& key = item.key();
     const Json& row = item.value();
     CAPTURE(key);
-    CHECK((row.is_string() || row.at("max") > 1e3));  // or the reason why there are none
+    CHECK((row.is_string() || row.at("max") > 1e3));  // or the reason why the counter is missing
   }
-  // So soon after the start the robot is lost only if the driver feeds it wrongly.
+  // Seven seconds are too short for drift: a larger error means wrong inputs from the driver.
   CHECK(data.at("error").at("final_m") < 0.3);
-  CHECK(data.at("peers").is_string());  // the reason: this program has none
+  CHECK(data.at("peers").is_string());  // instead of figures the reason: built without PCL
   print_tables(result);
 }
 

@@ -83,8 +83,8 @@ struct Part {
   double driven_m = 0.0;
   std::vector<double> registration_ms;  ///< per scan
   std::vector<double> all_ms;           ///< per scan, mean over a window of about half a second
-  double resident_mb = 0.0;             ///< largest
-  double disk_mb = 0.0;                 ///< at its end
+  double resident_mb = 0.0;             ///< largest value in the part
+  double disk_mb = 0.0;                 ///< at the end of the part
 };
 
 std::vector<Sample> replay(const Options& options, const Config& config) {
@@ -92,7 +92,7 @@ std::vector<Sample> replay(const Options& options, const Config& config) {
   const isobar::CpuTimer timer;
   isobar::replay(options.recording, config, options.out, [&](double fraction) {
     Sample sample{fraction, timer.elapsed_ms(), resident_mb(), 0.0};
-    // Once per part: walking the folder is slow.
+    // Disk usage once per part, because walking the folder is slow.
     const bool begins = samples.empty() || part_of(fraction) != part_of(samples.back().fraction);
     sample.disk_mb = begins ? disk_mb(options.out) : samples.back().disk_mb;
     if (begins) std::fprintf(stderr, "\r%3.0f %%", 100.0 * fraction);

@@ -55,9 +55,8 @@ struct Queues {
 /// Subscriber to the queues in shared memory, from outside isobard. At most one per process.
 class MemoryListener {
  public:
-  /// @param queues true: subscribe to every sample, scan and pose, which isobard must then wake it for;
-  /// false: to the
-  ///        health report only
+  /// @param queues true: subscribe to every sample, scan and pose, each of which isobard then signals;
+  ///               false: to the health report only
   explicit MemoryListener(bool queues);
   ~MemoryListener();
   MemoryListener(const MemoryListener&) = delete;

@@ -12,7 +12,7 @@
 namespace isobar::benchmark {
 namespace {
 
-/// Priority above all threads of isobard: a sensor does not wait for the robot's processor.
+/// Priority above all threads of isobard, because a real sensor does not compete for the robot's processor.
 constexpr int kPriority = 60;
 
 }  // namespace
@@ -41,7 +41,7 @@ void Sender::note(std::vector<Event>& to, const Event& event) {
 }
 
 void Sender::play(const std::filesystem::path& recording, std::uint16_t lidar_port) {
-  (void)apply_to_this_thread({"sender", kPriority, {}});  // without real-time rights, ordinary scheduling
+  (void)apply_to_this_thread({"sender", kPriority, {}});  // without rights: ordinary scheduling
   recording::RecordingReader reader(recording);
   // The decoder identifies the packet that closes a scan.
   velodyne::VelodyneDecoder decoder(stage_settings(with_sensors_of(reader.manifest(), Config{})).lidar);

@@ -20,8 +20,8 @@ class Sender {
   Sender(const Sender&) = delete;
   Sender& operator=(const Sender&) = delete;
 
-  /// Departures on the robot clock. Scans: end of the scan, and sending of its closing packet. IMU samples:
-  /// stamp, and sending.
+  /// Stamps and times of sending on the robot clock. A scan is stamped at its end and sent with its closing
+  /// packet.
   [[nodiscard]] std::vector<Event> scans() const;
   [[nodiscard]] std::vector<Event> imu_samples() const;
   /// Whether the recording has ended.

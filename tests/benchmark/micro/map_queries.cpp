@@ -15,11 +15,11 @@ namespace {
 
 using namespace isobar;  // NOLINT(google-build-using-namespace)
 
-constexpr double kMaxDistanceM = 0.35;  // in the last iterations
-constexpr double kHeightM = 1.0;        // of the sensor above each floor
+constexpr double kMaxDistanceM = 0.35;  // largest search distance of the last iterations
+constexpr double kHeightM = 1.0;        // height of the sensor above each floor
 constexpr double kFloorStepM = 4.0;
 constexpr double kPointStepM = 0.1;
-constexpr double kRadiusM = 10.0;  // seen by one scan
+constexpr double kRadiusM = 10.0;  // radius seen by one scan
 
 /// Stacked floors, observed from above at the centres of squares: every point faces its observer.
 class Floors {

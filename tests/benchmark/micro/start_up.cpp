@@ -44,7 +44,8 @@ class Isobard {
   Isobard(const Isobard&) = delete;
   Isobard& operator=(const Isobard&) = delete;
 
-  /// Waits until it is ready; false if it ended before, said() is then its output.
+  /// Waits until isobard is ready.
+  /// @return false if it ended first; said() is then its output
   bool wait_until_ready() {
     std::array<char, 4096> bytes{};
     while (text_.find("ready:") == std::string::npos) {

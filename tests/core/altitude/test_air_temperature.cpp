@@ -18,14 +18,14 @@ AirTemperatureConfig thermometers_are_right() {
 }
 }  // namespace
 
-TEST_CASE("self-heating of both sensors hardly reaches the estimate") {
+TEST_CASE("self-heating of both sensors raises the estimate by less than 0.6 K") {
   AirTemperatureTracker tracker(thermometers_are_right());
   for (double t = 0.0; t < 600.0; t += 0.5) {
     const double heat = 1.0 - std::exp(-t / 180.0);
     tracker.add(0, at(t), 20.0 + 6.0 * heat);
     tracker.add(1, at(t), 20.0 + 4.0 * heat);
   }
-  // The coldest sensor ends 3.9 K too warm; an hour's time constant lets a tenth of that through.
+  // The coldest sensor ends 3.9 K too warm; a time constant of an hour passes a tenth of that.
   CHECK(tracker.temperature_c() > 20.0);
   CHECK(tracker.temperature_c() < 20.6);
 }
@@ -45,7 +45,7 @@ TEST_CASE("the estimate follows the coldest sensor within minutes, without a jum
   CHECK(largest_step < 0.1);
 }
 
-TEST_CASE("after a visit to the cold the estimate is at most the largest self-heating too low") {
+TEST_CASE("after a stay in the cold the estimate is too low by at most the largest self-heating") {
   AirTemperatureTracker tracker(thermometers_are_right());
   for (double t = 0.0; t < 1200.0; t += 0.5) {
     tracker.add(0, at(t), t > 200.0 && t < 600.0 ? -10.0 : 22.0);

@@ -114,7 +114,8 @@ TEST_CASE("with a base station, weather of 3 hPa in three hours moves the height
   const auto rows = run(scene);
   for (double t = 60.0; t < 10'790.0; t += 30.0)
     CHECK(std::abs(height_at(rows, t) - height_at(rows, 60.0)) < 0.03 + 0.03);
-  // Plus noise: six samples leave 0.35 Pa / sqrt(6), 1.2 cm, at either end. Means over minutes have none:
+  // 3 cm more for noise: six samples leave 0.35 Pa / sqrt(6), 1.2 cm, at each end. Means over 100 s need
+  // none:
   double late = 0.0;
   double early = 0.0;
   for (int i = 0; i < 200; ++i) {
@@ -175,7 +176,7 @@ TEST_CASE(
   scene.witness = false;
   scene.stations.resize(2);
   scene.stations[0].extra_pa = [](double t) { return ramp(t, 60.0, 1.0); };
-  // 1 Pa/s: a drift; faster than kStillPa per second would be a jump.
+  // 1 Pa/s is still a drift: only more than kStillPa per second counts as a jump.
   const auto fast = run(scene);
   CHECK(fast.back().active == 1);
   scene.stations[0].extra_pa = [](double t) { return ramp(t, 60.0, 0.08); };

@@ -50,7 +50,7 @@ std::vector<Row> run(const Scene& scene) {
   for (int i = 0; i / 32.0 < scene.duration_s; ++i) {
     const double t = i / 32.0 + 0.01;
     for (; next_base + scene.base_delay_s <= t; next_base += 1.0 / scene.base_hz) {
-      // Noise in the last digits, as real sensors have: a constant value would be stuck.
+      // Noise in the last digits, as in real sensors: a constant value would count as stuck.
       const double pa = 101'000.0 + scene.weather_pa(next_base) + scene.noise_pa * normal(random) +
                         1e-7 * std::sin(next_base);
       if (scene.base_on(next_base)) altimeter.add_base({at(next_base), pa, 20.0});
@@ -126,7 +126,7 @@ TEST_CASE("a base that falls silent and returns reports the weather in between")
   CHECK(rows.back().reading.source == HeightSource::kDifferential);
 }
 
-TEST_CASE("late and slow base samples do no harm") {
+TEST_CASE("late and slow base samples change the height by less than 4 cm") {
   Scene scene;
   scene.base_hz = 1.0;
   scene.base_delay_s = 0.7;

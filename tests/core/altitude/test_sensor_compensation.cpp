@@ -54,7 +54,7 @@ TEST_CASE("within its range a calibration is eq. (1), and supplies a variance un
   CHECK(s.variance_pa2 == 9.0);
 }
 
-TEST_CASE("outside its range the nearest correction holds: continuous, with the slope of the sensor") {
+TEST_CASE("outside its range a calibration applies the correction of the nearest point inside") {
   SensorCompensation compensation(calibrated());
   const auto corrected = [&](double p, double t, Result expected) {
     PressureSample s = sample(p, t);

@@ -123,8 +123,8 @@ TEST_CASE("samples are paired with the reference at the shifted time, and unpair
   for (int k = 0; k < 10; ++k) sensor.push_back({stamp(500.0 + 10.0 * k), 900.0, k == 3 ? NAN : 20.0});
   PairingCounts counts;
   const auto pairs = pair_with_reference(sensor, reference, -455.0, counts);  // 45, 55, … 135 s
-  REQUIRE(pairs.size() ==
-          5);  // 45, 55, 65, (75 has no temperature), 85, 95 is 5 s from the end: exactly inside
+  // Paired: 45, 55, 65, 85 and 95 s, the last one exactly 5 s before the end; 75 s has no temperature.
+  REQUIRE(pairs.size() == 5);
   CHECK(pairs[0].reference_pa == doctest::Approx(1'090.0));
   CHECK(pairs[4].reference_pa == doctest::Approx(1'190.0));
   CHECK(counts.paired == 5);

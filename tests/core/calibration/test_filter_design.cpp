@@ -41,7 +41,7 @@ TEST_CASE("a filter built from a design has its gain, lag and noise") {
       filter.add(1e5 + normal(random), kDt, kSigma * kSigma);
       squares += std::pow(filter.pressure_pa() - 1e5, 2);
     }
-    // 200 000 samples are 400 independent outputs at 8 s: 3.5 % of sigma, two of these.
+    // 200 000 samples are 400 independent outputs at 8 s: 3.5 % of sigma, tolerance: two times that.
     CHECK(std::sqrt(squares / kCount) == doctest::Approx(design.output_sigma_pa).epsilon(0.08).scale(0.0));
   }
 }

@@ -24,7 +24,8 @@ TEST_CASE("the noise of a sensor carried up the stairs is taken from its still p
   CHECK(times[noise.still.begin] >= 40.0);
   CHECK(times[noise.still.begin] <= 45.0);
   CHECK(noise.interval_s == doctest::Approx(1.0 / 32.0));
-  // 5000 samples: sigma is accurate to 2 % by the median of differences, to 1 % by the Allan deviation.
+  // With 5000 samples sigma is accurate to 2 % from the median of differences, to 1 % from the Allan
+  // deviation.
   CHECK(noise.sigma_pa == doctest::Approx(0.35).epsilon(0.06).scale(0.0));
   CHECK(noise.allan_sigma_pa() == doctest::Approx(0.35).epsilon(0.04).scale(0.0));
   CHECK(noise.parts.walk < 0.02);

@@ -14,7 +14,7 @@ struct NearestMatch {
   Eigen::Vector3f normal_map;  ///< unit normal towards the observer
 };
 
-/// Plane that `p_map` is matched to, seen from `viewpoint_map`; nothing if there is none.
+/// Match of `p_map` with a plane as seen from `viewpoint_map`; nullopt without a match.
 inline std::optional<NearestMatch> nearest_match(const MapSnapshot& map, const Eigen::Vector3d& p_map,
                                                  const Eigen::Vector3d& viewpoint_map,
                                                  double max_distance_m) {

@@ -110,7 +110,7 @@ TEST_CASE("a wall is matched with its plane and the normal towards the robot") {
   CHECK_FALSE(nearest_match(*map.snapshot(), beside_wall, Eigen::Vector3d(20.0, 1.0, 0.3), 0.5).has_value());
 }
 
-TEST_CASE("a robot that stands still does not make the map grow") {
+TEST_CASE("the map of a robot at rest does not grow") {
   LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity());
   auto scan = std::make_unique<RegisteredScan>();
   fill_scan(*scan, 0.0, 0, range_to_walls);

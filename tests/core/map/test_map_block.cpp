@@ -403,7 +403,7 @@ TEST_CASE("a restored tile equals the stored one and behaves like it from then o
   CHECK(here.back().p_map == there.back().p_map);
 }
 
-TEST_CASE("a truncated or extended tile is refused and leaves the tile unchanged, and so does another tile") {
+TEST_CASE("bytes that are truncated, too long, or of another tile or cell size are refused") {
   std::mt19937 random(7);
   const MapTile tile = random_tile(random);
   const std::vector<std::byte> bytes = bytes_of(tile);

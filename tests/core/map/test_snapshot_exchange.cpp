@@ -79,8 +79,8 @@ TEST_CASE("two readers beside a writer never see a torn snapshot or one older th
     second.join();
     CHECK(faults[0] == 0);
     CHECK(faults[1] == 0);
-    // The current snapshot and two per reader: while the writer checks its list, a reader may release the one
-    // that was found pinned and pin a later one, whose pointer it had loaded before the swap.
+    // At most the current snapshot and two per reader: while the writer checks its list, a reader may release
+    // the snapshot found pinned and pin a later one, whose pointer it loaded before the swap.
     CHECK(most_alive <= 5);
     CHECK(exchange.pin()->numbers.front() == kSwaps);
   }

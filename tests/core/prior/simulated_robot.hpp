@@ -25,10 +25,10 @@ struct Pose {
 /// Pose of base_link in the world as a smooth function of time [s].
 using Motion = std::function<Pose(double)>;
 
-/// Distance travelled at time t at speed v between t0 and t1, with smooth ramps of ramp_s after t0 and after
-/// t1.
+/// Distance travelled at time t [m]: speed v from t0 to t1, with smooth ramps of duration ramp_s after t0 and
+/// after t1.
 inline double travelled(double t, double v, double t0, double t1, double ramp_s) {
-  const auto integral = [](double u) {  // of the quintic-free smoothstep 6u^5-15u^4+10u^3
+  const auto integral = [](double u) {  // of the quintic smoothstep 6u^5-15u^4+10u^3
     if (u <= 0.0) return 0.0;
     if (u >= 1.0) return u - 0.5;
     return u * u * u * u * (2.5 + u * (-3.0 + u));
@@ -45,7 +45,7 @@ struct Drive {
   double ramp_s = 1.0;
   double radius_m = 1e6;
   std::function<double(double)> height = [](double) { return 0.0; };
-  std::function<double(double)> lift = [](double) { return 0.0; };  ///< of the ground, over time
+  std::function<double(double)> lift = [](double) { return 0.0; };  ///< elevator's height [m] by time
 
   Pose operator()(double t) const {
     const double s = travelled(t, speed, start_s, stop_s, ramp_s);
@@ -67,7 +67,7 @@ struct SensorErrors {
   double accel_bias = 0.02;                       ///< m/s^2, 1 sigma an axis
   double vibration = 0.5;                         ///< m/s^2 rms while the wheels turn
   double misalignment = 0.003;                    ///< rad, 1 sigma of roll and pitch of the IMU's mount
-  double wheel_scale = 0.02;                      ///< 1 sigma
+  double wheel_scale = 0.02;                      ///< relative, 1 sigma
   double wheel_noise = 0.01;                      ///< m/s a sample
   double stairs_slip = 0.05;                      ///< share of the speed lost at pitch above 10 deg
   double pressure_noise = 0.35;                   ///< Pa a sample
@@ -90,7 +90,7 @@ struct SimulatedRobot {
   SensorErrors errors;
   Eigen::Isometry3d T_base_imu = Eigen::Isometry3d(Eigen::Translation3d(0.05, 0.02, 0.2));
   Eigen::Vector3d p_base_port{-0.2, 0.05, 0.3};
-  std::function<double(double)> extra_robot_pa = [](double) { return 0.0; };  ///< doors, zones
+  std::function<double(double)> extra_robot_pa = [](double) { return 0.0; };  ///< doors, ventilation zones
   std::function<bool(double)> base_on = [](double) { return true; };
   std::function<bool(double)> robot_on = [](double) { return true; };
   std::function<bool(double)> imu_on = [](double) { return true; };
@@ -127,7 +127,7 @@ struct Figures {
   double height_max_m = 0.0;
   double height_rms_m = 0.0;
   double height_final_m = 0.0;
-  double z_rpe_median = 0.0;  ///< share of 5 m of travel
+  double z_rpe_median = 0.0;  ///< as a share of 5 m of travel
   double nees = 0.0;          ///< mean squared height error over its variance
 };
 

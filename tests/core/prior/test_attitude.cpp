@@ -59,7 +59,7 @@ TEST_CASE("roll and pitch of a shaking tracked robot are good to 0.2 deg, on sta
   CHECK(sum / 3.0 < 0.15 * kDeg);
 }
 
-TEST_CASE("roll and pitch are as good with IMU rates of 50 and 800 Hz and a rotated IMU off the centre") {
+TEST_CASE("roll and pitch are as accurate with IMU rates of 50 and 800 Hz and a rotated, off-centre IMU") {
   for (const double hz : {50.0, 800.0}) {
     SimulatedRobot robot = stairs_robot();
     robot.errors = without_tilt();
@@ -105,11 +105,11 @@ TEST_CASE("the gyro bias is estimated at standstill: yaw of a standing robot doe
     return yaw_of(
         Eigen::Quaterniond(comparisons[static_cast<std::size_t>(t * 200.0)].prior.T_odom_base.linear()));
   };
-  // Angle random walk of 0.3 deg/sqrt(min), over 20 s: 0.17 deg; without the bias it would be 10 deg.
+  // Angle random walk of 0.3 deg/sqrt(min), over 20 s: 0.17 deg. An uncorrected bias would give 10 deg.
   CHECK(std::abs(yaw(29.9) - yaw(9.9)) < 0.3 * kDeg);
 }
 
-TEST_CASE("yaw is the gyro's integral, also when a standstill reveals its bias after minutes") {
+TEST_CASE("yaw is the integral of the corrected gyro: a bias found at a late standstill causes no jump") {
   SimulatedRobot robot;
   robot.errors.gyro_bias = 0.0087;  // 0.5 deg/s, unknown: the robot drives from the start
   Drive drive;
@@ -128,8 +128,8 @@ TEST_CASE("yaw is the gyro's integral, also when a standstill reveals its bias a
     const double measured = (now * comparisons[i].prior.w_base_rad_s).z() / 200.0;
     largest_rad = std::max(largest_rad, std::abs(turned - measured));
   }
-  // Corrections of roll and pitch turn the axes by some hundredths of a degree; the tilt couples a part into
-  // yaw.
+  // Corrections of roll and pitch turn the axes by some hundredths of a degree, and tilt couples a part of
+  // that into yaw.
   CHECK(largest_rad < 0.005 * kDeg);
 }
 

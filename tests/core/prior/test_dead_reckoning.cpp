@@ -38,7 +38,7 @@ TEST_CASE("silent wheels are lost, and the gap adds no displacement") {
   CHECK(odometer.take_displacement(at(5.1)).x() == doctest::Approx(0.1));
 }
 
-TEST_CASE("absurd speeds are refused, and jumps until the fifth consecutive sample confirms them") {
+TEST_CASE("absurd speeds are refused; a jump is refused until the fifth consecutive sample confirms it") {
   WheelOdometer odometer{DeadReckoningConfig{}};
   CHECK(odometer.add(wheel(0.0, std::numeric_limits<double>::quiet_NaN())) == WheelStatus::kBadValue);
   CHECK(odometer.add(wheel(0.0, 0.5)) == WheelStatus::kAccepted);

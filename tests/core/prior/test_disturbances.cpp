@@ -38,7 +38,7 @@ const std::vector<NamedShape>& shapes() {
   return all;
 }
 
-/// Two of them, 20 kPa down (1.9 km up) and 12 kPa up (1 km down).
+/// Two disturbances of one shape: 20 kPa down (1.9 km up), then 12 kPa up (1 km down).
 std::function<double(double)> twice(const Shape& shape, double first_s, double second_s) {
   return [=](double t) {
     if (t > first_s && t < first_s + 15.0) return shape(t - first_s, -20'000.0);
@@ -140,7 +140,7 @@ TEST_CASE("during a glitch the variance grows, and afterwards it is as small as 
 }
 
 TEST_CASE("entering another ventilation zone over two seconds, and leaving it, does not move the height") {
-  // 12 Pa, 1 m: 0.5 m/s at most; a lift could, but its acceleration would be measured.
+  // 12 Pa, 1 m, at 0.5 m/s at most: possible in a lift, whose acceleration the IMU would measure.
   const auto zone = [](double t) {
     const auto blend = [](double u) { return std::clamp(u / 2.0, 0.0, 1.0); };
     return -12.0 * (blend(t - 20.0) - blend(t - 50.0));

@@ -39,7 +39,7 @@ TEST_CASE("on flat ground the height error over 5 m of travel has a median below
     CHECK(figures.height_max_m < 0.15);
   }
   CHECK(sum / seeds < 0.003);
-  // Consistent: variance neither far too small nor far too large.
+  // Consistency (NEES near 1): the variance is neither far too small nor far too large.
   CHECK(nees / seeds < 3.0);
   CHECK(nees / seeds > 0.1);
 }

@@ -87,7 +87,7 @@ TEST_CASE("a base station that fails and returns makes no jump") {
   CHECK(figures_of(comparisons).height_max_m < 0.2);
 }
 
-TEST_CASE("a base station that starts late, or is slow and delayed, leaves the height right") {
+TEST_CASE("a base station that starts late, or is slow and delayed, does not disturb the height") {
   SimulatedRobot late = robot_for(80.0);
   late.base_on = [](double t) { return t > 30.0; };
   const auto comparisons = run(late, config_for(late), 4, nullptr, 2);
@@ -100,7 +100,7 @@ TEST_CASE("a base station that starts late, or is slow and delayed, leaves the h
   CHECK(figures_of(run(slow, config_for(slow), 4, nullptr, 2)).height_max_m < 0.15);
 }
 
-TEST_CASE("silent wheels are no longer valid, and the height goes on") {
+TEST_CASE("silent wheels make the velocity invalid, and the height stays accurate") {
   SimulatedRobot robot = robot_for(60.0);
   robot.wheels_on = [](double t) { return t < 20.0 || t > 35.0; };
   const auto comparisons = run(robot, config_for(robot), 5, nullptr, 2);
@@ -123,7 +123,7 @@ TEST_CASE("a gap of the IMU is bridged, and the variance covers it") {
         at_time(comparisons, 29.9).prior.height_variance_m2);
   CHECK(at_time(comparisons, 34.01).prior.roll_pitch_variance_rad2 >
         at_time(comparisons, 29.9).prior.roll_pitch_variance_rad2);
-  // The wheels measured on: 4 s at 0.6 m/s are not lost.
+  // The wheels keep measuring during the gap, so that its 4 s at 0.6 m/s are not lost.
   const double moved = (at_time(comparisons, 34.01).prior.T_odom_base.translation() -
                         at_time(comparisons, 29.9).prior.T_odom_base.translation())
                            .norm();

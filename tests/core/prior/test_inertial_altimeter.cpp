@@ -134,7 +134,7 @@ TEST_CASE("on an elevator the low-pass lags by its stated delay; with accelerati
   }
 }
 
-TEST_CASE("on stairs the error of the low-pass is a step's height, with acceleration it is noise") {
+TEST_CASE("on stairs the low-pass errs by the height of a step, the inertial altimeter only by noise") {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const Errors errors = run(kStairs, 60.0, seed);
     CHECK(errors.largest_low_pass == doctest::Approx(0.25 * kLagS).epsilon(0.12).scale(0.0));
@@ -142,7 +142,7 @@ TEST_CASE("on stairs the error of the low-pass is a step's height, with accelera
   }
 }
 
-TEST_CASE("it estimates the accelerometer's bias, and its variance covers the error") {
+TEST_CASE("the inertial altimeter estimates the accelerometer's bias, and its variance covers the error") {
   std::mt19937 random(4);
   std::normal_distribution<double> normal;
   int inside = 0;

@@ -74,7 +74,7 @@ TEST_CASE(
   CHECK(history.newest().stamp_ns == 120 * kMs);
 }
 
-TEST_CASE("between two priors the worse height source holds, and a flag only where both have it") {
+TEST_CASE("an interpolated prior has the worse of two height sources, and only the flags that both have") {
   Prior a = at_time(0);
   Prior b = at_time(10 * kMs);
   b.height_source = HeightSource::kHeld;

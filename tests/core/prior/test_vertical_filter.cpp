@@ -46,7 +46,7 @@ TEST_CASE("the covariance is propagated as F P F^T + Q") {
 TEST_CASE("the error of every state stays within the filter's own covariance (NEES)") {
   HeightConfig config;
   config.turbulence_sigma_m = 0.03;
-  config.offset_learning_s = 1e3;  // the whole run: afterwards the offset's error becomes one of the height
+  config.offset_learning_s = 1e3;  // longer than the run: offset errors would become height errors
   std::mt19937 random(11);
   std::normal_distribution<double> normal(0.0, 1.0);
   const double dt = 0.01;
@@ -102,7 +102,7 @@ TEST_CASE("a ventilation zone entered after the learning time never becomes part
   CHECK(filter.variance(V::kOffset) == 0.0);
   drive(300.0, 4.85);
   drive(300.0, 5.0);
-  // Back at the start's pressure the height is the start's, but for the turbulence, less than its sigma.
+  // Back at the initial pressure the height returns to 0, to less than one sigma of the turbulence.
   CHECK(std::abs(filter.value(V::kZ)) < 0.02);
 }
 
@@ -114,7 +114,7 @@ TEST_CASE("a delayed pressure is compared with the height at its own time") {
   CHECK(std::abs(filter.pressure_innovation(1.0 - 0.1, 0.1, 1e-4).value) < 1e-3);
 }
 
-TEST_CASE("weather becomes part of the offset, or is settled by its measurement") {
+TEST_CASE("weather is folded into the offset, or corrected by a measurement of it") {
   HeightConfig config;
   V filter(config);
   filter.start(0.0, 0.01);
@@ -126,7 +126,7 @@ TEST_CASE("weather becomes part of the offset, or is settled by its measurement"
   folded.fold_weather_into_offset();
   CHECK(folded.value(V::kOffset) == doctest::Approx(sum));
   CHECK(folded.variance(V::kWeather) == 0.0);
-  // All of the 0.4 m was weather: the height loses the part that it had taken.
+  // All of the 0.4 m is weather: the part that had been attributed to the height is removed from it.
   V settled = filter;
   REQUIRE(std::abs(filter.value(V::kZ)) > 0.02);
   settled.settle_weather(0.4, 1e-6);
@@ -134,7 +134,7 @@ TEST_CASE("weather becomes part of the offset, or is settled by its measurement"
   CHECK(settled.variance(V::kZ) < filter.variance(V::kZ));
 }
 
-TEST_CASE("a step absorbs a jump, and after it the offset is as certain as before") {
+TEST_CASE("an open step state absorbs a jump; closing it leaves the variance of the offset unchanged") {
   HeightConfig config;
   V filter(config);
   filter.start(0.0, 0.01);

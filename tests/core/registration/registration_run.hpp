@@ -47,7 +47,7 @@ class RegistrationRun {
   /// Registers and maps scan() as it is.
   const PoseEstimate& register_scan();
 
-  /// Error of the newest position [m], in the frame of the first pose's yaw and place.
+  /// Error of the newest position [m], in the frame given by position and yaw of the first pose.
   [[nodiscard]] Eigen::Vector3d position_error() const;
   [[nodiscard]] double rotation_error_deg() const;
 

@@ -87,7 +87,7 @@ TEST_CASE("a scan taken in motion becomes the cloud of the static room") {
   CHECK(largest_distance_to_room(*out, twisting(scan->end_stamp_ns)) < 0.0015);
 }
 
-TEST_CASE("without wheels the constant velocity and the prior's rotation deskew as well") {
+TEST_CASE("without wheels a scan is deskewed by constant velocity and the prior's rotation") {
   std::mt19937 random(1);
   auto scan = std::make_unique<Scan>();
   scan_world(empty_room(), twisting, lidar_mount(), kStart, 0.0, random, *scan);
@@ -107,7 +107,7 @@ TEST_CASE("without wheels the constant velocity and the prior's rotation deskew 
   CHECK(largest_distance_to_room(*out, twisting(scan->end_stamp_ns)) < 0.0015);
 }
 
-TEST_CASE("points out of range or not finite are dropped, absurd times of scan and points do no harm") {
+TEST_CASE("points out of range or not finite are dropped; absurd times of scan and points are tolerated") {
   auto scan = std::make_unique<Scan>();
   scan->stamp_ns = kStart;
   scan->end_stamp_ns = kStart + 100'000'000;

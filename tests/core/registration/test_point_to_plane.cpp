@@ -48,7 +48,7 @@ Vector6d closed_form_jacobian(const Pair& pair) {
 
 }  // namespace
 
-TEST_CASE("the Jacobian in the normal equations is the numeric one") {
+TEST_CASE("the Jacobian in the normal equations equals the numerical derivative") {
   std::mt19937 random(11);
   for (int i = 0; i < 50; ++i) {
     const Pair pair{random_vector(random, 5.0F), random_vector(random, 1.0F).normalized(), 0.1F};
@@ -96,11 +96,11 @@ TEST_CASE("a tenth of far outliers does not shift the minimum away from the wall
   }
   const NormalEquations sum = accumulate(pairs, PairNoise{}, 0.02F);
   const double step = -sum.gradient(3) / sum.hessian(3, 3);
-  // Least squares would answer -0.068; the outliers' weights are (1 + (0.5 / 0.06)^2)^-2 = 2e-4.
+  // Least squares would give -0.068; the outliers' weights are (1 + (0.5 / 0.06)^2)^-2 = 2e-4.
   CHECK(step == doctest::Approx(-0.02).epsilon(0.05));
 }
 
-TEST_CASE("a pair that depends on the fixed height has a smaller weight, one that does not has weight one") {
+TEST_CASE("a pair has weight one if it does not depend on the fixed height, and a smaller one if it does") {
   PairNoise noise;
   noise.fixed_variance(5) = 0.06F * 0.06F;
   noise.noise_m = 0.02F;

@@ -23,7 +23,7 @@ Eigen::Isometry3d pose_of(double x_m, double y_m, double z_m, double yaw_rad) {
   return T;
 }
 
-/// A robot on a circle of 5 m at 1 m/s. Its wheels have no error but a scale.
+/// A robot on a circle of 5 m at 1 m/s. The only error of its wheels is a scale error.
 struct Drive {
   double wheel_scale = 1.0;
   bool has_wheels = true;
@@ -136,7 +136,7 @@ TEST_CASE("a jump of the registration enters odom at the slew rate at most, and 
     const Eigen::Isometry3d T_before_now = before.T_odom_base.inverse() * now.T_odom_base;
     const Eigen::Isometry3d T_truth = drive.truth(step - 1).inverse() * drive.truth(step);
     const Eigen::Isometry3d extra = T_truth.inverse() * T_before_now;
-    // The step's own rotation turns the correction: a fraction of a thousandth.
+    // The rotation during the step turns the correction, by a fraction of a thousandth.
     CHECK(extra.translation().norm() <= config.max_slew_m_s * kStepS * 1.001 + 1e-12);
     CHECK(Eigen::AngleAxisd(extra.linear()).angle() <= config.max_slew_rad_s * kStepS + 1e-9);
   }

@@ -38,7 +38,7 @@ bool load_pcd(const std::filesystem::path& file, Scan& scan) {
   return scan.point_count > 0;
 }
 
-// The prior of a platform of which only this is known: it stays on the ground.
+// Prior of a platform with unknown motion that stays on the ground.
 Prior ignorant_prior(std::int64_t stamp_ns) {
   Prior prior;
   prior.stamp_ns = stamp_ns;
@@ -75,7 +75,8 @@ TEST_CASE("eleven real scans of a corridor follow each other in steps of half a 
     CAPTURE(out->pose.residual_rms_m);
     if (i > 0) {
       CHECK(out->pose.mode == PoseMode::kRegistered);
-      // Description of the data: 0.50 to 0.77 m a step; a tenth more for its own error.
+      // Steps by the description of the data: 0.50 to 0.77 m; tolerance: a tenth, for the description's
+      // error.
       CHECK((now - before).norm() > 0.45);
       CHECK((now - before).norm() < 0.85);
       CHECK(out->pose.overlap > 0.5);

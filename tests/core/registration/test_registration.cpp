@@ -9,7 +9,7 @@
 
 namespace isobar::test::test_registration {
 
-TEST_CASE("3-, 4- and 6-DOF follow a drive around a room that dead reckoning loses by 20 cm") {
+TEST_CASE("3-, 4- and 6-DOF follow a drive around a room; dead reckoning alone is off by 20 cm") {
   for (const Method method : {Method::k3Dof, Method::k4Dof, Method::k6Dof}) {
     CAPTURE(static_cast<int>(method));
     RegistrationRun run(furnished_room(), circle, drifting(circle), method);
@@ -53,7 +53,7 @@ TEST_CASE("the map starts at x = y = yaw = 0 and the altimeter's height, for any
   CHECK((run.pose().T_map_odom * odom).isApprox(T, 1e-9));
 }
 
-TEST_CASE("3-DOF takes height from pressure to the last bit, and roll and pitch from gravity") {
+TEST_CASE("3-DOF has bit for bit the height from pressure, and roll and pitch from gravity") {
   RegistrationRun run(furnished_room(), circle, drifting(circle), Method::k3Dof);
   for (int i = 0; i < 20; ++i) {
     run.step();

@@ -52,7 +52,7 @@ TEST_CASE(
   CHECK(run.position_error().norm() < 0.03);
 }
 
-TEST_CASE("a scan of another place is rejected, the prior stands, and the following scans register") {
+TEST_CASE("a scan of another place is rejected and gets the prior's pose; the following scans register") {
   RegistrationRun run(furnished_room(), circle, drifting(circle), Method::k3Dof);
   run.steps(20);
   World elsewhere;
@@ -97,7 +97,7 @@ TEST_CASE("empty scans and scans out of order get the prior's pose") {
   CHECK(run.position_error().norm() < 0.02);
 }
 
-TEST_CASE("before the first prior there is no pose, and nothing to propagate") {
+TEST_CASE("before the first prior no scan is registered and no pose is propagated") {
   Registration registration(RegistrationConfig{}, Method::k3Dof, run_lidar_mount());
   auto scan = std::make_unique<Scan>();
   std::mt19937 random(1);

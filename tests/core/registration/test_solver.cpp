@@ -129,7 +129,7 @@ TEST_CASE("the step minimises the sum of scan and prior terms") {
   }
 }
 
-TEST_CASE("the solution turns with the map's axes: it does not depend on the frame") {
+TEST_CASE("the solution is frame-invariant: it rotates with the map's axes") {
   const Vector6d displacement = twist(0.004, -0.006, 0.01, 0.03, -0.02, 0.05);
   std::vector<Pair> pairs = room_pairs(displacement);
   const Step here = solve_step(equations_of(pairs), PriorTerm{}, basis_of(Method::k6Dof), SolverWeights{});
@@ -177,7 +177,7 @@ TEST_CASE("a direction that no surface constrains follows the prior and is degen
   CHECK(step.covariance(4, 4) < 1e-4);
 }
 
-TEST_CASE("without pairs the step is the prior's; without both there is none") {
+TEST_CASE("without pairs the step is the prior's; without pairs and prior there is none") {
   PriorTerm prior;
   prior.deviation = twist(0.0, 0.0, 0.1, 0.2, 0.3, 0.0);
   prior.information.setIdentity();

@@ -60,7 +60,7 @@ TEST_CASE("points beyond 500 m or not finite have no voxel; the farthest corners
   }
 }
 
-TEST_CASE("the filter is a set in every pass, small after large and large after small") {
+TEST_CASE("the filter acts as a set in every pass, a small one after a large one and vice versa") {
   std::mt19937_64 random(22);
   VoxelFilter filter(40'000);
   for (const std::uint64_t different : {10ULL, 30'000ULL, 5ULL, 2'000ULL, 0ULL, 40'000ULL}) {
@@ -74,7 +74,7 @@ TEST_CASE("the filter is a set in every pass, small after large and large after 
   }
 }
 
-TEST_CASE("a full filter inserts no more and keeps what it has") {
+TEST_CASE("a full filter inserts nothing more and keeps its content") {
   VoxelFilter filter(3'000);
   filter.start();
   for (std::uint64_t voxel = 0; voxel < 3'000; ++voxel) {

@@ -21,7 +21,7 @@ TEST_CASE(
     for (std::int64_t i = 0; i < 320; ++i) robot.give(before, i);
     if (goodbye) robot.stream.sender_gone(kFirst);
     CHECK(robot.stream.lost(kRobot + 10 * kSecond) == goodbye);
-    const std::int64_t back = goodbye ? 321 : 337;  // half a second and a bit
+    const std::int64_t back = goodbye ? 321 : 337;  // at 32 Hz: at once, or after half a second of silence
     for (std::int64_t i = back; i < back + 64; ++i) {
       // Half a second of confirmation: no single message can replace a base.
       CHECK(robot.give(after, i, 2 * kMs, kSecondSender) == (i < back + 16 ? V::kUnconfirmed : V::kAccepted));
@@ -79,7 +79,7 @@ TEST_CASE("Two new base stations that start together do not block each other") {
   CHECK(robot.stream.status().restarts == 1);
 }
 
-TEST_CASE("A slow base restarted before its silence is detected is not taken for a second base station") {
+TEST_CASE("A slow base restarted before its silence is detected does not count as a second base station") {
   const Base base = base_at(1.0);
   Listener robot;
   for (std::int64_t i = 0; i < 20; ++i) robot.give(base, i);

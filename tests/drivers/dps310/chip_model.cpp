@@ -46,7 +46,8 @@ void ChipModel::run_until(std::int64_t now_ns) {
   now_ns_ = std::max(now_ns_, now_ns);
 }
 
-/// The chip's single converter: when free it starts the measurement that is due the longest; pressure first.
+/// The chip's single converter: when free it starts the measurement that has been due longest, on a tie
+/// pressure.
 void ChipModel::start_due() {
   if (pressure_.end_ns != 0 || temperature_.end_ns != 0) return;
   const bool background = mode_ == kModeBackground;
@@ -73,7 +74,7 @@ void ChipModel::finish(bool pressure) {
   } else {
     store(kTemperatureResult, raw_temperature());
     registers_[kMeasurementConfig] |= kTemperatureReady;
-    corrected_ = corrected_ || erratum_step_ == 5;  // takes effect with the next temperature
+    corrected_ = corrected_ || erratum_step_ == 5;  // effective from the next temperature on
     if (mode_ == kModeOneTemperature) set_mode(kModeIdle);
   }
 }

@@ -16,7 +16,7 @@
 
 namespace isobar::dps310 {
 
-/// The chip and the air at it.
+/// The chip and the air around it.
 class ChipModel {
  public:
   /// Starts one second after power-up.
@@ -29,22 +29,21 @@ class ChipModel {
   std::function<double(double)> pressure_pa = [](double) { return 96'000.0; };  ///< by time [s]
   double temperature_c = 21.0;
   double noise_pa = 0.0;                            ///< rms of each conversion
-  std::int64_t byte_time_ns = 25'000;               ///< on the bus, 400 kHz; a transaction adds three of them
+  std::int64_t byte_time_ns = 25'000;               ///< at 400 kHz; a transaction takes three more
   std::int64_t coefficients_ready_ns = 38'000'000;  ///< after a reset; data sheet: 40 ms at most
   std::int64_t sensor_ready_ns = 11'000'000;        ///< 12 ms at most
   std::uint8_t id = kDps310Id;
-  bool external_thermometer = true;  ///< that the coefficients are made for
-  bool hot_until_corrected =
-      false;          ///< one of the chips that read 40 K too much without the erratum sequence
-  double slow = 1.0;  ///< factor on every time: the chip's own oscillator
+  bool external_thermometer = true;  ///< true: the coefficients are those of the external one
+  bool hot_until_corrected = false;  ///< a chip that reads 40 K too much without the erratum sequence
+  double slow = 1.0;                 ///< factor on all durations: error of the chip's oscillator
 
   // Faults.
-  bool unplugged = false;  ///< nothing acknowledges
-  double nak_share = 0.0;  ///< of all transactions
-  bool stops = false;      ///< no conversion ends any more
+  bool unplugged = false;  ///< no transaction is acknowledged
+  double nak_share = 0.0;  ///< share of transactions that are not acknowledged
+  bool stops = false;      ///< conversions no longer end
   bool frozen = false;     ///< conversions end with the bits of the last one
   bool thermometer_stops = false;
-  void power_up();  ///< also a brown-out while it measures
+  void power_up();  ///< during a measurement: a brown-out
 
   /// Runs the chip up to this time.
   void run_until(std::int64_t now_ns);
@@ -85,7 +84,7 @@ class ChipModel {
   std::uint8_t mode_ = kModeIdle;
   Conversion pressure_;
   Conversion temperature_;
-  double ts_ = 0.0;  ///< scaled temperature of the last conversion: the air's truth for the pressure
+  double ts_ = 0.0;  ///< true scaled temperature at the last conversion, for raw_pressure()
   std::int32_t newest_pressure_ = 0;
   int erratum_step_ = 0;
   bool corrected_ = false;

@@ -68,7 +68,7 @@ TEST_CASE("coefficients of an unloaded memory and of a dead bus are refused") {
   Coefficients c = decode_coefficients(dps310::kKnownBytes);
   CHECK(c.c10 != 0);
   bytes = dps310::kKnownBytes;
-  set_field(bytes, 44, 20, 0);  // a sensor that does not feel pressure
+  set_field(bytes, 44, 20, 0);  // pressure without influence on the result
   CHECK(implausibility(bytes) != nullptr);
 }
 
@@ -108,7 +108,7 @@ TEST_CASE("every input gives finite numbers, and implausible results name the ru
   CHECK(implausible < 50'000);
 }
 
-TEST_CASE("an empty result register is refused, whatever it compensates to") {
+TEST_CASE("an empty result register is refused, also if the compensated pressure is plausible") {
   const Compensated fine{95'000.0, 20.0};
   CHECK(implausibility(RawResult{kNoResult, 0}, fine) != nullptr);
   CHECK(implausibility(RawResult{0, kNoResult}, fine) != nullptr);

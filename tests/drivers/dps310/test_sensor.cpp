@@ -53,7 +53,7 @@ struct Bench {
     chip.run_until(end_ns);
   }
   /// Runs until the driver reports this state.
-  /// @return time that took [s]
+  /// @return time until then, or the limit [s]
   double time_until(BarometerState state, double limit_s) {
     const std::int64_t start_ns = chip.now_ns();
     const auto elapsed_s = [&] { return static_cast<double>(chip.now_ns() - start_ns) * 1e-9; };
@@ -70,7 +70,7 @@ struct Bench {
   ChipModel chip;
   Sensor sensor;
   std::int64_t next_ns = 0;
-  std::int64_t late_ns = 0;  ///< calls come up to this late: a busy machine
+  std::int64_t late_ns = 0;  ///< largest delay of a call, as on a busy machine
   std::mt19937 random{5};
   std::uint64_t steps = 0;
   std::vector<PressureSample> samples;
@@ -149,7 +149,7 @@ TEST_CASE("coefficients are read only after the chip reports them ready") {
   CHECK(never.samples.empty());
   CHECK(never.sensor.status().state == BarometerState::kWrongDevice);
   CHECK(never.fault() == "sensor or coefficients not ready 0.1 s after a reset");
-  CHECK(never.sensor.status().counters.starts < 12);  // the waits double
+  CHECK(never.sensor.status().counters.starts < 12);  // the wait doubles each time
 }
 
 TEST_CASE("chips that need the erratum sequence, and either thermometer, read the room's temperature") {
@@ -167,7 +167,7 @@ TEST_CASE("chips that need the erratum sequence, and either thermometer, read th
 }
 
 TEST_CASE(
-    "a sensor that is unplugged is flagged within 0.5 s, asked for again with patience, and comes back") {
+    "an unplugged sensor is flagged within 0.5 s, retried at growing intervals, and used once it is back") {
   Bench bench;
   bench.run(2.0);
   bench.chip.unplugged = true;
@@ -268,7 +268,7 @@ TEST_CASE(
     bench.chip.power_up();
     bench.run(0.05);
     CHECK(bench.time_until(BarometerState::kMeasuring, 3.0) < 0.45);
-    bench.run(3.0 + 0.0037 * i);  // at another moment of the measurement each time
+    bench.run(3.0 + 0.0037 * i);  // each time in another phase of the measurement
   }
   CHECK(bench.sensor.status().counters.resets == 20);
   CHECK(bench.largest_error_pa(96'000.0) < 0.3);
@@ -300,8 +300,7 @@ TEST_CASE("a bus that cannot be opened is reported with the reason") {
 }
 
 TEST_CASE(
-    "a slow bus on a busy machine meets updates in the middle of a read, and no sample is put together from "
-    "two results") {
+    "a slow bus on a busy machine meets updates in the middle of a read, and no sample mixes two results") {
   Bench bench(with_rates(64, 4, 8, 1));
   bench.late_ns = 20'000'000;
   bench.chip.byte_time_ns = 400'000;  // a read of both results takes 3.6 ms, a measurement 8.4 ms
@@ -416,7 +415,7 @@ TEST_CASE("for all bytes on the bus, every sample is finite and plausible") {
     }
     implausible += sensor.status().counters.implausible;
   }
-  CHECK(samples > 100);  // the test reaches behind the checks
+  CHECK(samples > 100);  // enough results pass the checks
   CHECK(implausible > 1'000);
 }
 
@@ -444,7 +443,7 @@ TEST_CASE("samples, faults and restarts allocate no memory") {
       case kPressureResult:
         return 0xFE;  // about 96 kPa
       case kPressureResult + 2:
-        return count;  // never the same twice: not stuck
+        return count;  // changes with each read, so that it does not count as stuck
       case kTemperatureResult:
         return 0x20;
       default:

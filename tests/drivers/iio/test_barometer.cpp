@@ -98,7 +98,7 @@ TEST_CASE("a raw pressure uses scale and offset of its channel, or those shared 
   adc.put("in_voltage0_raw", "12000");
   adc.put("in_voltage_scale", "0.125000000");
   adc.put("in_voltage0_offset", "800");
-  adc.put("in_temp_input", "55000");  // the converter's own: says nothing of the air
+  adc.put("in_temp_input", "55000");  // temperature of the converter, not of the air
   Bench volts(setra_at(adc));
   volts.run(0.5);
   REQUIRE_FALSE(volts.samples.empty());

@@ -32,7 +32,7 @@ TEST_CASE("an open wire and a saturated converter are reported, at the ends of t
   CHECK(pressure_of(span, 2.48).fault == nullptr);
 }
 
-TEST_CASE("no voltage gives a pressure that is outside the span or not a number") {
+TEST_CASE("for any voltage the result is a pressure inside the span or a fault") {
   std::mt19937 random(9);
   std::normal_distribution<double> any(1.0, 3.0);
   constexpr double kInf = std::numeric_limits<double>::infinity();

@@ -26,8 +26,8 @@ Value value_at(const std::vector<std::uint8_t>& bytes, std::size_t at) {
   return value;
 }
 
-/// CDR, little-endian (OMG DDS-RTPS): std_msgs/Header, then a sequence of (time stamp, 1206 bytes, no padding
-/// but to 4).
+/// CDR, little-endian (OMG DDS-RTPS): std_msgs/Header, then a sequence of (time stamp, 1206 bytes), padded to
+/// 4 bytes only.
 void parse_scan_message(const std::vector<std::uint8_t>& cdr, std::vector<RawPacket>& packets) {
   constexpr std::size_t kEncapsulation = 4;
   constexpr std::size_t kPacket = 1206;

@@ -19,7 +19,7 @@ struct TruthPoint {
   float x_m, y_m, z_m;
   std::uint8_t intensity;
   std::uint16_t channel;
-  std::uint32_t time_ns;  ///< as the file has it
+  std::uint32_t time_ns;  ///< field time_stamp, unchanged
 };
 
 /// All packets of the velodyne_msgs/VelodyneScan messages of a ROS 2 sqlite bag.

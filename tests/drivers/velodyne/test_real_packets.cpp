@@ -102,7 +102,7 @@ TEST_CASE("Every ground-truth point of a real dual-return VLP-16 recording is de
                     << " mm");
   CHECK(errors_m[errors_m.size() / 2] <= 1e-4);
   // The reference decoder does not interpolate the last firing of a packet: its azimuth is that of the block,
-  // so one firing in six is off by up to 0.4 deg, 7 mm/m. Ours interpolates it, too.
+  // so one firing in six is off by up to 0.4 deg, 7 mm/m. Our decoder interpolates that firing as well.
   CHECK(errors_m.back() <= 0.05);
   const auto exact = std::count_if(errors_m.begin(), errors_m.end(), [](double e) { return e <= 1e-3; });
   CHECK(static_cast<double>(exact) > 5.0 / 6.0 * static_cast<double>(truth.size()));

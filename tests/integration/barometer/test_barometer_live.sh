@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# isobard with barometers attached to this machine: an IIO device of the kernel (imitated by a folder), and a missing DPS310.
+# isobard with barometers attached to this machine: an IIO device of the kernel, imitated by a folder, and a
+# missing DPS310.
 # Usage: test_barometer_live.sh ISOBARD   (through tests/ipc/isolated, where root)
 set -euo pipefail
 isobard=$1
@@ -24,8 +25,8 @@ stop() {
 device=$work/iio:device0
 mkdir "$device"
 echo 21400 >"$device/in_temp_input"
-# Writes a new pressure about twenty times a second while the file "run" exists; without truncation (1<>), so that no
-# read meets an empty file.
+# Writes a new pressure about twenty times a second while the file "run" exists; without truncation (1<>), so
+# that no read meets an empty file.
 feed() {
   local n=0
   while [ -e "$work/run" ]; do

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The thread that reads a barometer attached to this machine, in real time on a model of a DPS310: samples in shared
+// The thread for a barometer attached to this machine, in real time on a model of a DPS310: samples in shared
 // memory, faults in the health report.
 #include "daemon/barometer_thread.hpp"
 

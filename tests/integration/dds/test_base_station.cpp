@@ -137,7 +137,7 @@ TEST_CASE(
     // Either of a station's two topics may be discovered first.
     known[got.station] = known[got.station] || got.temperature_c == 17.5;
     if (known[got.station]) CHECK(got.temperature_c == 17.5);
-    CHECK(std::abs(got.age_ms) < 2000);  // the delay of a loaded machine, not decades
+    CHECK(std::abs(got.age_ms) < 2000);  // delay of a loaded machine, without the decades between the clocks
   }
   for (const int station : {0, 1}) {
     CHECK(of_station[station] > 5);

@@ -129,7 +129,7 @@ TEST_CASE("a base station's pressure reaches isobard on the robot clock; implaus
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < 200 && good < 5; ++i) {
     const auto since_start = std::chrono::steady_clock::now() - start;
-    message.header.stamp = dds::to_time(1'000'000'000'000 + since_start / 1ns);  // a sender's clock in 1970
+    message.header.stamp = dds::to_time(1'000'000'000'000 + since_start / 1ns);  // sender's clock: 1970
     message.fluid_pressure = i % 2 == 0 ? 98765.25 : 1e9;
     writer.write(message);
     while (stand_in.read_line(line, 50ms)) {
@@ -138,7 +138,7 @@ TEST_CASE("a base station's pressure reaches isobard on the robot clock; implaus
         long age_ms = 0;
         REQUIRE(std::sscanf(line.c_str(), "base %lf %ld", &pressure_pa, &age_ms) == 2);
         CHECK(pressure_pa == 98765.25);
-        CHECK(std::abs(age_ms) < 1000);  // the delay of a loaded machine, not half a century
+        CHECK(std::abs(age_ms) < 1000);  // delay of a loaded machine; the clocks differ by decades
         ++good;
       }
     }

@@ -16,7 +16,8 @@ namespace isobar::test {
 
 class StoppedThread {
  public:
-  /// Stops the thread of that name for the lifetime of this object. Construct and destroy in one thread (ptrace).
+  /// Stops the thread of that name for the lifetime of this object. ptrace requires construction and
+  /// destruction in one thread.
   StoppedThread(pid_t process, const std::string& name) : thread_(find(process, name)) {
     if (::ptrace(PTRACE_SEIZE, thread_, nullptr, nullptr) != 0 ||
         ::ptrace(PTRACE_INTERRUPT, thread_, nullptr, nullptr) != 0 ||

@@ -55,7 +55,7 @@ pids+=("$!")
 "$isobar" play "$work/recording" --reference-out "$work/played" >"$work/play.log" 2>&1
 sleep 1
 
-# The bridge is killed by SIGKILL: the estimator goes on.
+# SIGKILL of the bridge: the estimator continues.
 kill -9 "$bridge_pid"
 kill -0 "$daemon" || fail "isobard ended with the bridge"
 ok "isobard lives on without the bridge"
@@ -79,8 +79,8 @@ largest=$(grep -o '"ate_max_m": *[-0-9.e]*' "$work/figures.json" | sed 's/.*: */
 awk -v e="$largest" 'BEGIN { exit !(e < 0.3) }' || fail "position off by $largest m"
 ok "position within 30 cm (largest error $largest m)"
 
-# isobard is stopped for two seconds: poses resume with the first new scan. Poses of the scans in between rest on the
-# IMU samples that the queues kept, hence the tolerance of a metre.
+# isobard is stopped for two seconds: poses resume with the first new scan. Poses of the scans in between come
+# from the IMU samples left in the queues, hence the tolerance of a metre.
 "$isobard" --config "$work/isobar.toml" --output "$work/stopped" >"$work/stopped.log" 2>&1 &
 daemon=$!
 pids+=("$daemon")

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// isobard with threads that are stopped for a while: poses resume with the newest scan, and every drop is counted.
+// isobard with threads that are stopped for a while: poses resume with the newest scan, and every dropped
+// scan is counted.
 #include <doctest/doctest.h>
 #include <signal.h>  // NOLINT(modernize-deprecated-headers)
 #include <sys/socket.h>
@@ -56,7 +57,8 @@ struct Pose {
   std::int64_t received_ns = 0;
 };
 
-/// A reader of shared memory outside isobard. A process can attach only once, so all tests share one run of isobard.
+/// A reader of shared memory outside isobard. A process can attach only once, so that all tests share one run
+/// of isobard.
 class Tap {
  public:
   /// Collects messages for `duration`.
@@ -92,7 +94,7 @@ class Tap {
   ipc::Waiter waiter_{&scans_.raw(), &poses_.raw(), &reports_.raw()};
 };
 
-/// The service manager's end of the watchdog.
+/// Receiving socket of the watchdog, in place of the service manager.
 class Manager {
  public:
   Manager() {
@@ -144,8 +146,8 @@ void check_one_pose_a_scan(const Tap& tap) {
   }
 }
 
-/// Poses are in order of time, and neighbours are no farther apart than 2 m/s allow plus `correction_m`, the largest
-/// correction of a prior by the registration.
+/// Poses are in order of time. Successive ones differ by at most 2 m/s times the elapsed time plus
+/// `correction_m`, the largest correction of a prior by the registration.
 void check_steady(const std::vector<Pose>& poses, double correction_m) {
   for (std::size_t i = 1; i < poses.size(); ++i) {
     const PoseEstimate& before = poses[i - 1].estimate;
@@ -157,7 +159,8 @@ void check_steady(const std::vector<Pose>& poses, double correction_m) {
   }
 }
 
-/// The first registered pose received after `received_after_ns` from a scan that ended after `ended_after_ns`.
+/// The first registered pose that was received after `received_after_ns` and whose scan ended after
+/// `ended_after_ns`; null without one.
 const Pose* first_registered(const std::vector<Pose>& poses, std::int64_t received_after_ns,
                              std::int64_t ended_after_ns) {
   for (const Pose& pose : poses) {
@@ -180,7 +183,7 @@ void held_registration(const ChildProcess& isobard, Tap& tap) {
   }
   const std::int64_t resumed_ns = RobotClock::now_ns();
   tap.gather(2500ms);
-  // The scan in work when the thread was stopped is finished first; it ended before held_ns.
+  // The scan that was being registered at the stop is finished first; it ended before held_ns.
   const Pose* first = first_registered(tap.poses, resumed_ns, held_ns);
   REQUIRE(first != nullptr);
   // The newest waiting scan: at most one revolution (100 ms) old, plus what a loaded machine adds.
@@ -196,7 +199,7 @@ void held_registration(const ChildProcess& isobard, Tap& tap) {
   check_one_pose_a_scan(tap);
   check_steady(tap.poses, 0.1);
   REQUIRE(tap.entry("registration/dropped") != nullptr);
-  // More when a loaded machine dropped others before or after.
+  // Larger if a loaded machine dropped scans before or after the stop as well.
   CHECK(tap.entry("registration/dropped")->value >= from_prior_in_hold);
   REQUIRE(tap.entry("registration/deadline") != nullptr);
   CHECK(tap.entry("registration/deadline")->value >= from_prior_in_hold);
@@ -214,7 +217,8 @@ void held_process(const ChildProcess& isobard, Tap& tap) {
     if (fresh == nullptr && pose.estimate.stamp_ns > resumed_ns) fresh = &pose;
   }
   REQUIRE(fresh != nullptr);
-  // Measured: 640 ms under a sanitizer on a loaded machine. Working off twenty waiting scans would take three times that.
+  // Measured: 640 ms under a sanitizer on a loaded machine. Processing twenty waiting scans would take three
+  // times that.
   CHECK(fresh->received_ns < resumed_ns + 1200 * kMs);
   // Most IMU samples of these two seconds are lost: the prior is accurate to a metre, as in test_live.sh.
   check_steady(tap.poses, 1.0);

@@ -18,8 +18,8 @@ const std::filesystem::path& short_drive();
 /// New folder below the system's temporary one, removed when the process ends.
 std::filesystem::path fresh_folder(const std::string& name);
 
-/// Copies `from` event by event. `change_manifest` may remove sensors; `copy_event` writes each event,
-/// changed.
+/// Copies `from` event by event. `change_manifest` may remove sensors; `copy_event` writes each event, with
+/// or without changes.
 using CopyEvent = std::function<void(const recording::Event&, recording::RecordingWriter&)>;
 std::filesystem::path copy_with(const std::filesystem::path& from, const std::string& name,
                                 const std::function<void(recording::Manifest&)>& change_manifest,

@@ -187,7 +187,7 @@ TEST_CASE("three seconds without IMU are bridged by the scans") {
   const auto summary = run(folder, out);
   CHECK(count_of(summary, "imu gaps") == 1);
   CHECK(bytes_of(out / "status.csv").find(",registered,6dof,") != std::string::npos);
-  // The limit of the clean drive; a pose that stopped with the IMU would be off by more than a metre.
+  // The limit of the clean drive; poses that ended with the IMU would be off by more than a metre.
   CHECK(largest_error_m(short_drive(), out) < 0.15);
 }
 

@@ -46,7 +46,7 @@ TEST_CASE("poses and status rows come back from the folder of a run as they were
   for (std::uint32_t i = 0; i < 50; ++i) {
     const PoseEstimate pose = some_pose(i);
     CHECK(run.trajectory.poses[i].stamp_ns == pose.stamp_ns);
-    // Six decimals of a metre, nine of a quaternion.
+    // Resolution of the file: six decimals of a metre, nine of a quaternion.
     CHECK((run.trajectory.poses[i].position_m - pose.T_map_base.translation()).norm() < 1e-6);
     CHECK(run.trajectory.poses[i].attitude.angularDistance(Eigen::Quaterniond(pose.T_map_base.linear())) <
           1e-7);

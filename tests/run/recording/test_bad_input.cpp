@@ -206,7 +206,7 @@ TEST_CASE("The base station's clock offset follows from the spans of the two fil
   CHECK(tie_base_clock(robot, StampSpan{900 * s, 1'650 * s}).offset_ns == 0);    // covers
   CHECK(tie_base_clock(robot, StampSpan{1'030 * s, 1'590 * s}).offset_ns == 0);  // overlaps
   CHECK(tie_base_clock(robot, StampSpan{1'100 * s, 1'700 * s}).offset_ns == -100 * s);
-  // Both ends two seconds away: a clock; only one end: a recorder that was started or stopped by hand.
+  // Both ends differ by two seconds: a clock offset. Only one end: a recorder started or stopped by hand.
   CHECK(tie_base_clock(robot, StampSpan{1'002 * s, 1'602 * s}).offset_ns == -2 * s);
   CHECK(tie_base_clock(robot, StampSpan{998 * s, 1'600 * s}).offset_ns == 0);
   CHECK(tie_base_clock(robot, StampSpan{5 * s, 607 * s}).offset_ns == 994 * s);  // a clock that starts at 0

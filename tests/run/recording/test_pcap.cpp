@@ -235,7 +235,7 @@ TEST_CASE("A file that ends within a packet gives all packets before it and repo
   CHECK_THROWS_AS(open(scratch, ""), DataError);
 }
 
-TEST_CASE("No packet is dropped for its stamp; an absurd stamp becomes the last good one") {
+TEST_CASE("No packet is dropped for its stamp; an absurd stamp is replaced by the last good one") {
   Scratch scratch;
   PcapText text({});
   for (std::uint32_t i = 0; i < 20; ++i) {

@@ -135,7 +135,7 @@ TEST_CASE("near the limit superseded versions are removed before any live tile")
   CHECK(store->counters().forgotten == 0);
 }
 
-TEST_CASE("a refusal of the disk costs only the new tile, is counted with its reason, and is not permanent") {
+TEST_CASE("a failed write loses only the new tile, is counted with its reason, and is not permanent") {
   const Scratch scratch;
   const auto store = FileTileStore::create(scratch.path(), {}, {});
   for (int n = 0; n < 10; ++n) REQUIRE(store->put({n, 0, 0}, tile_bytes({n, 0, 0}, 1, 5'000)));

@@ -149,7 +149,7 @@ TEST_CASE("the message about damage names file, offset, tile and rule") {
   CHECK_FALSE(store->contains(key_number(0)));
 }
 
-TEST_CASE("a map with random bytes in its files can be opened, and has no tile that was not put") {
+TEST_CASE("a map with random bytes in its files can be opened, and has only tiles that were put") {
   const SmallMap map;
   std::mt19937 random(7);
   for (int round = 0; round < 50; ++round) {

@@ -156,7 +156,7 @@ TEST_CASE("mistakes end with their exit code: usage 64, data 65") {
   CHECK(calibrate_exit({"--sensor", day, "--reference", station, station}) == 65);
   // The clocks are an hour apart: no shift within a minute aligns the logs.
   CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--window", "0.02"}) == 65);
-  // A copy of the sensor's log is no reference.
+  // A copy of the sensor's log is refused as a reference.
   std::filesystem::copy_file(day, path("copy.csv"));
   CHECK(calibrate_exit({"--sensor", day, "--reference", path("copy.csv")}) == 65);
   CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--out", path("no/folder.toml")}) == 69);
@@ -221,7 +221,8 @@ TEST_CASE(
             simple.median_abs_pa, " of ", offset.median_abs_pa, " Pa");
     CHECK(simple.rms_pa <= 0.6 * offset.rms_pa);
     CHECK(simple.median_abs_pa <= 0.6 * offset.median_abs_pa);
-    // Two hours minus up to two minutes: averages over a minute stamped at its end, and two loggers set by hand.
+    // Two hours minus up to two minutes: averages over a minute are stamped at its end, and both loggers'
+    // clocks were set by hand.
     CHECK(any_contains(aligned.notes, "the reference's time is the sensor's - 71"));
     // Three days and 6 hPa do not suffice for sixteen coefficients.
     CHECK(calibration.models[calibration.recommended].model != CompensationModel::kFull);

@@ -122,8 +122,8 @@ TEST_CASE("on a real robot outdoors heights are within 12 cm rms of survey-grade
     MESSAGE("skipped: no shared data");
     return;
   }
-  // Default settings: a lag of 1 s and the air temperature of the coldest sensor. Only the mean difference is fitted,
-  // because the zero of a barometer's height is arbitrary.
+  // Default settings: a lag of 1 s, the air temperature of the coldest sensor. Only the mean difference is
+  // fitted, because the zero of a barometer's height is arbitrary.
   const auto read = [](const char* file, const char* columns) {
     return tools::read_new_values(ugv() / file, tools::parse_columns(columns));
   };
@@ -149,7 +149,8 @@ TEST_CASE("on a real robot outdoors heights are within 12 cm rms of survey-grade
       CHECK(result.rms_m < 0.12);
     }
   }
-  // Proof of the delay: 1 s uncorrected at up to 0.12 m/s would make the low-pass worse than none.
+  // The delay is subtracted: uncorrected, 1 s at up to 0.12 m/s would make the errors larger than without
+  // low-pass.
   CHECK(errors(1.0, false).rms_m < errors(0.0, false).rms_m);
 }
 

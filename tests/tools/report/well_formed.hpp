@@ -6,8 +6,8 @@
 
 namespace isobar::test {
 
-/// True if all tags of an XML text are closed in order and quotes in tags are paired. Does not handle comments and
-/// CDATA sections, which the report does not use.
+/// True if all tags of an XML text are closed in order and quotes in tags are paired. Comments and CDATA
+/// sections, which the report does not use, are not handled.
 inline bool is_well_formed(const std::string& text) {
   std::vector<std::string> open;
   for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Decodes the messages captured by the Fast DDS listener with Foxglove's code and Foxglove's copies of the ROS 2
-// definitions, and compares them with the data of the stand-in (stand_in.hpp). Independent of Isobar's IDL.
-//   node decode.js FOLDER        exit code 0: passed, 1: failed, 77: node_modules or the captured files are missing
+// Decodes the messages captured by the Fast DDS listener with Foxglove's code and Foxglove's copies of the
+// ROS 2 definitions, and compares them with the data of the stand-in (stand_in.hpp). Independent of Isobar's
+// IDL.
+//   node decode.js FOLDER
+// Exit code 0: passed, 1: failed, 77: node_modules or the captured files are missing.
 "use strict";
 const assert = require("node:assert/strict");
 const fs = require("node:fs");
