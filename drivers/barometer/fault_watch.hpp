@@ -37,7 +37,7 @@ class StuckWatch {
   std::uint64_t equal_ = 0;
 };
 
-/// State, fault text, counters, and the back-off before the next try: 0.1 s, doubled up to 5 s.
+/// State, fault text, counters, and the back-off before the next try: 0.1 s, doubled up to 4 s.
 class FaultWatch {
  public:
   explicit FaultWatch(std::int64_t silence_ns) : silence_ns_(silence_ns) {}
@@ -67,7 +67,8 @@ class FaultWatch {
   void set_fault(BarometerState state, const char* what, int error) noexcept;
 
   static constexpr std::int64_t kFirstWaitNs = 100'000'000;
-  static constexpr std::int64_t kLongestWaitNs = 5'000'000'000;
+  /// Shorter than the silence after which a thread counts as hung (WorkerGroup, 5 s).
+  static constexpr std::int64_t kLongestWaitNs = 4'000'000'000;
   /// Duration of good results after which the back-off starts again at kFirstWaitNs.
   static constexpr std::int64_t kWellNs = 2'000'000'000;
 

@@ -181,7 +181,7 @@ TEST_CASE(
   CHECK(bench.sensor.status().counters.io_errors > 10);
   bench.chip.unplugged = false;
   bench.chip.power_up();
-  CHECK(bench.time_until(BarometerState::kMeasuring, 10.0) < 5.5);  // the longest wait is 5 s
+  CHECK(bench.time_until(BarometerState::kMeasuring, 10.0) < 4.5);  // the longest wait is 4 s
   CHECK(bench.fault().empty());
   CHECK(bench.largest_error_pa(96'000.0) < 0.3);
 }

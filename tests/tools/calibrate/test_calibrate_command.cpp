@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
 #include <random>
@@ -12,8 +11,8 @@
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
 #include "run/files/text_file.hpp"
+#include "tests/support/exit_code.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tests/tools/commands/exit_code.hpp"
 #include "tests/tools/report/well_formed.hpp"
 #include "tools/calibrate_logs.hpp"
 #include "tools/commands.hpp"

@@ -6,7 +6,7 @@
 #include "run/tile_store/file_tile_store.hpp"
 #include "tests/run/recording/scratch.hpp"
 #include "tests/run/tile_store/tiles.hpp"
-#include "tests/tools/commands/exit_code.hpp"
+#include "tests/support/exit_code.hpp"
 #include "tools/commands.hpp"
 
 namespace isobar::test::test_map_command {

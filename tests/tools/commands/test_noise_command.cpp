@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <random>
@@ -10,8 +9,8 @@
 
 #include "core/errors.hpp"
 #include "run/files/text_file.hpp"
+#include "tests/support/exit_code.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tests/tools/commands/exit_code.hpp"
 #include "tools/commands.hpp"
 #include "tools/pressure_log.hpp"
 

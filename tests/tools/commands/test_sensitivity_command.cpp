@@ -11,8 +11,8 @@
 #include "core/statistics/distribution.hpp"
 #include "run/files/text_file.hpp"
 #include "simulation/sensitivity_rig.hpp"
+#include "tests/support/exit_code.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tests/tools/commands/exit_code.hpp"
 #include "tools/commands.hpp"
 #include "tools/sensitivity_study.hpp"
 

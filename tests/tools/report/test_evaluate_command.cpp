@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "run/files/text_file.hpp"
+#include "tests/support/exit_code.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tests/tools/commands/exit_code.hpp"
 #include "tools/commands.hpp"
 
 namespace isobar::test::test_evaluate_command {
