@@ -42,7 +42,7 @@ bool DeviceAttitude::add(const ImuSample& sample, const Eigen::Vector3d& gyro_ra
 }
 
 DeviceAttitude::Update DeviceAttitude::take() {
-  const Update update{q_before_.conjugate() * Eigen::Vector3d::UnitZ(), bias_sum_ / since_s_, since_s_};
+  Update update{q_before_.conjugate() * Eigen::Vector3d::UnitZ(), bias_sum_ / since_s_, since_s_};
   bias_sum_.setZero();
   since_s_ = 0.0;
   return update;

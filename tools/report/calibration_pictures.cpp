@@ -112,6 +112,7 @@ Picture residual_against_temperature(const Calibration& calibration, Compensatio
   if (chosen > CompensationModel::kOffset) clouds.push_back(cloud_of(calibration.model(chosen), recordings));
   Picture picture(1040.0, 420.0);
   std::vector<LegendEntry> legend;
+  legend.reserve(clouds.size());
   for (const Cloud& cloud : clouds) legend.push_back({cloud.name, {cloud.colour, kMedianLinePx}});
   const Box frame = frame_below_legend(picture, legend, 8.0);
   const Range temperatures = padded({calibration.range.lowest_c, calibration.range.highest_c}, 0.02, 1.0);

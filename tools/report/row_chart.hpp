@@ -41,6 +41,7 @@ class RowChart {
 template <typename Row>
 std::vector<std::string> row_names(const std::vector<Row>& rows) {
   std::vector<std::string> names;
+  names.reserve(rows.size());
   for (const Row& row : rows) names.push_back(row.name);
   return names;
 }
