@@ -92,7 +92,7 @@ const std::map<std::string, Names> kNamedOnlyBy{
     {"CLI/", {"daemon/", "tools/"}},
     {"nanoflann", {"core/map/"}},
     {"pcap", {"run/recording/"}},
-    {"toml++", {"config/", "run/", "tools/cmake/"}},
+    {"toml++", {"config/", "run/"}},
     {"systemd/", {"daemon/"}},
 };
 
