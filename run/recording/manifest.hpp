@@ -38,7 +38,7 @@ struct Manifest {
   std::optional<SensorEntry> wheel;
   std::optional<SensorEntry> reference;
 
-  /// All sensors with the file names of recording-format.md, mounts at the origin.
+  /// All sensors with the file names of docs/files-and-formats.md, mounts at the origin.
   static Manifest with_all_sensors();
 };
 

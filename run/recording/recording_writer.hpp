@@ -13,7 +13,8 @@
 
 namespace isobar::recording {
 
-/// Writer of a recording folder (recording-format.md, version 1). Keeps the order of each stream; streams may
+/// Writer of a recording folder (docs/files-and-formats.md, version 1).
+/// Keeps the order of each stream; streams may
 /// interleave in any order. Numbers are lossless: reading gives the same bits. add_…() throws
 /// std::logic_error when the manifest lacks the sensor: a fault of the caller.
 class RecordingWriter {

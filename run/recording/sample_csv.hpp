@@ -11,7 +11,7 @@
 
 namespace isobar::recording {
 
-/// Opens a sensor's file with its columns (recording-format.md).
+/// Opens a sensor's file with its columns (docs/files-and-formats.md).
 /// @throws DataError when the file cannot be read or lacks a column
 text::CsvReader open_imu_csv(const std::filesystem::path& file);
 text::CsvReader open_pressure_csv(const std::filesystem::path& file);
