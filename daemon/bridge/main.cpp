@@ -144,17 +144,16 @@ int run(const Settings& settings) {
   std::optional<Connection> connection;
   service.supervise([&] {
     if (connection) return connection->check();
-    set_time_limit(kAttachLimit, &replace_process);
+    const TimeLimit limit(kAttachLimit, &replace_process);
     if (auto attachment = connector.attach(service)) {
       connection.emplace(std::move(attachment), network, settings);
       service.set_status("forwarding");
       spdlog::info("attached to isobard");
     }
-    clear_time_limit();
     return true;
   });
-  // Never cleared: the library detaches only after main() has returned.
-  if (connection) set_time_limit(kDetachLimit, &end_process);
+  // The library detaches only after main() has returned.
+  if (connection) end_process_after(kDetachLimit);
   connection.reset();
   spdlog::info("stopped");
   return 0;

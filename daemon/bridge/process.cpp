@@ -2,11 +2,9 @@
 #include "daemon/bridge/process.hpp"
 
 #include <linux/close_range.h>
-#include <signal.h>  // NOLINT(modernize-deprecated-headers): sigaction is POSIX
 #include <unistd.h>
 
 #include <array>
-#include <atomic>
 #include <climits>
 #include <cstdlib>
 #include <ctime>
@@ -17,7 +15,12 @@ namespace {
 
 std::array<char, PATH_MAX> g_program{};
 char** g_arguments = nullptr;
-std::atomic<void (*)() noexcept> g_time_limit_action{nullptr};
+
+[[noreturn]] void end_process() noexcept {
+  constexpr std::string_view kReason = "isobar-dds: isobard does not answer; ended without detaching\n";
+  static_cast<void>(::write(STDERR_FILENO, kReason.data(), kReason.size()) > 0);
+  std::_Exit(0);
+}
 
 }  // namespace
 
@@ -31,12 +34,6 @@ void remember_arguments(char** argv) {
 }
 
 void replace_process() noexcept {
-  ::alarm(0);  // a pending alarm survives exec and would end the new program
-  // The handler of SIGALRM runs with SIGALRM blocked, and exec keeps the signal mask.
-  sigset_t alarm;
-  sigemptyset(&alarm);
-  sigaddset(&alarm, SIGALRM);
-  pthread_sigmask(SIG_UNBLOCK, &alarm, nullptr);
   ::close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);
   if (g_arguments != nullptr) {
     ::execv(g_program.data(), g_arguments);
@@ -51,20 +48,26 @@ void replace_process_later() noexcept {
   replace_process();
 }
 
-void set_time_limit(std::chrono::seconds limit, void (*action)() noexcept) {
-  g_time_limit_action.store(action);
-  struct sigaction on_alarm {};
-  on_alarm.sa_handler = [](int) { g_time_limit_action.load()(); };
-  ::sigaction(SIGALRM, &on_alarm, nullptr);
-  ::alarm(static_cast<unsigned>(limit.count()));
+TimeLimit::TimeLimit(std::chrono::seconds limit, void (*action)() noexcept)
+    : thread_([this, end = std::chrono::steady_clock::now() + limit, action] {
+        std::unique_lock lock(mutex_);
+        if (!ended_.wait_until(lock, end, [this] { return met_; })) action();
+      }) {}
+
+TimeLimit::~TimeLimit() {
+  {
+    const std::lock_guard lock(mutex_);
+    met_ = true;
+  }
+  ended_.notify_one();
+  thread_.join();
 }
 
-void clear_time_limit() noexcept { ::alarm(0); }
-
-void end_process() noexcept {
-  constexpr std::string_view kReason = "isobar-dds: isobard does not answer; ended without detaching\n";
-  static_cast<void>(::write(STDERR_FILENO, kReason.data(), kReason.size()) > 0);
-  std::_Exit(0);
+void end_process_after(std::chrono::seconds limit) {
+  std::thread([limit] {
+    std::this_thread::sleep_for(limit);
+    end_process();
+  }).detach();
 }
 
 }  // namespace isobar::bridge

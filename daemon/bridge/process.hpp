@@ -3,6 +3,9 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
 
 namespace isobar::bridge {
 
@@ -16,14 +19,26 @@ void remember_arguments(char** argv);
 /// replace_process() after 1 s, for faults that may recur at once.
 [[noreturn]] void replace_process_later() noexcept;
 
-/// Sets a time limit for calls into iceoryx, which wait without a timeout for isobard's answer and would hang
-/// when isobard dies or hangs in between. One limit at a time; main thread.
-/// @param limit whole seconds, > 0
-/// @param action called in a signal handler when the time is up: async-signal-safe, must not return
-void set_time_limit(std::chrono::seconds limit, void (*action)() noexcept);
-void clear_time_limit() noexcept;
+/// Time limit for calls into iceoryx, which wait without a timeout for isobard's answer and would hang when
+/// isobard dies or hangs in between. A thread, not a signal: the thread that made the call may hold locks, or
+/// be blocked in one that a stopped isobard holds, and a handler could then not run.
+class TimeLimit {
+ public:
+  /// @param action called in a thread of its own when this object still exists after `limit`; must not return
+  TimeLimit(std::chrono::seconds limit, void (*action)() noexcept);
+  ~TimeLimit();
+  TimeLimit(const TimeLimit&) = delete;
+  TimeLimit& operator=(const TimeLimit&) = delete;
 
-/// Ends the process with code 0 and a line on stderr: for a requested stop that exceeds its time limit.
-[[noreturn]] void end_process() noexcept;
+ private:
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool met_ = false;
+  std::thread thread_;
+};
+
+/// Ends the process with code 0 and a line on stderr if it has not ended by itself within `limit`: for a
+/// requested stop. Holds beyond the end of main(), during the clean-up of the libraries.
+void end_process_after(std::chrono::seconds limit);
 
 }  // namespace isobar::bridge
