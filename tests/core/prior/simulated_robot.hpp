@@ -95,7 +95,6 @@ struct SimulatedRobot {
   std::function<bool(double)> robot_on = [](double) { return true; };
   std::function<bool(double)> imu_on = [](double) { return true; };
   std::function<bool(double)> wheels_on = [](double) { return true; };
-  std::function<bool(const Pose&)> wheels_turn;  ///< unused
 };
 
 /// Estimate and truth at one IMU sample.
