@@ -23,6 +23,7 @@
 #include "daemon/lidar_thread.hpp"
 #include "daemon/logging.hpp"
 #include "daemon/map_thread.hpp"
+#include "daemon/options.hpp"
 #include "daemon/output_thread.hpp"
 #include "daemon/prior_thread.hpp"
 #include "daemon/registration_thread.hpp"
@@ -114,15 +115,9 @@ class RobotGraph final : public Graph {
 };
 
 int main_with_errors(int argc, char** argv) {
-  CLI::App app{
-      "isobard: pose of a robot from lidar, IMU, wheels and air pressure.\n"
-      "Exit codes: 0 stopped by a signal, 64 usage, 69 service unavailable, 78 bad configuration."};
-  std::string config_file;
-  std::string output_directory;
-  app.add_option("--config", config_file,
-                 "TOML file; `isobar config show` prints every key with its default");
-  app.add_option("--output", output_directory,
-                 "folder for trajectory.tum, map.ply, map/, status.csv; overrides [output]");
+  CLI::App app;
+  Options options;
+  add_options(app, options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -132,14 +127,14 @@ int main_with_errors(int argc, char** argv) {
   }
   // Before the first thread, so that all threads inherit the blocked signals.
   Service service;
-  Config config = config_file.empty() ? Config{} : load_config(config_file);
+  Config config = options.config_file.empty() ? Config{} : load_config(options.config_file);
   if (config.role == Role::kBaseStation) {
-    if (!output_directory.empty()) throw UsageError("--output: a base station writes no run");
+    if (!options.output_directory.empty()) throw UsageError("--output: a base station writes no run");
     BaseStationGraph graph(config);
     run(graph, service, config.realtime);
     return 0;
   }
-  if (!output_directory.empty()) config.output.directory = output_directory;
+  if (!options.output_directory.empty()) config.output.directory = options.output_directory;
   RobotGraph graph(config);
   run(graph, service, config.realtime);
   return 0;

@@ -7,30 +7,13 @@
 #include <string>
 
 #include "core/errors.hpp"
-#include "tools/commands.hpp"
+#include "tools/isobar_app.hpp"
 
 namespace {
 
 int run(int argc, char** argv) {
-  CLI::App app{
-      "Isobar: lidar localisation whose height comes from air pressure.\n"
-      "Exit codes: 0 done, 64 usage, 65 bad data, 69 service unavailable, 78 bad configuration."};
-  app.require_subcommand(1);
-  app.set_version_flag("--version", ISOBAR_VERSION);
-  app.get_formatter()->column_width(32);
-  isobar::tools::add_simulate_command(app);
-  isobar::tools::add_replay_command(app);
-  isobar::tools::add_evaluate_command(app);
-  isobar::tools::add_experiment_command(app);
-  isobar::tools::add_noise_command(app);
-  isobar::tools::add_altitude_command(app);
-  isobar::tools::add_calibrate_command(app);
-  isobar::tools::add_play_command(app);
-  isobar::tools::add_map_command(app);
-  isobar::tools::add_config_command(app);
-#if ISOBAR_WITH_DDS
-  isobar::tools::add_echo_command(app);
-#endif
+  CLI::App app;
+  isobar::tools::add_all_commands(app);
   const auto named = [&](const CLI::App* command) { return command->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(named).empty()) {
     throw isobar::UsageError(std::string(argv[1]) + ": no such command; `isobar --help` shows all");

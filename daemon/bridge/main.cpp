@@ -165,7 +165,7 @@ int run(const Settings& settings) {
 int main(int argc, char** argv) {
   isobar::bridge::remember_arguments(argv);
   isobar::set_up_logging("isobar-dds");
-  CLI::App app("isobar-dds: publishes isobard's estimates over DDS, as a ROS 2 node");
+  CLI::App app;
   isobar::bridge::Options options;
   isobar::bridge::add_options(app, options);
   try {

@@ -5,10 +5,16 @@
 #include <algorithm>
 
 #include "config/config_io.hpp"
+#include "core/version.hpp"
 
 namespace isobar::bridge {
 
 void add_options(CLI::App& app, Options& options) {
+  app.name("isobar-dds");
+  app.description(
+      "isobar-dds: publishes isobard's estimates over DDS, as a ROS 2 node.\n"
+      "Exit codes: 0 stopped by a signal, 64 usage, 69 service unavailable, 78 bad configuration.");
+  app.set_version_flag("--version", version_line("isobar-dds"));
   app.add_option(
          "--config", options.config_file,
          "configuration file of isobard, of which the bridge uses section [dds], role and sensor mounts")

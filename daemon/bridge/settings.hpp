@@ -27,7 +27,7 @@ struct Settings {
   dds::SensorMounts mounts;
 };
 
-/// Adds the options of the bridge to its command line; parsing fills `options`.
+/// Adds description, version and options of the bridge to its command line; parsing fills `options`.
 void add_options(CLI::App& app, Options& options);
 
 /// @throws ConfigError when the file or an option on the command line breaks a rule

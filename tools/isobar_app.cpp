@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/isobar_app.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "core/version.hpp"
+#include "tools/commands.hpp"
+
+namespace isobar::tools {
+
+void add_all_commands(CLI::App& app) {
+  app.name("isobar");
+  app.description(
+      "Isobar: lidar localisation whose height comes from air pressure.\n"
+      "Exit codes: 0 done, 64 usage, 65 bad data, 69 service unavailable, 78 bad configuration.");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", version_line("isobar"));
+  app.get_formatter()->column_width(32);
+  add_simulate_command(app);
+  add_replay_command(app);
+  add_evaluate_command(app);
+  add_experiment_command(app);
+  add_noise_command(app);
+  add_altitude_command(app);
+  add_calibrate_command(app);
+  add_play_command(app);
+  add_map_command(app);
+  add_config_command(app);
+#if ISOBAR_WITH_DDS
+  add_echo_command(app);
+#endif
+}
+
+}  // namespace isobar::tools
