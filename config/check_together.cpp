@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "config/setting_rules.hpp"
 #include "config/value_text.hpp"
@@ -8,19 +10,18 @@
 namespace isobar {
 namespace {
 
-/// Throws ConfigError for the first broken rule, with the name of the file.
+/// Collects the broken rules, each with the place of its key.
 class Requirements {
  public:
-  explicit Requirements(const std::string& file) : file_(file) {}
+  Requirements(const PlaceOfKey& place_of, Problems& problems) : place_of_(place_of), problems_(problems) {}
 
-  void require(bool holds, const char* key, const std::string& rule) const {
-    if (!holds) {
-      throw ConfigError(file_ + ": " + key + ": " + rule);
-    }
+  void require(bool holds, const std::string& key, const std::string& rule) const {
+    if (!holds) problems_.add(place_of_(key) + ": " + key + ": " + rule);
   }
 
  private:
-  const std::string& file_;
+  const PlaceOfKey& place_of_;
+  Problems& problems_;
 };
 
 /// Error text for DPS310 rates whose measurements take 1 s or more in a second.
@@ -65,6 +66,24 @@ void check_estimator(const Config& config, const Requirements& rules) {
                 "must lie between altimeter.noise_floor_pa and altimeter.noise_ceiling_pa");
 }
 
+/// tf2 joins frames by their names: two frames of one name are a loop.
+void check_frames(const dds::DdsConfig& dds, const Requirements& rules) {
+  const std::array<std::pair<const char*, const std::string*>, 6> frames{{
+      {"dds.map_frame", &dds.map_frame},
+      {"dds.odom_frame", &dds.odom_frame},
+      {"dds.base_frame", &dds.base_frame},
+      {"dds.lidar_frame", &dds.lidar_frame},
+      {"dds.imu_frame", &dds.imu_frame},
+      {"dds.barometer_frame", &dds.barometer_frame},
+  }};
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    for (std::size_t before = 0; before < i; ++before) {
+      rules.require(*frames[i].second != *frames[before].second, frames[i].first,
+                    std::string("must differ from ") + frames[before].first);
+    }
+  }
+}
+
 }  // namespace
 
 void check_compensation(const CompensationConfig& compensation, const std::string& place) {
@@ -74,14 +93,21 @@ void check_compensation(const CompensationConfig& compensation, const std::strin
   }
 }
 
-void check_together(const Config& config, const std::string& file) {
-  const Requirements rules(file);
+void check_together(const Config& config, const PlaceOfKey& place_of, Problems& problems) {
+  const Requirements rules(place_of, problems);
   check_sensors(config, rules);
   check_estimator(config, rules);
   rules.require(config.dds.second_base_station != config.dds.base_station, "dds.second_base_station",
                 "must differ from dds.base_station");
-  check_compensation(config.prior.compensation, file + ": barometer.compensation.");
-  check_compensation(config.prior.base_compensation, file + ": base_barometer.compensation.");
+  if (config.role == Role::kRobot) check_frames(config.dds, rules);
+  problems.attempt([&] {
+    check_compensation(config.prior.compensation,
+                       place_of("barometer.compensation") + ": barometer.compensation.");
+  });
+  problems.attempt([&] {
+    check_compensation(config.prior.base_compensation,
+                       place_of("base_barometer.compensation") + ": base_barometer.compensation.");
+  });
 }
 
 }  // namespace isobar

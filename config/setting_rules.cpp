@@ -12,6 +12,7 @@
 #include "config/config_io.hpp"
 #include "config/value_text.hpp"
 #include "core/errors.hpp"
+#include "core/printable_text.hpp"
 
 namespace isobar {
 namespace {
@@ -142,13 +143,16 @@ bool keeps_rule(const Setting& setting) { return std::visit(KeepsRule{setting}, 
 
 void check_config(const Config& config, const std::string& source) {
   Config copy = config;
+  Problems problems;
   for (const Setting& setting : settings_of(copy)) {
     if (!keeps_rule(setting)) {
-      throw ConfigError(source + ": " + setting.key + ": " + rule_text(setting) + " (got " +
-                        value_text(setting) + ")");
+      problems.add(source + ": " + setting.key + ": " + rule_text(setting) + " (got " +
+                   printable(value_text(setting)) + ")");
     }
   }
-  check_together(config, source);
+  check_together(
+      config, [&](const std::string& /*key*/) { return source; }, problems);
+  problems.throw_if_any();
 }
 
 }  // namespace isobar

@@ -2,8 +2,10 @@
 // Rules of the values: of one setting, from the table, and of several together.
 #pragma once
 
+#include <functional>
 #include <string>
 
+#include "config/problems.hpp"
 #include "config/setting.hpp"
 
 namespace isobar {
@@ -30,8 +32,11 @@ bool keeps_rule(const Setting& setting);
 /// @throws ConfigError "PLACEkey: rule" when it cannot be used
 void check_compensation(const CompensationConfig& compensation, const std::string& place);
 
-/// Checks the rules between settings, such as min_range_m < max_range_m.
-/// @throws ConfigError "file: key: rule" when one is broken
-void check_together(const Config& config, const std::string& file);
+/// Place of a key in errors: "FILE:LINE:COLUMN", or the name of the source.
+using PlaceOfKey = std::function<std::string(const std::string& key)>;
+
+/// Checks the rules between settings, such as min_range_m < max_range_m; adds "place: key: rule" for each
+/// broken one.
+void check_together(const Config& config, const PlaceOfKey& place_of, Problems& problems);
 
 }  // namespace isobar

@@ -3,6 +3,8 @@
 #include <string_view>
 
 #include "config/config_io.hpp"
+#include "config/config_layer.hpp"
+#include "config/end_mark.hpp"
 #include "config/setting.hpp"
 #include "config/setting_rules.hpp"
 #include "config/value_text.hpp"
@@ -39,28 +41,32 @@ std::string rule_sentence(const Setting& setting) {
   return range.empty() ? "" : range.substr(std::string_view(" within ").size()) + ". ";
 }
 
-/// When a changed value takes effect; empty for the usual case, the next start.
+/// When a changed value takes effect; empty for the next start.
 std::string_view apply_sentence(Apply apply) {
   switch (apply) {
     case Apply::kLive:
-      return "Takes effect at once. ";
+      return "[live] ";
     case Apply::kStage:
-      return "Takes effect when its stage is built anew. ";
+      return "[stage] ";
     case Apply::kRestart:
       return "";
   }
   return "";
 }
 
-void append_setting(const Setting& setting, const std::string& spelled, std::string& out) {
-  append_comment(rule_sentence(setting) + std::string(apply_sentence(setting.apply)) + setting.doc, out);
+void append_setting(const Setting& setting, const std::string& spelled, const KeyOrigins& origins,
+                    std::string& out) {
+  append_comment(std::string(apply_sentence(setting.apply)) + rule_sentence(setting) + setting.doc, out);
+  if (const auto origin = origins.find(setting.key); origin != origins.end()) {
+    out += "# From " + origin->second.file + ":" + std::to_string(origin->second.line) + "\n";
+  }
   out += spelled + " = " + value_text(setting) + "\n";
 }
 
 /// The settings of one audience, under a heading. Keys are dotted (section.name): a section may have settings
 /// of both audiences, and TOML allows each [section] only once.
 void append_audience(const std::vector<Setting>& settings, Audience audience, const char* heading,
-                     std::string& out) {
+                     const KeyOrigins& origins, std::string& out) {
   out += "\n";
   append_comment(heading, out);
   std::string section;
@@ -72,13 +78,11 @@ void append_audience(const std::vector<Setting>& settings, Audience audience, co
       append_comment("---- " + section + ": " + std::string(section_doc(section)), out);
     }
     out += "\n";
-    append_setting(setting, setting.key, out);
+    append_setting(setting, setting.key, origins, out);
   }
 }
 
-}  // namespace
-
-std::string show_config(const Config& config, Shown shown) {
+std::string show(const Config& config, const KeyOrigins& origins, Shown shown, const std::string& source) {
   Config copy = config;
   std::vector<Setting> settings = settings_of(copy);
   if (config.role == Role::kBaseStation) {
@@ -88,16 +92,29 @@ std::string show_config(const Config& config, Shown shown) {
   append_comment(
       "Settings of isobard, isobar-dds and isobar. Every key may be left out; the values here are the "
       "defaults "
-      "or those in use. A changed value takes effect at the next start, unless its comment says otherwise. "
-      "`isobar config check FILE` checks a file, `isobar config show [FILE]` prints all settings, "
+      "or those in use. A running isobard takes a changed file in: [live] marks the values that change at "
+      "once, [stage] those whose stage is rebuilt while poses go on; the others take effect at the next "
+      "start. `isobar config check FILE` checks a file, `isobar config show [FILE]` prints all settings, "
       "`isobar config show --basic [FILE]` only the basic ones.",
       out);
-  append_audience(settings, Audience::kBasic, "======== Basic settings: set these first ========", out);
+  out += source;
+  append_audience(settings, Audience::kBasic, "======== Basic settings: set these first ========", origins,
+                  out);
   if (shown == Shown::kAll) {
     append_audience(settings, Audience::kExpert,
-                    "======== Expert settings: the defaults suit most robots ========", out);
+                    "======== Expert settings: the defaults suit most robots ========", origins, out);
   }
-  return out;
+  return with_end_mark(out);
+}
+
+}  // namespace
+
+std::string show_config(const Config& config, Shown shown) { return show(config, {}, shown, ""); }
+
+std::string show_config(const LoadedConfig& loaded, Shown shown) {
+  std::string source = "# Hash " + config_hash(loaded.config) + ", from";
+  for (const std::string& file : loaded.files) source += " " + file;
+  return show(loaded.config, loaded.origins, shown, source + "\n");
 }
 
 std::string show_compensation(const CompensationConfig& compensation, const std::string& comment) {
@@ -114,7 +131,7 @@ std::string show_compensation(const CompensationConfig& compensation, const std:
   append_comment(section_doc("compensation"), out);
   out += "[compensation]\n";
   for (const Setting& setting : settings) {
-    append_setting(setting, setting.name(), out);
+    append_setting(setting, setting.name(), {}, out);
     out += "\n";
   }
   out.pop_back();

@@ -8,19 +8,35 @@
 
 namespace isobar {
 
-void TomlLoader::load(const toml::table& table, const std::string& prefix) {
+void TomlLoader::load(const toml::table& root, Problems& problems) {
+  load_table(root, "");
+  std::stable_sort(found_.begin(), found_.end(),
+                   [](const Found& a, const Found& b) { return a.line < b.line; });
+  for (Found& found : found_) problems.add(std::move(found.problem));
+  found_.clear();
+}
+
+void TomlLoader::load_table(const toml::table& table, const std::string& prefix) {
   for (const auto& [name, node] : table) {
     const std::string key = prefix + std::string(name.str());
     const TomlPlace place(file_, key, node);
-    const auto found = std::find_if(settings_.begin(), settings_.end(),
-                                    [&key](const Setting& setting) { return setting.key == key; });
-    if (found == settings_.end()) {
-      load_unknown(place, key);
-      continue;
+    try {
+      load_key(place, key);
+    } catch (const ConfigError& error) {
+      found_.push_back({place.line(), error.what()});
     }
-    assign_value(*found, place);
-    if (found->used_by == UsedBy::kRobot && !robot_key_) robot_key_.emplace(place);
   }
+}
+
+void TomlLoader::load_key(const TomlPlace& place, const std::string& key) {
+  const auto found = std::find_if(settings_.begin(), settings_.end(),
+                                  [&key](const Setting& setting) { return setting.key == key; });
+  if (found == settings_.end()) {
+    load_unknown(place, key);
+    return;
+  }
+  assign_value(*found, place);
+  origins_[key] = {file_, place.line(), place.text()};
 }
 
 /// Handles a key that is not in the settings table: a section, or an error.
@@ -35,15 +51,7 @@ void TomlLoader::load_unknown(const TomlPlace& place, const std::string& key) {
   if (!place.node().is_table()) {
     place.fail("must be a section, [" + key + "]");
   }
-  load(*place.node().as_table(), key + ".");
-}
-
-void TomlLoader::refuse_robot_keys() const {
-  if (robot_key_) {
-    robot_key_->fail(
-        "is not used where role = \"base-station\", which only reads a barometer; remove it "
-        "(`isobar config show --role base-station` prints the keys that are used)");
-  }
+  load_table(*place.node().as_table(), key + ".");
 }
 
 }  // namespace isobar

@@ -1,35 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
+#include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "config/config_layer.hpp"
+#include "config/problems.hpp"
 #include "config/setting.hpp"
 #include "config/toml_place.hpp"
 
 namespace isobar {
 
-/// Assigns the values of a parsed TOML file to the settings.
+/// Assigns the values of one parsed TOML file to the settings. Collects errors and places.
 class TomlLoader {
  public:
-  /// `settings` must outlive the object; `file` is its name in errors.
-  TomlLoader(std::string file, const std::vector<Setting>& settings)
-      : file_(std::move(file)), settings_(settings) {}
+  /// The arguments must outlive the object; `file` is its name in errors.
+  TomlLoader(const std::string& file, const std::vector<Setting>& settings, KeyOrigins& origins)
+      : file_(file), settings_(settings), origins_(origins) {}
 
-  /// @throws ConfigError when a key is unknown, or a value has the wrong type or breaks its rule
-  void load(const toml::table& root) { load(root, ""); }
-
-  /// @throws ConfigError when load() has met a key that a base station does not use
-  void refuse_robot_keys() const;
+  /// Loads a file. Errors (unknown key, wrong type, broken rule) are added in the order of their lines.
+  void load(const toml::table& root, Problems& problems);
 
  private:
-  void load(const toml::table& table, const std::string& prefix);
+  /// An error and the line to which it belongs.
+  struct Found {
+    std::uint32_t line;
+    std::string problem;
+  };
+  void load_table(const toml::table& table, const std::string& prefix);
+  void load_key(const TomlPlace& place, const std::string& key);
   void load_unknown(const TomlPlace& place, const std::string& key);
 
-  std::string file_;
+  const std::string& file_;
   const std::vector<Setting>& settings_;
-  std::optional<TomlPlace> robot_key_;  // the first one
+  KeyOrigins& origins_;
+  std::vector<Found> found_;
 };
 
 }  // namespace isobar

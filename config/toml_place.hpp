@@ -8,13 +8,9 @@
 #include <utility>
 
 #include "core/errors.hpp"
+#include "core/printable_text.hpp"
 
 namespace isobar {
-
-/// "FILE:LINE:COLUMN" of a position in a TOML file.
-inline std::string place_text(const std::string& file, const toml::source_position& at) {
-  return file + ":" + std::to_string(at.line) + ":" + std::to_string(at.column);
-}
 
 /// A value in a TOML file: its place, its key and the errors about it.
 class TomlPlace {
@@ -24,14 +20,22 @@ class TomlPlace {
       : file_(file), key_(std::move(key)), node_(node) {}
 
   [[nodiscard]] const toml::node& node() const { return node_; }
+  [[nodiscard]] std::uint32_t line() const { return node_.source().begin.line; }
+  /// "FILE:LINE:COLUMN"
+  [[nodiscard]] std::string text() const {
+    const toml::source_position& at = node_.source().begin;
+    return file_ + ":" + std::to_string(at.line) + ":" + std::to_string(at.column);
+  }
 
   /// @throws ConfigError always: "file:line:column: key: rule"
   [[noreturn]] void fail(const std::string& rule) const {
-    throw ConfigError(place_text(file_, node_.source().begin) + ": " + key_ + ": " + rule);
+    throw ConfigError(text() + ": " + printable(key_) + ": " + rule);
   }
 
   /// @throws ConfigError always: "file:line:column: key: rule (got VALUE)"
-  [[noreturn]] void fail_with_value(const std::string& rule) const { fail(rule + " (got " + got() + ")"); }
+  [[noreturn]] void fail_with_value(const std::string& rule) const {
+    fail(rule + " (got " + printable(got()) + ")");
+  }
 
  private:
   [[nodiscard]] std::string got() const {

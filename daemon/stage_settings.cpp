@@ -3,6 +3,7 @@
 
 #include "core/errors.hpp"
 #include "core/map/grid.hpp"
+#include "core/printable_text.hpp"
 
 namespace isobar {
 
@@ -44,7 +45,7 @@ Config with_sensors_of(const recording::Manifest& manifest, Config config) {
   if (!manifest.lidar) throw DataError("recording.toml: no [lidar]: there is nothing to register");
   if (!manifest.imu) throw DataError("recording.toml: no [imu]: roll and pitch cannot be known without");
   if (velodyne::find_model(manifest.lidar->model) == nullptr) {
-    throw DataError("recording.toml: lidar.model: \"" + manifest.lidar->model +
+    throw DataError("recording.toml: lidar.model: \"" + printable(manifest.lidar->model) +
                     "\" has no driver; there are VLP-16 and HDL-32E");
   }
   config.lidar.model = manifest.lidar->model;

@@ -5,11 +5,13 @@
 
 #include <cmath>
 #include <fstream>
-#include <sstream>
 
 #include "core/errors.hpp"
+#include "core/printable_text.hpp"
 #include "core/toml_text.hpp"
+#include "run/text/bounded_toml.hpp"
 #include "run/text/number_text.hpp"
+#include "run/text/small_file.hpp"
 
 namespace isobar::recording {
 namespace {
@@ -17,6 +19,8 @@ namespace {
 /// Largest distance of a sensor from base_link, by axis; a larger number is a mistake of units.
 constexpr double kMaxLeverM = 100.0;
 constexpr double kMaxAngleDeg = 360.0;
+/// Most warnings about one file: a foreign file may hold thousands of unknown keys.
+constexpr std::size_t kMostWarnings = 50;
 
 /// Access to the nodes of a recording.toml; errors and warnings name file, line and key.
 class ManifestText {
@@ -25,11 +29,13 @@ class ManifestText {
       : file_(std::move(file)), warnings_(warnings) {}
 
   [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& rule) const {
-    throw DataError(place(node) + key + ": " + rule);
+    throw DataError(place(node) + printable(key) + ": " + rule);
   }
 
   void warn(const toml::node& node, const std::string& key) {
-    warnings_.push_back(place(node) + key + ": unknown, ignored");
+    if (warnings_.size() < kMostWarnings) {
+      warnings_.push_back(place(node) + printable(key) + ": unknown, ignored");
+    }
   }
 
   /// A section, or nullptr where it is absent.
@@ -152,24 +158,17 @@ std::string read_text(const std::filesystem::path& folder, const std::filesystem
   if (!std::filesystem::exists(file)) {
     throw DataError(folder.string() + ": holds no " + kManifestFile + ", so it is no recording");
   }
-  if (std::filesystem::is_directory(file)) {
-    throw DataError(file.string() + ": is a folder, must be a file");
-  }
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream content;
-  content << in.rdbuf();
-  if (!in.good() && content.str().empty()) {
-    throw DataError(file.string() + ": version: must be 1; the file is empty or cannot be read");
-  }
-  return content.str();
+  text::SmallFile read = text::read_small_file(file, text::kMostManifestBytes);
+  if (!read.refusal.empty()) throw DataError(file.string() + ": " + read.refusal);
+  if (read.content.empty()) throw DataError(file.string() + ": version: must be 1; the file is empty");
+  return std::move(read.content);
 }
 
 toml::table parse_toml(std::string_view text, const std::string& file) {
   try {
-    return toml::parse(text, file);
-  } catch (const toml::parse_error& error) {
-    throw DataError(file + ":" + std::to_string(error.source().begin.line) + ": " +
-                    std::string(error.description()));
+    return text::parse_bounded_toml(text, file);
+  } catch (const text::TomlError& error) {
+    throw DataError(file + ":" + std::to_string(error.line()) + ": " + error.what());
   }
 }
 

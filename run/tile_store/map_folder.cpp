@@ -12,10 +12,11 @@
 #include <charconv>
 #include <cstdio>
 #include <fstream>
-#include <sstream>
 #include <system_error>
 
 #include "core/errors.hpp"
+#include "run/text/bounded_toml.hpp"
+#include "run/text/small_file.hpp"
 
 namespace isobar {
 
@@ -30,14 +31,14 @@ constexpr std::size_t kNumberDigits = 8;  // digits of NNNNNNNN.tiles
 class HeaderText {
  public:
   explicit HeaderText(const fs::path& file) : file_(file.string()) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) throw DataError(file_ + ": cannot be read; a folder without this file holds no map");
-    std::ostringstream text;
-    text << in.rdbuf();
+    const text::SmallFile read = text::read_small_file(file, text::kMostConfigBytes);
+    if (!read.refusal.empty()) {
+      throw DataError(file_ + ": " + read.refusal + "; a folder without this file holds no map");
+    }
     try {
-      table_ = toml::parse(text.str(), file_);
-    } catch (const toml::parse_error& error) {
-      throw DataError(place(error.source()) + "not valid TOML: " + std::string(error.description()));
+      table_ = text::parse_bounded_toml(read.content, file_);
+    } catch (const text::TomlError& error) {
+      throw DataError(error.at(file_));
     }
   }
 

@@ -88,15 +88,16 @@ TEST_CASE("A calibration that cannot be used is refused with place, key and rule
   fails("[compensation\n", "is no TOML");
   fails("[barometer]\n", "unknown key");
   CHECK_THROWS_WITH_AS(parse_config("[barometer]\ncompensation_file = \"/nonexistent\"\n", "c.toml"),
-                       doctest::Contains("c.toml: barometer.compensation_file: must name a file"),
+                       doctest::Contains("c.toml:2:21: barometer.compensation_file: must name a file"),
                        ConfigError);
   CHECK_THROWS_WITH_AS(parse_config("[barometer]\ncompensation_file = \"x.toml\"\n[barometer.compensation]\n"
                                     "model = \"offset\"\n",
                                     "c.toml"),
                        doctest::Contains("must be empty where"), ConfigError);
-  CHECK_THROWS_WITH_AS(parse_config("[base_barometer.compensation]\nmodel = \"A_p\"\n", "c.toml"),
-                       doctest::Contains("c.toml: base_barometer.compensation.coefficients: must be sixteen"),
-                       ConfigError);
+  CHECK_THROWS_WITH_AS(
+      parse_config("[base_barometer.compensation]\nmodel = \"A_p\"\n", "c.toml"),
+      doctest::Contains("c.toml:2:9: base_barometer.compensation.coefficients: must be sixteen"),
+      ConfigError);
 }
 
 }  // namespace isobar::test::test_compensation_settings

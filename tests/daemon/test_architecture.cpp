@@ -68,7 +68,7 @@ const std::map<std::string, Names> kMayInclude{
     {"run", {"core"}},
     {"simulation", {"core", "drivers", "run"}},
     {"ipc", {"core", "drivers"}},
-    {"config", {"core", "drivers", "ipc"}},
+    {"config", {"core", "drivers", "run", "ipc"}},
     {"daemon", {"core", "drivers", "run", "ipc", "config"}},
     {"tools", {"core", "drivers", "run", "simulation", "ipc", "config", "daemon"}},
 };

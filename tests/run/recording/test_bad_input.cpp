@@ -93,6 +93,11 @@ TEST_CASE("Every rule of recording.toml is checked with file, line and key; unkn
         "recording.toml:5: lidar.port");
   fails("version = 1\n[lidar]\nmodel = \"VLP-16\"\nfile = \"l\"\nport = 8.3e+72\n",
         "recording.toml:5: lidar.port");
+  std::string deep = "version = 1\na";
+  for (int i = 0; i < 30'777; ++i) deep += ".a";
+  fails(deep + " = 1\n", "recording.toml:2: a key has more than 16 parts");
+  fails(std::string("version = 1\n\0", 13), "recording.toml:2: holds a NUL byte");
+  fails("#" + std::string(1024 * 1024, 'x'), "recording.toml: is larger than 1024 KiB");
   scratch.write("recording.toml", "version = 1\ncolour = 3\n[imu]\nfile = \"i\"\nmood = 1\n[gps]\n");
   std::vector<std::string> warnings;
   read_manifest(scratch.path(), warnings);

@@ -51,6 +51,9 @@ TEST_CASE("a header that breaks a rule is refused with file, line, column, key a
   CHECK(refusal("format = 1\ntile_m = nan\ncell_m = 0.25\n").starts_with(file + ":2:10: tile_m: must be"));
   CHECK(refusal("format = 1\ntile_m = 8.0\ncell_m = \"a\"\n").starts_with(file + ":3:10: cell_m: must be"));
   CHECK(refusal("format = \n").starts_with(file + ":1:"));
+  std::string deep = "a";
+  for (int i = 0; i < 30'777; ++i) deep += ".a";
+  CHECK(refusal(deep + " = 1\n").find(":1:32: a key has more than 16 parts") != std::string::npos);
   std::filesystem::remove(file);
   CHECK(message_of<DataError>([&] {
           return FileTileStore::open_to_read(scratch.path());
