@@ -71,6 +71,8 @@ struct BaseBarometerSettings {
 struct InputSettings {
   std::string address = "0.0.0.0";
   std::uint16_t port = 7373;
+  bool expect_wheels = false;       ///< health: wheels that were never heard are missing, not absent
+  bool expect_base_station = true;  ///< the same for the base station
 };
 
 /// [output]

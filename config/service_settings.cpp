@@ -72,6 +72,15 @@ void add_input(InputSettings& input, std::vector<Setting>& settings) {
          "IPv4 address on which samples are received. 0.0.0.0: every interface.");
   s.number("port", &input.port, "", 1, 65'535,
            "UDP port of the sample datagrams. Must differ from lidar.port.");
+  s.used_by(UsedBy::kRobot);
+  s.flag(
+      "expect_wheels", input.expect_wheels,
+      "This robot has wheel odometry. true: its absence is shown as a fault. false: wheels that were never "
+      "heard are \"none\"; once heard, their silence is a fault.");
+  s.flag(
+      "expect_base_station", input.expect_base_station,
+      "This robot has a base station. true: its absence is shown as a fault. false: a base station that was "
+      "never heard is \"none\", and a height that drifts with the weather is no warning.");
 }
 
 void add_output(OutputSettings& output, std::vector<Setting>& settings) {

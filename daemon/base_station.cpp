@@ -9,6 +9,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "daemon/barometer_source.hpp"
+#include "daemon/status_figures.hpp"
 
 namespace isobar {
 
@@ -41,6 +42,7 @@ BarometerState BaseStationGraph::barometer_state() const {
 void BaseStationGraph::fill_health(std::int64_t now_ns, ipc::HealthReport& report) {
   const StationSnapshot now = status(now_ns);
   fill_station_health(now, last_report_, config_, report);
+  fill_station_figures(now, last_report_, report.status);
   last_report_ = now;
 }
 

@@ -27,8 +27,10 @@ struct CounterEntry {
 }  // namespace
 
 void add_base_station_state(const std::string& name, const BaseStationStatus& status, std::int64_t now_ns,
-                            const std::string& where, const AddEntry& add) {
-  if (!status.heard()) {
+                            const std::string& where, const AddEntry& add, bool expected) {
+  if (!status.heard() && !expected) {
+    add(name, HealthLevel::kOk, "none: never heard on " + where, 0.0);
+  } else if (!status.heard()) {
     add(name, HealthLevel::kStale, "nothing received yet on " + where, 0.0);
   } else if (status.left) {
     add(name, HealthLevel::kError, "has ended; it sent on " + where, 0.0);

@@ -17,8 +17,9 @@ using AddEntry = std::function<void(const std::string&, ipc::HealthLevel, const 
 /// Adds the entry `name`: state, rate and clock offset of the base station, or a second one with its name.
 /// @param now_ns robot clock
 /// @param where the input that receives it, such as a topic
+/// @param expected false: one that was never heard is ok, as "none": it may use another input, or not exist
 void add_base_station_state(const std::string& name, const BaseStationStatus& status, std::int64_t now_ns,
-                            const std::string& where, const AddEntry& add);
+                            const std::string& where, const AddEntry& add, bool expected = true);
 
 /// Adds an entry `name`/… for each counter above zero, a warning while it grows.
 /// @param before the status at the last call

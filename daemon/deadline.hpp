@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "daemon/latency_histogram.hpp"
+
 namespace isobar {
 
 /// Punctuality of a stage.
@@ -12,6 +14,8 @@ struct DeadlineStatus {
   std::uint64_t misses = 0;   ///< outputs later than the limit
   std::int64_t worst_ns = 0;  ///< longest time from input to output
   std::int64_t limit_ns = 0;
+  std::int64_t last_ns = 0;  ///< time of the newest output, robot clock; 0: none yet
+  LatencyHistogram times;    ///< from input to output
 };
 
 /// Counts the outputs of a stage that miss its deadline. One thread.
@@ -28,6 +32,8 @@ class Deadline {
     ++status_.outputs;
     status_.misses += took_ns > status_.limit_ns ? 1U : 0U;
     status_.worst_ns = std::max(status_.worst_ns, took_ns);
+    status_.last_ns = now_ns;
+    status_.times.note(took_ns);
   }
   [[nodiscard]] const DeadlineStatus& status() const noexcept { return status_; }
 

@@ -6,6 +6,7 @@
 #include "daemon/health_entries.hpp"
 #include "daemon/health_reporter.hpp"
 #include "daemon/level_changes.hpp"
+#include "daemon/logging.hpp"
 #include "daemon/realtime.hpp"
 #include "daemon/report_schedule.hpp"
 #include "drivers/clock/robot_clock.hpp"
@@ -36,7 +37,7 @@ void supervise(Graph& graph, Service& service, std::vector<std::string> realtime
     ipc::HealthReport report;
     const bool alive = reporter.fill(now_ns, report);
     publisher.send(report);
-    for (const std::string& line : level_changes(report, known)) spdlog::info("{}", line);
+    for (const LevelChange& change : level_changes(report, known)) log_change(change);
     return alive;
   });
 }

@@ -3,7 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "config/config.hpp"
 #include "daemon/service.hpp"
@@ -12,6 +15,9 @@
 #include "ipc/topics.hpp"
 
 namespace isobar {
+
+/// Adds health entries to a report; now_ns: robot clock. Main thread.
+using HealthSource = std::function<void(std::int64_t now_ns, ipc::HealthReport& report)>;
 
 /// The stages of one role of isobard, constructed but not started. Main thread only.
 class Graph {
@@ -37,6 +43,18 @@ class Graph {
   /// call.
   /// @param now_ns robot clock
   virtual void fill_health(std::int64_t now_ns, ipc::HealthReport& report) = 0;
+
+  /// Adds entries of a part of the program that is no stage, such as the configuration or the disk; called
+  /// for each report, after fill_health():
+  ///
+  ///     graph.add_health([&](std::int64_t now_ns, ipc::HealthReport& report) {
+  ///       add_entry(report, "configuration", ipc::HealthLevel::kOk, "in force", 0.0);
+  ///     });
+  void add_health(HealthSource source) { sources_.push_back(std::move(source)); }
+  [[nodiscard]] const std::vector<HealthSource>& health_sources() const { return sources_; }
+
+ private:
+  std::vector<HealthSource> sources_;
 };
 
 /// Runs the graph until a stop signal: start, supervise (health report, watchdog, level changes to the log),

@@ -11,6 +11,7 @@
 #include "daemon/base_station_health.hpp"
 #include "daemon/health_entries.hpp"
 #include "daemon/health_entry.hpp"
+#include "daemon/status_figures.hpp"
 
 namespace isobar {
 
@@ -28,6 +29,10 @@ std::string input_of(const Config& config, datagram::Kind kind) {
   return "UDP port " + std::to_string(config.input.port) + (by_dds ? " or over DDS" : "");
 }
 
+std::string silence_text(const char* what, std::int64_t last_ns, std::int64_t now_ns) {
+  return fmt::format("no {} for {:.0f} s", what, seconds_between(last_ns, now_ns));
+}
+
 constexpr NameTable<BarometerFault, 6> kBarometerFaultTexts{{{
     {BarometerFault::kOk, "ok"},
     {BarometerFault::kOff, "off: silent"},
@@ -40,11 +45,12 @@ constexpr NameTable<BarometerFault, 6> kBarometerFaultTexts{{{
 }  // namespace
 
 void HealthMonitor::fill_deadlines(const StatusSnapshot& now, HealthReport& report) const {
-  add_deadline(report, "lidar/deadline", now.lidar.punctuality, last_.lidar.punctuality, "scans");
-  add_deadline(report, "prior/deadline", now.prior.punctuality, last_.prior.punctuality, "priors");
+  add_deadline(report, "lidar/deadline", now.lidar.punctuality, last_.lidar.punctuality, "scans", now.now_ns);
+  add_deadline(report, "prior/deadline", now.prior.punctuality, last_.prior.punctuality, "priors",
+               now.now_ns);
   add_deadline(report, "registration/deadline", now.registration.punctuality, last_.registration.punctuality,
-               "poses");
-  add_deadline(report, "map/deadline", now.map.punctuality, last_.map.punctuality, "updates");
+               "poses", now.now_ns);
+  add_deadline(report, "map/deadline", now.map.punctuality, last_.map.punctuality, "updates", now.now_ns);
   // Only with locked memory, where no page fault should occur after the warm-up.
   if (config_.realtime.enabled) {
     add_count(report, "registration/page_faults", now.registration.page_faults,
@@ -52,13 +58,21 @@ void HealthMonitor::fill_deadlines(const StatusSnapshot& now, HealthReport& repo
   }
 }
 
+HealthMonitor::HealthMonitor(const Config& config)
+    : config_(config), times_(std::make_unique<StageTimes>()) {}
+
+HealthMonitor::~HealthMonitor() = default;
+
 void HealthMonitor::fill(const StatusSnapshot& now, HealthReport& report) {
   const double elapsed_s = last_.now_ns == 0 ? 1.0 : seconds_between(last_.now_ns, now.now_ns);
   fill_lidar(now, elapsed_s, report);
   fill_samples(now, elapsed_s, report);
   fill_faults(now, report);
-  fill_estimate(now, report);
+  fill_prior(now, report);
+  fill_registration(now, report);
+  fill_map(now, report);
   fill_deadlines(now, report);
+  fill_robot_figures(now, last_, *times_, report.status);
   last_ = now;
 }
 
@@ -97,8 +111,9 @@ void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, He
     } else if (which == datagram::Kind::kBasePressure) {
       fill_base_stations(now, report);
     } else {
+      const bool expected = which != datagram::Kind::kWheel || config_.input.expect_wheels;
       add_stream(report, kNames[kind], now.prior.last_sample_ns[kind], now.now_ns, kSensorSilenceNs, rate_hz,
-                 input_of(config_, which));
+                 input_of(config_, which), expected);
     }
     add_count(report, (std::string(kNames[kind]) + "/lost").c_str(), counters.lost[kind], before.lost[kind],
               "samples lost, by the gaps in their numbers");
@@ -115,8 +130,9 @@ void HealthMonitor::fill_base_stations(const StatusSnapshot& now, HealthReport& 
     const Cadence& cadence = now.prior.base_stations[i];
     if (i > 0 && !cadence.started() && config_.dds.second_base_station.empty()) continue;
     const double rate_hz = cadence.interval_ns() > 0 ? 1e9 / static_cast<double>(cadence.interval_ns()) : 0.0;
+    // A second base station is named in the configuration, hence expected.
     add_stream(report, kNames[i], cadence.last_ns(), now.now_ns, cadence.limit_ns(), rate_hz,
-               input_of(config_, datagram::Kind::kBasePressure));
+               input_of(config_, datagram::Kind::kBasePressure), i > 0 || config_.input.expect_base_station);
   }
   add_base_station_counts("base_station", now.samples.base, last_.samples.base,
                           [&report](const std::string& name, HealthLevel level, const std::string& message,
@@ -126,10 +142,14 @@ void HealthMonitor::fill_base_stations(const StatusSnapshot& now, HealthReport& 
 // Faults detected from the values of the samples; silence is reported by the entry of the stream.
 void HealthMonitor::fill_faults(const StatusSnapshot& now, HealthReport& report) {
   const BarometerHealth& health = now.prior.barometers;
-  const auto add = [&report](const char* name, BarometerFault fault) {
+  // Without IMU samples the barometers are not judged.
+  const bool judged = now.now_ns - now.prior.stamp_ns <= kSensorSilenceNs;
+  const auto add = [&report, judged](const char* name, BarometerFault fault) {
     // Silence is already an error of the stream.
-    const bool well = fault == BarometerFault::kOk || fault == BarometerFault::kOff;
-    add_entry(report, name, well ? HealthLevel::kOk : HealthLevel::kWarning, kBarometerFaultTexts.name(fault),
+    const HealthLevel level = !judged || fault == BarometerFault::kOff ? HealthLevel::kStale
+                              : fault == BarometerFault::kOk           ? HealthLevel::kOk
+                                                                       : HealthLevel::kWarning;
+    add_entry(report, name, level, judged ? kBarometerFaultTexts.name(fault) : "not judged without an IMU",
               static_cast<double>(fault));
   };
   if (now.prior.counters.pressure_accepted > 0) add("barometer/fault", health.robot);
@@ -142,11 +162,12 @@ void HealthMonitor::fill_faults(const StatusSnapshot& now, HealthReport& report)
                          : health.base_active == 0U ? "only the first is usable"
                                                     : "only the second is usable";
   const bool well = health.base_usable == 2 && !health.base_undecided;
-  add_entry(report, "base_stations", well ? HealthLevel::kOk : HealthLevel::kWarning, sentence,
+  const HealthLevel level = !judged ? HealthLevel::kStale : well ? HealthLevel::kOk : HealthLevel::kWarning;
+  add_entry(report, "base_stations", level, judged ? sentence : "not judged without an IMU",
             health.base_usable);
 }
 
-void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& report) const {
+void HealthMonitor::fill_prior(const StatusSnapshot& now, HealthReport& report) const {
   const PriorStatus& prior = now.prior;
   const PriorCounters& used = prior.counters;
   const PriorCounters& before = last_.prior.counters;
@@ -154,26 +175,45 @@ void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& repor
                   used.pressure_without_temperature, before.pressure_without_temperature);
   add_calibration(report, "base_station", used.base_outside_calibration, before.base_outside_calibration,
                   used.base_without_temperature, before.base_without_temperature);
+  // Without IMU samples there are no priors: what the last one said is no longer known.
+  if (prior.stamp_ns == 0 || now.now_ns - prior.stamp_ns > kSensorSilenceNs) {
+    const std::string text =
+        prior.stamp_ns == 0 ? "waiting for the IMU" : silence_text("IMU sample", prior.stamp_ns, now.now_ns);
+    add_entry(report, "attitude", HealthLevel::kStale, text, 0.0);
+    add_entry(report, "height", HealthLevel::kStale, text, prior.height_m);
+    return;
+  }
   add_entry(report, "attitude", prior.attitude_valid ? HealthLevel::kOk : HealthLevel::kStale,
             prior.attitude_valid ? "gravity found" : "waiting for gravity from the IMU", 0.0);
-  const bool height_good = prior.height_source == HeightSource::kDifferential;
+  const bool without_base = !config_.input.expect_base_station && !prior.base_stations[0].started() &&
+                            prior.height_source == HeightSource::kSingleBarometer;
+  const bool height_good = prior.height_source == HeightSource::kDifferential || without_base;
   add_entry(report, "height", height_good ? HealthLevel::kOk : HealthLevel::kWarning,
-            fmt::format("source: {}, sd {:.3f} m", kHeightSourceNames.name(prior.height_source),
-                        std::sqrt(prior.height_variance_m2)),
+            fmt::format("source: {}, sd {:.3f} m{}", kHeightSourceNames.name(prior.height_source),
+                        std::sqrt(prior.height_variance_m2), without_base ? ", drifts with the weather" : ""),
             prior.height_m);
+}
 
+void HealthMonitor::fill_registration(const StatusSnapshot& now, HealthReport& report) const {
   const RegistrationStatus& registration = now.registration;
-  const bool good = registration.mode == PoseMode::kRegistered;
-  const HealthLevel level = registration.scans == 0 ? HealthLevel::kStale
-                            : good                  ? HealthLevel::kOk
-                                                    : HealthLevel::kWarning;
-  add_entry(report, "registration", level,
-            fmt::format("mode: {}, method: {}, overlap {:.2f}{}", kPoseModeNames.name(registration.mode),
-                        kMethodNames.name(registration.effective_method), registration.overlap,
-                        registration.degenerate ? ", degenerate" : ""),
-            registration.overlap);
-  add_entry(report, "registration/ms", HealthLevel::kOk, "CPU time of the last scan",
-            registration.registration_ms);
+  const std::int64_t pose_ns = registration.pose.stamp_ns;
+  const bool stale = pose_ns == 0 || now.now_ns - pose_ns > kStageSilenceNs;
+  const bool idle = now.now_ns - registration.punctuality.last_ns > kStageSilenceNs;
+  if (stale) {
+    add_entry(report, "registration", HealthLevel::kStale,
+              pose_ns == 0 ? "waiting for the first scan" : silence_text("pose", pose_ns, now.now_ns), 0.0);
+  } else {
+    add_entry(report, "registration",
+              registration.mode == PoseMode::kRegistered ? HealthLevel::kOk : HealthLevel::kWarning,
+              fmt::format("mode: {}, method: {}, overlap {:.2f}{}", kPoseModeNames.name(registration.mode),
+                          kMethodNames.name(registration.effective_method), registration.overlap,
+                          registration.degenerate ? ", degenerate" : ""),
+              registration.overlap);
+  }
+  if (registration.scans > 0) {
+    add_entry(report, "registration/ms", idle ? HealthLevel::kStale : HealthLevel::kOk,
+              "CPU time of the last scan", registration.registration_ms);
+  }
   add_count(report, "registration/refused", registration.from_prior, last_.registration.from_prior,
             "scans that did not match the map; their poses are the prior's");
   add_count(report, "registration/dropped", registration.dropped_scans, last_.registration.dropped_scans,
@@ -182,8 +222,20 @@ void HealthMonitor::fill_estimate(const StatusSnapshot& now, HealthReport& repor
             last_.registration.dropped_priors, "priors lost to a full queue of the registration");
   add_count(report, "registration/bridged", registration.bridged, last_.registration.bridged,
             "poses from the prior while the lidar was silent");
-  add_entry(report, "map", HealthLevel::kOk, "cells in memory", static_cast<double>(now.map.cells));
-  add_entry(report, "map/ms", HealthLevel::kOk, "CPU time of the last update", now.map.update_ms);
+}
+
+void HealthMonitor::fill_map(const StatusSnapshot& now, HealthReport& report) const {
+  const std::int64_t last_ns = now.map.punctuality.last_ns;
+  const bool stale = last_ns == 0 || now.now_ns - last_ns > kStageSilenceNs;
+  const std::string text = last_ns == 0 ? "waiting for the first scan"
+                           : stale      ? silence_text("scan", last_ns, now.now_ns)
+                                        : "cells in memory";
+  add_entry(report, "map", stale ? HealthLevel::kStale : HealthLevel::kOk, text,
+            static_cast<double>(now.map.cells));
+  if (last_ns != 0) {
+    add_entry(report, "map/ms", stale ? HealthLevel::kStale : HealthLevel::kOk, "CPU time of the last update",
+              now.map.update_ms);
+  }
   add_count(report, "map/dropped", now.map.dropped_scans, last_.map.dropped_scans,
             "scans that the map skipped for a newer one");
 }

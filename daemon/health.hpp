@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "config/config.hpp"
 #include "daemon/barometer_thread.hpp"
@@ -26,11 +27,16 @@ struct StatusSnapshot {
   MapStatus map;
 };
 
-/// Adds the health entries of a robot's stages to a report. Rates and growth of counters refer to the time
+class StageTimes;
+
+/// Adds the health entries and figures of a robot's stages to a report. Rates and growth of counters refer to the time
 /// since the last call. One thread.
 class HealthMonitor {
  public:
-  explicit HealthMonitor(const Config& config) : config_(config) {}
+  explicit HealthMonitor(const Config& config);
+  ~HealthMonitor();
+  HealthMonitor(const HealthMonitor&) = delete;
+  HealthMonitor& operator=(const HealthMonitor&) = delete;
 
   void fill(const StatusSnapshot& now, ipc::HealthReport& report);
 
@@ -39,11 +45,14 @@ class HealthMonitor {
   void fill_samples(const StatusSnapshot& now, double elapsed_s, ipc::HealthReport& report) const;
   void fill_base_stations(const StatusSnapshot& now, ipc::HealthReport& report) const;
   static void fill_faults(const StatusSnapshot& now, ipc::HealthReport& report);
-  void fill_estimate(const StatusSnapshot& now, ipc::HealthReport& report) const;
+  void fill_prior(const StatusSnapshot& now, ipc::HealthReport& report) const;
+  void fill_registration(const StatusSnapshot& now, ipc::HealthReport& report) const;
+  void fill_map(const StatusSnapshot& now, ipc::HealthReport& report) const;
   void fill_deadlines(const StatusSnapshot& now, ipc::HealthReport& report) const;
 
   Config config_;
   StatusSnapshot last_;
+  std::unique_ptr<StageTimes> times_;
 };
 
 }  // namespace isobar

@@ -35,8 +35,14 @@ void add_count(HealthReport& report, const char* name, std::uint64_t now, std::u
 }
 
 void add_deadline(HealthReport& report, const char* name, const DeadlineStatus& now,
-                  const DeadlineStatus& before, const char* what) {
+                  const DeadlineStatus& before, const char* what, std::int64_t now_ns) {
   if (now.outputs == 0) return;
+  if (const std::int64_t age_ns = now_ns - now.last_ns; age_ns > kStageSilenceNs) {
+    add_entry(report, name, HealthLevel::kStale,
+              fmt::format("no {} for {:.0f} s", what, static_cast<double>(age_ns) * 1e-9),
+              static_cast<double>(now.misses));
+    return;
+  }
   add_entry(report, name, now.misses > before.misses ? HealthLevel::kWarning : HealthLevel::kOk,
             fmt::format("{} of {} {} later than {:.1f} ms, at most {:.1f} ms", now.misses, now.outputs, what,
                         static_cast<double>(now.limit_ns) * 1e-6, static_cast<double>(now.worst_ns) * 1e-6),
@@ -44,8 +50,10 @@ void add_deadline(HealthReport& report, const char* name, const DeadlineStatus& 
 }
 
 void add_stream(HealthReport& report, const std::string& name, std::int64_t last_ns, std::int64_t now_ns,
-                std::int64_t silence_ns, double rate_hz, const std::string& where) {
-  if (last_ns == 0) {
+                std::int64_t silence_ns, double rate_hz, const std::string& where, bool expected) {
+  if (last_ns == 0 && !expected) {
+    add_entry(report, name, HealthLevel::kOk, "none: never heard on " + where, 0.0);
+  } else if (last_ns == 0) {
     add_entry(report, name, HealthLevel::kStale, "nothing received yet on " + where, 0.0);
   } else if (now_ns - last_ns > silence_ns) {
     const double silent_s = seconds_between(last_ns, now_ns);
@@ -112,13 +120,15 @@ void add_input(HealthReport& report, const SampleThreadStatus& now, const Sample
             "samples dropped: no free chunk of shared memory");
 }
 
-std::vector<std::string> level_changes(const HealthReport& report, LevelChanges& known) {
-  std::vector<std::string> lines;
+std::vector<LevelChange> level_changes(const HealthReport& report, LevelChanges& known) {
+  std::vector<LevelChange> changes;
   for (std::uint32_t i = 0; i < report.entry_count; ++i) {
     const ipc::HealthEntry& entry = report.entries[i];
-    if (auto line = known.note(entry.name, entry.level, entry.message)) lines.push_back(std::move(*line));
+    if (HealthReport::kSummaryName == entry.name) continue;
+    auto change = known.note(entry.name, entry.level, entry.message, report.stamp_ns, entry.value);
+    if (change) changes.push_back(std::move(*change));
   }
-  return lines;
+  return changes;
 }
 
 void add_refusals(HealthReport& report, const std::vector<std::string>& realtime_refusals) {

@@ -19,6 +19,9 @@ namespace isobar {
 /// lidar at 10 Hz. The limit of a base station comes from its own cadence.
 inline constexpr std::int64_t kSensorSilenceNs = 1'000'000'000;
 
+/// Time without an output after which what a stage last said is stale [ns]: twenty scans.
+inline constexpr std::int64_t kStageSilenceNs = 2'000'000'000;
+
 /// Growth of a counter per second; 0 without elapsed time.
 [[nodiscard]] double per_second(std::uint64_t now, std::uint64_t before, double elapsed_s);
 
@@ -27,18 +30,20 @@ inline constexpr std::int64_t kSensorSilenceNs = 1'000'000'000;
 void add_count(ipc::HealthReport& report, const char* name, std::uint64_t now, std::uint64_t before,
                const char* sentence);
 
-/// Punctuality entry of a stage: absent before its first output; a warning when a deadline was missed since
-/// the last report, otherwise ok.
+/// Punctuality entry of a stage: absent before its first output; stale while there is no output; a warning
+/// when a deadline was missed since the last report, otherwise ok.
 /// @param what plural of the stage's output, "scans"
+/// @param now_ns robot clock
 void add_deadline(ipc::HealthReport& report, const char* name, const DeadlineStatus& now,
-                  const DeadlineStatus& before, const char* what);
+                  const DeadlineStatus& before, const char* what, std::int64_t now_ns);
 
 /// Main entry of a sensor: its rate, or the duration of its silence.
 /// @param last_ns stamp of its newest sample, robot clock; 0: none yet
 /// @param silence_ns time without a sample after which it is silent
 /// @param where the input that receives it, "UDP port 2368"
+/// @param expected false: a robot may lack this sensor, and one that was never heard is ok, as "none"
 void add_stream(ipc::HealthReport& report, const std::string& name, std::int64_t last_ns, std::int64_t now_ns,
-                std::int64_t silence_ns, double rate_hz, const std::string& where);
+                std::int64_t silence_ns, double rate_hz, const std::string& where, bool expected = true);
 
 /// Entries of a barometer attached to this machine.
 void add_barometer_device(ipc::HealthReport& report, const BarometerSettings& settings,
@@ -55,8 +60,8 @@ void add_calibration(ipc::HealthReport& report, const std::string& sensor, std::
 /// Counters of refused or dropped sample datagrams, by reason, and of clock steps of their senders.
 void add_input(ipc::HealthReport& report, const SampleThreadStatus& now, const SampleThreadStatus& before);
 
-/// Log lines of the entries whose level has changed since the last report, see LevelChanges::note().
-[[nodiscard]] std::vector<std::string> level_changes(const ipc::HealthReport& report, LevelChanges& known);
+/// Entries whose level has changed since the last report, see LevelChanges::note(); without the summary.
+[[nodiscard]] std::vector<LevelChange> level_changes(const ipc::HealthReport& report, LevelChanges& known);
 
 /// One entry for each refused real-time setting, numbered because LevelChanges identifies entries by name.
 void add_refusals(ipc::HealthReport& report, const std::vector<std::string>& realtime_refusals);

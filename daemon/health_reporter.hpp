@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "daemon/graph.hpp"
+#include "daemon/health_summary.hpp"
 
 namespace isobar {
 
@@ -24,6 +25,8 @@ class HealthReporter {
  private:
   Graph& graph_;
   std::vector<std::string> refusals_;
+  LevelHold hold_;
+  std::int64_t started_ns_ = 0;  // robot clock, at the first report
   std::uint64_t last_faults_ = 0;
 };
 

@@ -36,11 +36,12 @@ void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
 }
 
 void LidarThread::publish_scan() noexcept {
-  pacing_.scan_ended((loaned_ != nullptr ? *loaned_ : spare_scan_).end_stamp_ns);
+  const std::int64_t end_stamp_ns = (loaned_ != nullptr ? *loaned_ : spare_scan_).end_stamp_ns;
+  pacing_.scan_ended(end_stamp_ns);
+  draft_status_.pace.add(end_stamp_ns);
   if (loaned_ != nullptr) {
-    const std::int64_t end_ns = loaned_->end_stamp_ns;
     publisher_.publish(loaned_);
-    deadline_.note(end_ns, RobotClock::now_ns());
+    deadline_.note(end_stamp_ns, RobotClock::now_ns());
   } else {
     ++draft_status_.scans_without_memory;
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 
+#include "core/time/stream_pace.hpp"
 #include "daemon/deadline.hpp"
 #include "daemon/packet_pacing.hpp"
 #include "daemon/seq_lock.hpp"
@@ -20,6 +21,7 @@ struct LidarStatus {
   std::uint64_t dropped_by_kernel = 0;
   std::uint64_t scans_without_memory = 0;  ///< complete scans dropped for want of a chunk in shared memory
   std::int64_t last_packet_ns = 0;         ///< robot clock; 0: none yet
+  StreamPace pace;                         ///< of the scans' ends
   DeadlineStatus punctuality;              ///< from the end of a scan to its publication
   /// Names the configured and the received model; empty while all packets are of the configured one.
   std::array<char, 120> wrong_model_message{};

@@ -42,6 +42,11 @@ void MapThread::drain() noexcept {
   draft_status_.dropped_scans = scans_.dropped() + superseded_;
   draft_status_.punctuality = deadline_.status();
   draft_status_.cells = map_.cell_count();
+  if (store_ != nullptr) {
+    draft_status_.on_disk = true;
+    draft_status_.tiles_on_disk = store_->tile_count();
+    draft_status_.disk_bytes = store_->disk_bytes();
+  }
   status_.put(draft_status_);
 }
 

@@ -18,8 +18,11 @@ namespace isobar {
 struct MapStatus {
   std::uint64_t dropped_scans = 0;  ///< superseded by a newer waiting scan, or lost to a full queue
   std::uint64_t cells = 0;
-  double update_ms = 0.0;      ///< CPU time of the last update
-  DeadlineStatus punctuality;  ///< from the publication of a pose to the map snapshot with its scan
+  bool on_disk = false;  ///< tiles are written
+  std::uint64_t tiles_on_disk = 0;
+  std::uint64_t disk_bytes = 0;  ///< of the tiles
+  double update_ms = 0.0;        ///< CPU time of the last update
+  DeadlineStatus punctuality;    ///< from the publication of a pose to the map snapshot with its scan
 };
 
 /// Adds registered scans to the local map; publishes immutable snapshots for the registration and clouds for

@@ -2,6 +2,7 @@
 #include "daemon/prior_thread.hpp"
 
 #include <chrono>
+#include <numeric>
 
 #include "daemon/message_loop.hpp"
 #include "drivers/clock/robot_clock.hpp"
@@ -39,6 +40,7 @@ ipc::Received<Sample> PriorThread::take(ipc::Subscriber<Sample>& from, datagram:
   if (sample) {
     ++draft_status_.samples[static_cast<std::size_t>(kind)];
     draft_status_.last_sample_ns[static_cast<std::size_t>(kind)] = sample->stamp_ns;
+    draft_status_.pace[static_cast<std::size_t>(kind)].add(sample->stamp_ns);
   }
   return sample;
 }
@@ -64,8 +66,10 @@ void PriorThread::drain() noexcept {
   draft_status_.counters = estimator_.counters();
   draft_status_.punctuality = deadline_.status();
   draft_status_.barometers = estimator_.barometers();
+  // In the order of Kind.
+  draft_status_.dropped = {imu_.dropped(), barometer_.dropped(), base_barometer_.dropped(), wheel_.dropped()};
   draft_status_.dropped_samples =
-      imu_.dropped() + barometer_.dropped() + base_barometer_.dropped() + wheel_.dropped();
+      std::accumulate(draft_status_.dropped.begin(), draft_status_.dropped.end(), std::uint64_t{0});
   status_.put(draft_status_);
 }
 

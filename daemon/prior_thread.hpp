@@ -6,6 +6,7 @@
 
 #include "core/prior/prior_estimator.hpp"
 #include "core/time/cadence.hpp"
+#include "core/time/stream_pace.hpp"
 #include "daemon/deadline.hpp"
 #include "daemon/seq_lock.hpp"
 #include "daemon/worker.hpp"
@@ -20,7 +21,9 @@ struct PriorStatus {
   std::array<std::uint64_t, datagram::kKinds> samples{};        ///< by Kind, from UDP and DDS
   std::array<std::int64_t, datagram::kKinds> last_sample_ns{};  ///< robot clock, by Kind; 0: none yet
   std::array<Cadence, 2> base_stations;                         ///< by PressureSample::station, robot clock
-  std::uint64_t dropped_samples = 0;                            ///< lost to a full queue of this thread
+  std::array<StreamPace, datagram::kKinds> pace;                ///< of the stamps, by Kind
+  std::array<std::uint64_t, datagram::kKinds> dropped{};        ///< lost to a full queue, by Kind
+  std::uint64_t dropped_samples = 0;                            ///< their sum
   std::int64_t stamp_ns = 0;                                    ///< of the newest prior; 0: none yet
   double height_m = 0.0;
   double height_variance_m2 = 0.0;

@@ -1,10 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/registration_thread.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "daemon/message_loop.hpp"
 #include "drivers/clock/robot_clock.hpp"
 
 namespace isobar {
+namespace {
+
+PoseSummary summary_of(const PoseEstimate& pose) noexcept {
+  const Eigen::Vector3d p_map = pose.T_map_base.translation();
+  const Eigen::Matrix3d R = pose.T_map_base.linear();
+  PoseSummary summary{.stamp_ns = pose.stamp_ns,
+                      .p_map_m = {p_map.x(), p_map.y(), p_map.z()},
+                      .rpy_rad = {std::atan2(R(2, 1), R(2, 2)), std::asin(std::clamp(-R(2, 0), -1.0, 1.0)),
+                                  std::atan2(R(1, 0), R(0, 0))}};
+  for (int i = 0; i < 6; ++i) summary.variances[static_cast<std::size_t>(i)] = pose.covariance(i, i);
+  return summary;
+}
+
+}  // namespace
 
 RegistrationThread::RegistrationThread(const StageSettings& stages, SnapshotExchange<MapSnapshot>& snapshots,
                                        const ScanQueueConfig& queue, ThreadSettings settings)
@@ -100,6 +117,7 @@ void RegistrationThread::on_pose(const PoseEstimate& pose, const Prior& /*prior*
   draft_status_.overlap = pose.overlap;
   draft_status_.degenerate = pose.degenerate;
   draft_status_.registration_ms = pose.registration_ms;
+  draft_status_.pose = summary_of(pose);
   poses_.send(pose);
 }
 

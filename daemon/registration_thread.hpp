@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -17,6 +18,14 @@
 
 namespace isobar {
 
+/// The newest pose of base_link in the map frame, registered or from the prior.
+struct PoseSummary {
+  std::int64_t stamp_ns = 0;  ///< robot clock; 0: none yet
+  std::array<double, 3> p_map_m{};
+  std::array<double, 3> rpy_rad{};    ///< roll, pitch, yaw
+  std::array<double, 6> variances{};  ///< of x, y, z [m^2], roll, pitch, yaw [rad^2]
+};
+
 /// Status of the registration thread.
 struct RegistrationStatus {
   std::uint64_t scans = 0;
@@ -30,6 +39,7 @@ struct RegistrationStatus {
   PoseMode mode = PoseMode::kInitializing;
   Method effective_method = Method::k3Dof;
   bool degenerate = false;
+  PoseSummary pose;
   DeadlineStatus punctuality;     ///< from the end of a scan to the publication of its pose
   std::uint64_t page_faults = 0;  ///< of this thread, after warm-up
 };

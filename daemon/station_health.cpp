@@ -33,13 +33,14 @@ void add_barometer(const StationSnapshot& now, const StationSnapshot& before, co
                rate_hz, "UDP port " + std::to_string(config.input.port));
   }
   if (station.samples == 0) return;
-  add_entry(report, "barometer/pressure", HealthLevel::kOk, "Pa", station.newest.pressure_pa);
+  const HealthLevel level = station.cadence.silent(now.now_ns) ? HealthLevel::kStale : HealthLevel::kOk;
+  add_entry(report, "barometer/pressure", level, "Pa", station.newest.pressure_pa);
   if (!std::isnan(station.newest.temperature_c)) {
-    add_entry(report, "barometer/temperature", HealthLevel::kOk, "degrees C, of the sensor",
+    add_entry(report, "barometer/temperature", level, "degrees C, of the sensor",
               station.newest.temperature_c);
   }
   if (!std::isnan(station.newest.variance_pa2)) {
-    add_entry(report, "barometer/noise", HealthLevel::kOk, "Pa, standard deviation of a sample",
+    add_entry(report, "barometer/noise", level, "Pa, standard deviation of a sample",
               std::sqrt(station.newest.variance_pa2));
   }
 }

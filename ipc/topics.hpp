@@ -5,12 +5,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <string_view>
 #include <type_traits>
 
 #include "core/estimates.hpp"
 #include "core/samples.hpp"
+#include "ipc/status.hpp"
 
 namespace isobar::ipc {
 
@@ -29,6 +29,22 @@ struct MapCloud {
 /// Level of a health entry, with the values of diagnostic_msgs/DiagnosticStatus.
 enum class HealthLevel : std::uint8_t { kOk = 0, kWarning = 1, kError = 2, kStale = 3 };
 
+/// Name of a level in texts for people and programs.
+[[nodiscard]] constexpr const char* level_name(HealthLevel level) noexcept {
+  return level == HealthLevel::kOk        ? "ok"
+         : level == HealthLevel::kWarning ? "warning"
+         : level == HealthLevel::kError   ? "error"
+                                          : "stale";
+}
+
+/// Order of the levels, worst last: a fault that is known, data that does not come, a limit that is exceeded.
+[[nodiscard]] constexpr int severity(HealthLevel level) noexcept {
+  return level == HealthLevel::kOk        ? 0
+         : level == HealthLevel::kWarning ? 1
+         : level == HealthLevel::kStale   ? 2
+                                          : 3;
+}
+
 /// One entry of the health report. The texts are null-terminated.
 struct HealthEntry {
   static constexpr std::size_t kNameBytes = 40;
@@ -42,7 +58,10 @@ struct HealthEntry {
 
 /// The health of isobard, published once a second.
 struct HealthReport {
-  static constexpr std::uint32_t kMaxEntries = 64;
+  /// Name of the first entry, which sums up all others.
+  static constexpr std::string_view kSummaryName = "summary";
+  /// Twice the entries of a robot with every sensor and every fault: a report that is full says less.
+  static constexpr std::uint32_t kMaxEntries = 192;
   /// Name of the entry that counts the dropped entries; the last place is reserved for it.
   static constexpr std::string_view kDroppedName = "health/dropped";
 
@@ -51,6 +70,7 @@ struct HealthReport {
   /// processes of the machine, so a reader gets the current robot time by adding this offset to its own
   /// reading.
   std::int64_t robot_clock_offset_ns = 0;
+  ServiceStatus status;
   std::uint32_t entry_count = 0;     ///< entries[0 … entry_count-1] are valid
   HealthEntry entries[kMaxEntries];  // NOLINT(modernize-avoid-c-arrays): payload in shared memory
 
@@ -80,11 +100,6 @@ struct HealthReport {
     copy_text(message, entry.message, HealthEntry::kMessageBytes);
     entry.value = value;
     entry.level = level;
-  }
-  static void copy_text(std::string_view from, char* to, std::size_t capacity) noexcept {
-    const std::size_t length = from.size() < capacity - 1 ? from.size() : capacity - 1;
-    std::memcpy(to, from.data(), length);
-    std::memset(to + length, 0, capacity - length);
   }
 };
 
@@ -124,7 +139,7 @@ inline constexpr ChunkPool kChunkPools[] = {
     // NOLINT(modernize-avoid-c-arrays)
     {256, 4096},        // samples
     {1024, 1024},       // priors, poses
-    {16 * 1024, 32},    // health
+    {40 * 1024, 32},    // health
     {1200 * 1024, 32},  // scans, registered scans, maps
 };
 

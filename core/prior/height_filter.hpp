@@ -63,6 +63,9 @@ class HeightFilter {
   /// Reported height: corrections after the return or the switch of a base station enter at a limited rate.
   [[nodiscard]] double z_m() const { return filter_.value(VerticalFilter::kZ) + slew_.rest_m(); }
   [[nodiscard]] double variance_m2() const;
+  /// Estimated offset of the barometric height: barometers, local pressure, weather and steps together.
+  [[nodiscard]] double pressure_bias_m() const { return filter_.pressure_bias_m(); }
+  [[nodiscard]] double pressure_bias_variance_m2() const { return filter_.pressure_bias_variance_m2(); }
   [[nodiscard]] bool ground_moves() const { return ground_moves_; }
   /// State of the innovation monitor.
   [[nodiscard]] const DisturbanceJudge& disturbance() const { return judge_; }

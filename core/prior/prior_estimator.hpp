@@ -55,6 +55,8 @@ struct BarometerHealth {
   std::uint8_t base_usable = 0;      ///< number of usable base stations
   std::array<bool, 2> base_heard{};  ///< at least one sample has arrived
   bool base_undecided = false;       ///< two stations disagree and neither is known to be wrong
+  double height_bias_m = 0.0;        ///< estimated offset of the barometric height from the height
+  double height_bias_sd_m = 0.0;     ///< of the offset's part that is still estimated
 };
 
 /// Takes samples in order of arrival and returns one Prior per accepted IMU sample; how it works is drawn in

@@ -93,6 +93,10 @@ void PriorEstimator::State::watch_barometers() {
   barometers.base_active = static_cast<std::uint8_t>(altimeter.base_active());
   barometers.base_usable = static_cast<std::uint8_t>(altimeter.base_usable_count());
   barometers.base_undecided = altimeter.base_undecided();
+  if (height.started()) {
+    barometers.height_bias_m = height.pressure_bias_m();
+    barometers.height_bias_sd_m = std::sqrt(std::max(0.0, height.pressure_bias_variance_m2()));
+  }
 }
 
 }  // namespace isobar

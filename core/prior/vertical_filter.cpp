@@ -133,6 +133,16 @@ void VerticalFilter::forget(State state) {
   P_.col(state).setZero();
 }
 
+double VerticalFilter::pressure_bias_m() const {
+  return x_[kOffset] + x_[kTurbulence] + x_[kWeather] + x_[kStep];
+}
+
+double VerticalFilter::pressure_bias_variance_m2() const {
+  Vector row = Vector::Zero();
+  row[kOffset] = row[kTurbulence] = row[kWeather] = row[kStep] = 1.0;
+  return row.dot(P_ * row);
+}
+
 void VerticalFilter::release_weather() {
   forget(kWeatherRate);
   P_(kWeatherRate, kWeatherRate) = squared(config_.weather_rate_m_s);

@@ -69,6 +69,9 @@ class VerticalFilter {
   [[nodiscard]] double value(State state) const { return x_[state]; }
   [[nodiscard]] double variance(State state) const { return P_(state, state); }
   [[nodiscard]] const Matrix& covariance() const { return P_; }
+  /// b_p + n + w + q: barometric height minus height.
+  [[nodiscard]] double pressure_bias_m() const;
+  [[nodiscard]] double pressure_bias_variance_m2() const;
 
  private:
   [[nodiscard]] Vector pressure_row(double delay_s) const;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/bridge/forwarding.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 
 #include "daemon/base_station_health.hpp"
+#include "daemon/logging.hpp"
 
 namespace isobar::bridge {
 namespace {
@@ -27,12 +26,21 @@ std::int64_t wall_ns() {
   return std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
 }
 
+void append(const ipc::HealthReport& from, ipc::HealthReport& to) {
+  const std::uint32_t count = std::min(from.entry_count, ipc::HealthReport::kMaxEntries);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const ipc::HealthEntry& entry = from.entries[i];
+    static_cast<void>(to.add(entry.name, entry.level, entry.message, entry.value));
+  }
+}
+
 HealthLevel warn_if(bool condition) { return condition ? HealthLevel::kWarning : HealthLevel::kOk; }
 
 }  // namespace
 
 void report_absence(Outputs& outputs, dds::DiagnosticsBuilder& builder) {
   builder.start(wall_ns());
+  builder.add(ipc::HealthReport::kSummaryName.data(), HealthLevel::kError, "isobard is not running", 1.0);
   builder.add("bridge/isobard", HealthLevel::kError, "isobard is not running", 0.0);
   outputs.diagnostics.write(builder.message());
 }
@@ -103,31 +111,49 @@ void Forwarding::forward_health() {
     return;
   }
   last_report_ns_ = steady_ns();
+  own_.entry_count = all_.entry_count = 0;
   if (report) {
     note_data();
     clock_.set_offset_ns(report->robot_clock_offset_ns);
     diagnostics_.start(report->stamp_ns);
-    const std::uint32_t count = std::min(report->entry_count, ipc::HealthReport::kMaxEntries);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const ipc::HealthEntry& entry = report->entries[i];
-      diagnostics_.add(entry.name, entry.level, entry.message, entry.value);
-    }
+    const bool has_summary =
+        report->entry_count > 0 && ipc::HealthReport::kSummaryName == report->entries[0].name;
+    if (!has_summary) reserve_summary(all_);
+    append(*report, all_);
   } else {
     diagnostics_.start(wall_ns());
-    diagnostics_.add("bridge/isobard", HealthLevel::kStale, "isobard sends no health report", 0.0);
+    reserve_summary(all_);
+    static_cast<void>(all_.add("bridge/isobard", HealthLevel::kStale, "isobard sends no health report", 0.0));
   }
   add_own_health();
+  hold_.apply(last_report_ns_, own_);
+  log_own_health();
+  append(own_, all_);
+  fill_summary(all_);
+  for (std::uint32_t i = 0; i < all_.entry_count; ++i) {
+    const ipc::HealthEntry& entry = all_.entries[i];
+    diagnostics_.add(entry.name, entry.level, entry.message, entry.value);
+  }
   outputs_.diagnostics.write(diagnostics_.message());
 }
 
 void Forwarding::add(const std::string& name, HealthLevel level, const std::string& message, double value) {
-  diagnostics_.add(name.c_str(), level, message.c_str(), value);
-  if (const auto line = changes_.note(name, level, message)) spdlog::info("{}", *line);
+  static_cast<void>(own_.add(name, level, message, value));
+}
+
+void Forwarding::log_own_health() {
+  for (std::uint32_t i = 0; i < own_.entry_count; ++i) {
+    const ipc::HealthEntry& entry = own_.entries[i];
+    const auto change = changes_.note(entry.name, entry.level, entry.message, last_report_ns_, entry.value);
+    if (change) log_change(*change);
+  }
 }
 
 void Forwarding::add_own_health() {
   const auto add_count = [this](const char* name, std::uint64_t count, const char* message) {
-    add(name, warn_if(count > 0), count > 0 ? message : "", static_cast<double>(count));
+    std::uint64_t& before = last_counts_[name];
+    add(name, warn_if(count > before), count > 0 ? message : "", static_cast<double>(count));
+    before = count;
   };
   const auto value = [](const std::atomic<std::uint64_t>& count) {
     return count.load(std::memory_order_relaxed);
@@ -156,8 +182,9 @@ void Forwarding::add_station_health(const ReceivedCounts& received) {
                                          const std::string& message,
                                          double value) { add(name, level, message, value); };
   for (std::size_t i = 0; i < received.station_count; ++i) {
+    // The first one may as well send datagrams to isobard, whose own entry tells whether it is missing.
     add_base_station_state(kNames[i], received.stations[i], received.taken_ns, station_topics_[i],
-                           to_diagnostics);
+                           to_diagnostics, i > 0);
     add_base_station_counts(kNames[i], received.stations[i], last_received_.stations[i], to_diagnostics);
   }
   last_received_ = received;

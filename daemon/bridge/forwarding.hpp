@@ -6,12 +6,14 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <thread>
 
 #include "daemon/bridge/outputs.hpp"
 #include "daemon/bridge/receiving.hpp"
+#include "daemon/health_summary.hpp"
 #include "daemon/level_changes.hpp"
 #include "daemon/seq_lock.hpp"
 #include "ipc/shared_memory.hpp"
@@ -53,7 +55,8 @@ class Forwarding {
   void forward_health();
   void add_own_health();
   void add_station_health(const ReceivedCounts& received);
-  /// Adds an entry to the diagnostics, and logs it when its level has changed.
+  void log_own_health();
+  /// Adds an entry of the bridge.
   void add(const std::string& name, ipc::HealthLevel level, const std::string& message, double value);
   void note_data() noexcept;
 
@@ -71,8 +74,12 @@ class Forwarding {
   std::atomic<std::uint64_t> clouds_dropped_{0};
   std::atomic<std::uint64_t> cloud_failures_{0};
   SeqLock<ReceivedCounts> received_;
-  ReceivedCounts last_received_;  ///< pose thread
-  LevelChanges changes_;          ///< pose thread
+  ReceivedCounts last_received_;                      ///< pose thread
+  std::map<std::string, std::uint64_t> last_counts_;  ///< pose thread, as all below
+  ipc::HealthReport own_;                             ///< entries of the bridge
+  ipc::HealthReport all_;                             ///< isobard's and the bridge's
+  LevelHold hold_;
+  LevelChanges changes_;
   IsobardClock clock_;
   std::int64_t last_report_ns_ = 0;  ///< steady clock; pose thread
   std::thread pose_thread_;

@@ -8,6 +8,7 @@
 #include <functional>
 #include <iceoryx_hoofs/error_handling/error_handling.hpp>
 #include <iceoryx_hoofs/log/logmanager.hpp>
+#include <iostream>
 
 #include "ipc/broker.hpp"
 
@@ -27,8 +28,9 @@ void handle_library_error(const iox::Error error, const std::function<void()>& /
     return;
   }
   // Never return to the library: its state is invalid, and its destructors would fail as well.
-  std::fprintf(stderr, "shared memory: fatal error %s in the iceoryx library\n",
-               iox::ErrorHandler::toString(error));
+  // In the journal the number in front is the priority, sd-daemon(3).
+  std::fprintf(stderr, "%sshared memory: fatal error %s in the iceoryx library\n",
+               std::getenv("JOURNAL_STREAM") != nullptr ? "<3>" : "", iox::ErrorHandler::toString(error));
   if (const FatalAction action = g_fatal_action.load()) {
     action();
   }
@@ -47,6 +49,8 @@ void prepare_library() {
   static const bool kPrepared = [] {
     iox::log::LogManager::GetLogManager().SetDefaultLogLevel(iox::log::LogLevel::kOff,
                                                              iox::log::LogLevelOutput::kHideLogLevel);
+    // Failed system calls are printed regardless of the log level, several lines for each.
+    std::cerr.rdbuf(nullptr);
     static auto* kept = new iox::cxx::GenericRAII(
         iox::ErrorHandler::setTemporaryErrorHandler(iox::HandlerFunction(handle_library_error)));
     return kept != nullptr;

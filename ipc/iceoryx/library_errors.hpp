@@ -3,8 +3,9 @@
 
 namespace isobar::ipc {
 
-/// Silences the library's log and installs this program's error handler for the rest of the process. Call it
-/// before any other use of the library; later calls do nothing.
+/// Silences the library, its log and std::cerr (to which it alone writes in these programs), and installs this
+/// program's error handler, for the rest of the process. Call it before any other use of the library; later
+/// calls do nothing.
 void prepare_library();
 
 }  // namespace isobar::ipc

@@ -6,8 +6,6 @@
 #include <map>
 #include <string>
 
-#include "daemon/level_changes.hpp"
-
 namespace isobar::test::test_base_station_health {
 
 namespace {
@@ -94,16 +92,6 @@ TEST_CASE("every kind of refusal has its own entry, a warning only while the cou
     CAPTURE(entry.first);
     CHECK(entry.second.level == HealthLevel::kOk);
   }
-}
-
-TEST_CASE("the log gets a line when a level changes, and none when only the values change") {
-  LevelChanges changes;
-  CHECK(changes.note("imu", HealthLevel::kOk, "200.0 per second") == "imu: ok: 200.0 per second");
-  CHECK_FALSE(changes.note("imu", HealthLevel::kOk, "199.0 per second"));
-  CHECK(changes.note("imu", HealthLevel::kError, "silent") == "imu: error: silent");
-  CHECK(changes.note("imu", HealthLevel::kStale, "") == "imu: waiting: ");
-  CHECK_FALSE(changes.note("lidar/lost", HealthLevel::kOk, "ok from the start"));
-  CHECK(changes.note("lidar/garbage", HealthLevel::kWarning, "17") == "lidar/garbage: warning: 17");
 }
 
 }  // namespace isobar::test::test_base_station_health

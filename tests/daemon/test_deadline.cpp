@@ -18,7 +18,7 @@ ipc::HealthEntry entry(const DeadlineStatus& now, const DeadlineStatus& before) 
   ipc::HealthReport report;
   report.entry_count = 0;
   report.entries[0].name[0] = '\0';
-  add_deadline(report, "lidar/deadline", now, before, "scans");
+  add_deadline(report, "lidar/deadline", now, before, "scans", 1'000 * kMs);
   return report.entries[0];
 }
 

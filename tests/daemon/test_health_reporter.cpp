@@ -41,7 +41,7 @@ const ipc::HealthEntry* find(const ipc::HealthReport& report, const std::string&
 }  // namespace
 
 TEST_CASE("a report that is too long keeps the entry for threads and counts the dropped entries") {
-  TalkativeGraph graph(100);
+  TalkativeGraph graph(300);
   HealthReporter reporter(graph, {"SCHED_FIFO refused"});
   ipc::HealthReport report;
   CHECK(reporter.fill(1'000'000'000, report));
@@ -50,8 +50,8 @@ TEST_CASE("a report that is too long keeps the entry for threads and counts the 
   const ipc::HealthEntry* dropped = find(report, "health/dropped");
   REQUIRE(dropped != nullptr);
   CHECK(dropped->level == ipc::HealthLevel::kWarning);
-  // "threads", 100 entries and one refusal; the entry for dropped entries itself takes one place.
-  CHECK(dropped->value == 1 + 100 + 1 - (ipc::HealthReport::kMaxEntries - 1));
+  // "summary", "threads", 300 entries and one refusal; the entry for dropped entries itself takes one place.
+  CHECK(dropped->value == 2 + 300 + 1 - (ipc::HealthReport::kMaxEntries - 1));
 }
 
 TEST_CASE("a report that fits has no entry for dropped entries") {
@@ -59,7 +59,7 @@ TEST_CASE("a report that fits has no entry for dropped entries") {
   HealthReporter reporter(graph, {});
   ipc::HealthReport report;
   CHECK(reporter.fill(1'000'000'000, report));
-  CHECK(report.entry_count == 11);
+  CHECK(report.entry_count == 12);
   CHECK(find(report, "health/dropped") == nullptr);
 }
 

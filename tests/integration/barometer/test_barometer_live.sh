@@ -56,11 +56,11 @@ TOML
 daemon=$!
 pids+=("$daemon")
 wait_for 'ready:' "$work/iio.log"
-wait_for "barometer: ok: .* per second from barometer $device" "$work/iio.log"
+wait_for "info: barometer: .* per second from barometer $device" "$work/iio.log"
 printf 'baro,%d,0,99000,20\n' 1 2 3 >/dev/udp/127.0.0.1/17373
-wait_for 'barometer/refused: warning: baro lines refused: barometer.source is not input' "$work/iio.log"
+wait_for 'warning: barometer/refused: baro lines refused: barometer.source is not input' "$work/iio.log"
 rm "$work/run" # the value freezes
-wait_for "barometer: error: barometer $device: the value no longer changes" "$work/iio.log"
+wait_for "error: barometer: barometer $device: the value no longer changes" "$work/iio.log"
 stop "$daemon"
 grep -q '^baro lines refused,3' "$work/iio/counters.csv" || fail "the refused lines are not in counters.csv: $(grep refused "$work/iio/counters.csv")"
 grep -q '^shared memory faults,0' "$work/iio/counters.csv" || fail "counters.csv does not count the faults of shared memory"
@@ -81,7 +81,7 @@ TOML
 "$isobard" --config "$work/dps310.toml" >"$work/dps310.log" 2>&1 &
 daemon=$!
 pids+=("$daemon")
-wait_for 'barometer: error: DPS310 on /dev/i2c-that-is-not-there at 0x77: the bus cannot be opened (No such file or directory)' "$work/dps310.log"
+wait_for 'error: barometer: DPS310 on /dev/i2c-that-is-not-there at 0x77: the bus cannot be opened (No such file or directory)' "$work/dps310.log"
 sleep 1
 kill -0 "$daemon" || fail "isobard ended because a sensor is missing"
 stop "$daemon"

@@ -34,7 +34,7 @@ inline std::int64_t wall_ns() {
 
 inline std::string write_config(const std::string& name, const std::string& text) {
   const std::string file = "/tmp/" + name + ".toml";
-  std::ofstream(file) << text;
+  std::ofstream(file) << "# test\n" << text;  // an empty file is refused
   return file;
 }
 

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Health entries of a robot from the status of its threads.
+#include "daemon/health.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+
+#include "daemon/health_summary.hpp"
+#include "ipc/topics.hpp"
+
+namespace isobar::test::test_robot_health {
+
+namespace {
+
+using ipc::HealthLevel;
+using ipc::HealthReport;
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr std::int64_t kStart = 1'000 * kSecond;
+
+void note_output(DeadlineStatus& stage, std::int64_t now_ns) {
+  ++stage.outputs;
+  stage.last_ns = now_ns;
+  stage.limit_ns = 10'000'000;
+  stage.times.note(2'000'000);
+}
+
+/// A robot all of whose sensors have just sent; wheels and base station only if `with_all`.
+StatusSnapshot working(std::int64_t now_ns, bool with_all) {
+  StatusSnapshot status;
+  status.now_ns = now_ns;
+  status.lidar.last_packet_ns = now_ns;
+  for (std::size_t kind = 0; kind < datagram::kKinds; ++kind) {
+    if (!with_all && kind >= static_cast<std::size_t>(datagram::Kind::kBasePressure)) continue;
+    status.prior.samples[kind] = static_cast<std::uint64_t>(now_ns / 10'000'000);
+    status.prior.last_sample_ns[kind] = now_ns;
+  }
+  if (with_all) status.prior.base_stations[0].add(now_ns);
+  status.prior.stamp_ns = now_ns;
+  status.prior.attitude_valid = true;
+  status.prior.height_variance_m2 = 0.01;
+  status.prior.height_source = with_all ? HeightSource::kDifferential : HeightSource::kSingleBarometer;
+  status.prior.counters.pressure_accepted = 1;
+  status.prior.barometers.robot = BarometerFault::kOk;
+  status.registration.scans = 10;
+  status.registration.mode = PoseMode::kRegistered;
+  status.registration.pose.stamp_ns = now_ns;
+  for (DeadlineStatus* stage : {&status.lidar.punctuality, &status.prior.punctuality,
+                                &status.registration.punctuality, &status.map.punctuality}) {
+    note_output(*stage, now_ns);
+  }
+  return status;
+}
+
+HealthReport report_of(HealthMonitor& monitor, const StatusSnapshot& status) {
+  HealthReport report;
+  reserve_summary(report);
+  monitor.fill(status, report);
+  fill_summary(report);
+  return report;
+}
+
+const ipc::HealthEntry& entry(const HealthReport& report, const std::string& name) {
+  for (std::uint32_t i = 0; i < report.entry_count; ++i) {
+    if (name == report.entries[i].name) return report.entries[i];
+  }
+  FAIL("no entry " << name);
+  return report.entries[0];
+}
+
+}  // namespace
+
+TEST_CASE("12 s after all sensors fell silent no entry is ok any more but what the robot does not have") {
+  HealthMonitor monitor{Config{}};
+  StatusSnapshot status = working(kStart, true);
+  CHECK(std::string(report_of(monitor, status).entries[0].message) == "all is well");
+  status.now_ns += 12 * kSecond;
+  const HealthReport report = report_of(monitor, status);
+  for (std::uint32_t i = 0; i < report.entry_count; ++i) {
+    CAPTURE(report.entries[i].name);
+    CHECK(report.entries[i].level != HealthLevel::kOk);
+  }
+  for (const char* name :
+       {"attitude", "height", "registration", "map", "barometer/fault", "prior/deadline"}) {
+    CAPTURE(name);
+    CHECK(entry(report, name).level == HealthLevel::kStale);
+  }
+  CHECK(entry(report, "lidar").level == HealthLevel::kError);
+  CHECK(std::string(entry(report, "height").message) == "no IMU sample for 12 s");
+}
+
+TEST_CASE("wheels that were never heard are none, unless they are expected; once heard, silence is a fault") {
+  HealthMonitor monitor{Config{}};
+  CHECK(entry(report_of(monitor, working(kStart, false)), "wheels").level == HealthLevel::kOk);
+  CHECK(std::string(entry(report_of(monitor, working(kStart, false)), "wheels").message).starts_with("none"));
+  Config config;
+  config.input.expect_wheels = true;
+  HealthMonitor expecting{config};
+  CHECK(entry(report_of(expecting, working(kStart, false)), "wheels").level == HealthLevel::kStale);
+  StatusSnapshot heard = working(kStart, true);
+  heard.now_ns += 2 * kSecond;
+  CHECK(entry(report_of(monitor, heard), "wheels").level == HealthLevel::kError);
+}
+
+TEST_CASE("a robot without a base station is well if it is configured so, and waits for one otherwise") {
+  HealthMonitor waiting{Config{}};
+  CHECK(report_of(waiting, working(kStart, false)).entries[0].level == HealthLevel::kStale);
+  Config config;
+  config.input.expect_base_station = false;
+  HealthMonitor alone{config};
+  const HealthReport report = report_of(alone, working(kStart, false));
+  CHECK(std::string(report.entries[0].message) == "all is well");
+  CHECK(entry(report, "height").level == HealthLevel::kOk);
+  CHECK(std::string(entry(report, "height").message).ends_with("drifts with the weather"));
+}
+
+TEST_CASE("a report with every fault at once fits") {
+  HealthMonitor monitor{Config{}};
+  const StatusSnapshot before = working(kStart, true);
+  static_cast<void>(report_of(monitor, before));
+  StatusSnapshot all = working(kStart + kSecond, true);
+  const auto fill = [](auto& counters) {
+    // Counter structures hold 64-bit counters only.
+    auto* words = reinterpret_cast<std::uint64_t*>(&counters);
+    std::fill(words, words + sizeof(counters) / sizeof(std::uint64_t), 7U);
+  };
+  fill(all.lidar.counters);
+  fill(all.samples.counters);
+  fill(all.prior.counters);
+  fill(all.samples.base.samples);
+  all.prior.barometers.base_heard = {true, true};
+  all.registration.from_prior = all.registration.dropped_scans = all.registration.dropped_priors =
+      all.registration.bridged = all.map.dropped_scans = all.prior.dropped_samples = 3;
+  const HealthReport report = report_of(monitor, all);
+  CHECK(report.entry_count > 40);
+  CHECK(report.entry_count < HealthReport::kMaxEntries - 64);  // room for other parts of the program
+}
+
+TEST_CASE("the figures hold rate, age, rejects and drops of each sensor, and the times of each stage") {
+  HealthMonitor monitor{Config{}};
+  static_cast<void>(report_of(monitor, working(kStart, true)));
+  StatusSnapshot status = working(kStart + kSecond, true);
+  status.prior.counters.imu_bad_value = 3;
+  status.prior.dropped[0] = 4;
+  status.registration.pose.p_map_m = {1.0, 2.0, 3.0};
+  status.prior.barometers.height_bias_m = 0.5;
+  const HealthReport report = report_of(monitor, status);
+  REQUIRE(report.status.sensor_count == 5);
+  const ipc::SensorStatus& imu = report.status.sensors[1];
+  CHECK(std::string(imu.name) == "imu");
+  CHECK(imu.rate_hz == doctest::Approx(100.0));
+  CHECK(imu.age_s == doctest::Approx(0.0));
+  CHECK(imu.rejected == 3);
+  CHECK(imu.dropped == 4);
+  CHECK(report.status.pose.z_m == 3.0);
+  CHECK(report.status.height.bias_m == 0.5);
+  CHECK(std::string(report.status.height.source) == "differential");
+  REQUIRE(report.status.stage_count == 4);
+  CHECK(std::string(report.status.stages[2].name) == "registration");
+  CHECK(report.status.stages[2].median_ms == doctest::Approx(2.0).epsilon(0.1));  // a bucket is 19 % wide
+}
+
+}  // namespace isobar::test::test_robot_health
