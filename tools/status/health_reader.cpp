@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/status/health_reader.hpp"
+
+#include <linux/close_range.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+#include "drivers/clock/robot_clock.hpp"
+#include "ipc/shared_memory.hpp"
+
+namespace isobar::tools {
+namespace {
+
+constexpr unsigned kDetachLimitS = 2;
+volatile std::sig_atomic_t g_exit_code = 0;
+
+}  // namespace
+
+struct HealthReader::Impl {
+  ipc::Attachment attachment;
+  ipc::Subscriber<ipc::HealthReport> reports{ipc::topics::kHealth};
+  ipc::Waiter waiter{{&reports.raw()}};
+
+  Impl(const char* program, std::chrono::milliseconds timeout) : attachment(program, timeout) {}
+};
+
+HealthReader::HealthReader(const char* program, std::chrono::milliseconds timeout)
+    : impl_(std::make_unique<Impl>(program, timeout)) {}
+
+HealthReader::~HealthReader() = default;
+
+bool HealthReader::next(ipc::HealthReport& report, std::chrono::milliseconds timeout) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point deadline = Clock::now() + timeout;
+  for (;;) {
+    if (const auto newest = impl_->reports.take_latest()) {
+      report = *newest;
+      return true;
+    }
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
+    if (left.count() <= 0 || !alive()) return false;
+    static_cast<void>(impl_->waiter.wait_for(std::min(left, std::chrono::milliseconds(200))));
+  }
+}
+
+bool HealthReader::alive() const noexcept { return impl_->attachment.broker_alive(); }
+
+double HealthReader::age_s(const ipc::HealthReport& report) noexcept {
+  return static_cast<double>(monotonic_ns() + report.robot_clock_offset_ns - report.stamp_ns) * 1e-9;
+}
+
+void run_again() {
+  std::fflush(nullptr);
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::vector<char*> arguments;
+  for (std::size_t at = 0; at < text.size(); at = text.find('\0', at) + 1) arguments.push_back(&text[at]);
+  arguments.push_back(nullptr);
+  // The library's lock on this process's name would be inherited and refuse the new program.
+  close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);
+  if (arguments.size() > 1) execv("/proc/self/exe", arguments.data());
+  std::_Exit(69);
+}
+
+void end_attached(int exit_code) {
+  std::fflush(nullptr);
+  g_exit_code = exit_code;
+  std::signal(SIGALRM, [](int) { _exit(g_exit_code); });
+  alarm(kDetachLimitS);
+  std::exit(exit_code);
+}
+
+}  // namespace isobar::tools

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "tools/status/view.hpp"
+
+namespace isobar::tools {
+namespace {
+
+using ipc::HealthLevel;
+using ipc::HealthReport;
+
+constexpr std::size_t kColumns = 80;
+/// Width of the row names.
+constexpr std::size_t kNameColumns = 14;
+
+std::string colored(HealthLevel level, const std::string& text, bool color) {
+  if (!color) return text;
+  const char* code = level == HealthLevel::kOk ? "32" : level == HealthLevel::kError ? "31" : "33";
+  return fmt::format("\033[1;{}m{}\033[0m", code, text);
+}
+
+/// A figure with its unit, or a dash.
+std::string figure(double value, int decimals, const char* unit) {
+  return std::isnan(value) ? "-" : fmt::format("{:.{}f}{}", value, decimals, unit);
+}
+
+std::string duration(double s) {
+  if (std::isnan(s)) return "-";
+  if (s < 60.0) return fmt::format("{:.{}f} s", s, s < 9.95 ? 2 : 1);
+  const auto minutes = static_cast<long>(s / 60.0);
+  if (minutes < 60) return fmt::format("{} min", minutes);
+  if (minutes < 48 * 60) return fmt::format("{} h {} min", minutes / 60, minutes % 60);
+  return fmt::format("{} d {} h", minutes / 1440, minutes / 60 % 24);
+}
+
+/// A count in at most seven columns.
+std::string count(std::uint64_t n) {
+  const auto value = static_cast<double>(n);
+  if (n < 1'000'000) return std::to_string(n);
+  return n < 1'000'000'000 ? fmt::format("{:.1f}M", value * 1e-6) : fmt::format("{:.1f}G", value * 1e-9);
+}
+
+/// `text` in lines after the row's name.
+std::string row(const std::string& name, std::string_view text) {
+  std::string out;
+  std::string head = name;
+  do {
+    std::size_t length = std::min(text.size(), kColumns - kNameColumns);
+    if (length < text.size()) {
+      const std::size_t space = text.substr(0, length + 1).rfind(' ');
+      if (space != std::string_view::npos && space > 0) length = space;
+    }
+    out += fmt::format("{:<{}}{}\n", head, kNameColumns, text.substr(0, length));
+    text.remove_prefix(std::min(text.size(), length + (length < text.size() ? 1U : 0U)));
+    head.clear();
+  } while (!text.empty());
+  return out;
+}
+
+std::string health_rows(const HealthReport& report, const ViewOptions& options) {
+  std::string out;
+  for (std::uint32_t i = 1; i < report.entry_count; ++i) {
+    const ipc::HealthEntry& entry = report.entries[i];
+    if (entry.level == HealthLevel::kOk && !options.all) continue;
+    const std::string level = fmt::format("{:<8}", ipc::level_name(entry.level));
+    // Counters end in their count.
+    const bool is_counter = std::string_view(entry.name).find('/') != std::string_view::npos;
+    const std::string value = is_counter && entry.value != 0.0 ? fmt::format(" [{:.6g}]", entry.value) : "";
+    std::string text = fmt::format("{}: {}{}", entry.name, entry.message, value);
+    std::string rows = row("  " + level, text);
+    out +=
+        colored(entry.level, rows.substr(0, 2 + level.size()), options.color) + rows.substr(2 + level.size());
+  }
+  return out;
+}
+
+std::string sensor_rows(const ipc::ServiceStatus& status) {
+  std::string out = fmt::format("{:<{}}{:>9}{:>9}{:>11}{:>9}{:>9}{:>9}{:>9}\n", "SENSOR", kNameColumns,
+                                "rate", "age", "jitter", "samples", "lost", "refused", "dropped");
+  for (std::uint32_t i = 0; i < std::min<std::size_t>(status.sensor_count, status.kMaxSensors); ++i) {
+    const ipc::SensorStatus& sensor = status.sensors[i];
+    if (!sensor.heard) {
+      out += fmt::format("{:<{}}never heard{:>34}{:>9}{:>9}\n", sensor.name, kNameColumns, count(sensor.lost),
+                         count(sensor.rejected), count(sensor.dropped));
+      continue;
+    }
+    out += fmt::format("{:<{}}{:>9}{:>9}{:>11}{:>9}{:>9}{:>9}{:>9}\n", sensor.name, kNameColumns,
+                       figure(sensor.rate_hz, 1, " Hz"), duration(std::max(0.0, sensor.age_s)),
+                       figure(sensor.jitter_ms, 2, " ms"), count(sensor.samples), count(sensor.lost),
+                       count(sensor.rejected), count(sensor.dropped));
+  }
+  return out;
+}
+
+std::string estimate_rows(const ipc::ServiceStatus& status) {
+  const ipc::PoseFigures& pose = status.pose;
+  const ipc::HeightFigures& height = status.height;
+  const ipc::MapFigures& map = status.map;
+  std::string out;
+  if (pose.mode[0] == '\0') {
+    out += row("pose", "none yet");
+  } else {
+    out +=
+        row("pose", fmt::format("x {:.3f}  y {:.3f}  z {:.3f} m   yaw {:.1f}  pitch {:.1f}  roll {:.1f} deg",
+                                pose.x_m, pose.y_m, pose.z_m, pose.yaw_deg, pose.pitch_deg, pose.roll_deg));
+    out += row("", fmt::format("{} ({}), overlap {:.2f}; sd xy {:.3f} m, z {:.3f} m, yaw {:.2f} deg; {} old",
+                               pose.mode, pose.method, pose.overlap, pose.xy_sd_m, pose.z_sd_m,
+                               pose.yaw_sd_deg, duration(pose.age_s)));
+  }
+  if (height.source[0] == '\0') {
+    out += row("height", "none yet");
+  } else {
+    out += row("height", fmt::format("{:.3f} m, sd {:.3f} m; {}; bias {:.3f} m, sd {:.3f} m; {} old",
+                                     height.height_m, height.sd_m, height.source, height.bias_m,
+                                     height.bias_sd_m, duration(height.age_s)));
+  }
+  const std::string disk = map.on_disk ? fmt::format("{} tiles, {:.1f} MB on disk", map.tiles,
+                                                     static_cast<double>(map.disk_bytes) * 1e-6)
+                                       : std::string("not written to disk");
+  return out + row("map", fmt::format("{} cells in memory; {}", map.cells, disk));
+}
+
+std::string stage_rows(const ipc::ServiceStatus& status) {
+  std::string out = fmt::format("{:<{}}{:>12}{:>12}{:>12}{:>12}{:>18}\n", "STAGE", kNameColumns, "median",
+                                "p99", "worst", "limit", "late");
+  for (std::uint32_t i = 0; i < std::min<std::size_t>(status.stage_count, status.kMaxStages); ++i) {
+    const ipc::StageStatus& stage = status.stages[i];
+    out += fmt::format("{:<{}}{:>12}{:>12}{:>12}{:>12}{:>18}\n", stage.name, kNameColumns,
+                       figure(stage.median_ms, 2, " ms"), figure(stage.p99_ms, 2, " ms"),
+                       figure(stage.worst_ms, 1, " ms"), figure(stage.limit_ms, 0, " ms"),
+                       count(stage.misses) + " of " + count(stage.outputs));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string status_text(const HealthReport& report, double age_s, const ViewOptions& options) {
+  if (report.entry_count == 0) return "no health report\n";
+  const ipc::HealthEntry& summary = report.entries[0];
+  const ipc::ServiceStatus& status = report.status;
+  const std::string level = ipc::level_name(summary.level);
+  std::string head = row(level, summary.message);
+  head = colored(summary.level, head.substr(0, level.size()), options.color) + head.substr(level.size());
+  std::string out = head;
+  out += health_rows(report, options);
+  out += row("isobard",
+             fmt::format("{}, up for {}, report {} old; {} health entries", status.role,
+                         duration(status.uptime_s), duration(std::max(0.0, age_s)), report.entry_count - 1));
+  for (std::uint32_t i = 1; i < report.entry_count; ++i) {
+    if (std::string_view(report.entries[i].name) == "configuration" && !options.all &&
+        report.entries[i].level == HealthLevel::kOk) {
+      out += row("configuration", report.entries[i].message);
+    }
+  }
+  out += "\n" + sensor_rows(status);
+  if (status.stage_count == 0) return out;
+  return out + "\n" + estimate_rows(status) + "\n" + stage_rows(status);
+}
+
+}  // namespace isobar::tools
