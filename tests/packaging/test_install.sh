@@ -17,7 +17,7 @@ check() { # check NAME COMMAND…: passes when COMMAND succeeds and prints nothi
 install() { DESTDIR=$root cmake --install "$2" --prefix "$1" >"$root/log" || { cat "$root/log"; exit 1; }; }
 
 install /usr "$2"
-for file in usr/bin/{isobard,isobar,isobar-dds} lib/systemd/system/{isobard.service,isobar-dds.service,run-isobar-shm.mount} \
+for file in usr/bin/{isobard,isobar,isobar-dds} lib/systemd/system/{isobard.service,isobar-dds.service,run-isobar.mount} \
   lib/udev/rules.d/59-isobar.rules usr/lib/sysusers.d/isobar.conf usr/lib/tmpfiles.d/isobar.conf etc/isobar/isobar.toml \
   etc/isobar/conf.d usr/share/man/man8/{isobard,isobar-dds}.8 usr/share/man/man5/isobar.toml.5 \
   usr/share/doc/isobar/copyright usr/share/isobar/ros2/isobar_msgs/package.xml; do

@@ -8,7 +8,7 @@ trap 'rm -rf "$folder"' EXIT
 failed=0
 check() { if [ "$2" = yes ]; then echo "ok: $1"; else echo "FAILED: $1"; failed=1; fi; }
 
-for unit in isobard.service isobar-dds.service run-isobar-shm.mount; do
+for unit in isobard.service isobar-dds.service run-isobar.mount; do
   sed -e "s#^ExecStart=/usr/bin/isobard #ExecStart=$2 #; s#^ExecStart=/usr/bin/isobar-dds #ExecStart=$3 #" "$1/$unit" \
     >"$folder/$unit"
 done
@@ -23,7 +23,7 @@ for unit in isobard isobar-dds; do
     "$(awk -v e="${exposure:-10}" 'BEGIN { if (e <= 2.0) print "yes" }')"
   # What the services rely on, whatever the score says.
   for line in StartLimitIntervalSec=0 'ExecReload=/bin/kill -HUP $MAINPID' Restart=always User=isobar PrivateTmp=yes \
-    BindPaths=/run/isobar/shm:/dev/shm; do
+    'BindPaths=/run/isobar/shm:/dev/shm /run/isobar/tmp:/tmp'; do
     check "$unit.service: $line" "$(grep -qxF "$line" "$folder/$unit.service" && echo yes)"
   done
 done

@@ -58,7 +58,7 @@ class Writer {
     page.heading("Files");
     page.entry("/etc/isobar/isobar.toml", "configuration, see isobar.toml(5)");
     page.entry("/var/lib/isobar", "maps and trajectories");
-    page.entry("/run/isobar/shm", "shared memory of both services, their /dev/shm");
+    page.entry("/run/isobar", "shared memory of both services: their /dev/shm and /tmp");
   }
 
   void write(const Page& page, const std::string& name, int section) const {
