@@ -14,6 +14,7 @@ void add_size(MapConfig& map, SectionBuilder& s) {
   s.number("cell_m", &map.cell_m, "m", 0.1, 1.0,
            "Edge of a plane cell. Smaller cells follow finer indoor detail, larger ones are fewer outdoors; "
            "0.275 was the most accurate of 0.25 to 0.3 over the short scenarios.");
+  s.applies(Apply::kLive);
   s.number(
       "radius_m", &map.radius_m, "m", 20.0, 200.0,
       "Distance from the robot beyond which tiles leave memory. 70: beyond the reach of the registration "
@@ -60,6 +61,7 @@ void add_removal(MapConfig& map, SectionBuilder& s) {
 }
 
 void add_files(MapFileSettings& files, SectionBuilder& s) {
+  s.applies(Apply::kRestart);
   s.text("directory", files.directory, TextRule::kAny,
          "Folder for the tiles that have left memory; a map already there is replaced. Empty: the folder map "
          "in output.directory; if that is empty too, tiles that leave memory are lost.");

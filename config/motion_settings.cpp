@@ -73,6 +73,7 @@ void add_attitude(AttitudeConfig& attitude, std::vector<Setting>& settings) {
 
 void add_standstill(StandstillConfig& standstill, std::vector<Setting>& settings) {
   SectionBuilder s("standstill", UsedBy::kRobot, settings);
+  s.applies(Apply::kLive);
   s.number("window_s", &standstill.window_s, "s", 0.1, 5.0,
            "Time that gyro, accelerometer and wheels must all be quiet. 0.6: long enough for a mean of 120 "
            "samples at 200 Hz, short enough for brief stops.");
@@ -94,6 +95,7 @@ void add_standstill(StandstillConfig& standstill, std::vector<Setting>& settings
 
 void add_dead_reckoning(DeadReckoningConfig& dead_reckoning, std::vector<Setting>& settings) {
   SectionBuilder s("dead_reckoning", UsedBy::kRobot, settings);
+  s.applies(Apply::kLive);
   s.number("wheel_timeout_s", &dead_reckoning.wheel_timeout_s, "s", 0.05, 10.0,
            "Silence after which the wheels are lost. 0.5: five scans at 10 Hz.");
   s.number("max_speed_m_s", &dead_reckoning.max_speed_m_s, "m/s", 0.1, kPlausibleWheelMS.highest,
@@ -109,6 +111,7 @@ void add_dead_reckoning(DeadReckoningConfig& dead_reckoning, std::vector<Setting
 
 void add_limits(PriorLimits& limits, std::vector<Setting>& settings) {
   SectionBuilder s("limits", UsedBy::kRobot, settings);
+  s.applies(Apply::kLive);
   s.number("max_gyro_rad_s", &limits.max_gyro_rad_s, "rad/s", 0.1, kPlausibleGyroRadS.highest,
            "Largest angular rate of an axis. 35 is a gyro's usual range of 2000 deg/s.");
   s.number("max_accel_m_s2", &limits.max_accel_m_s2, "m/s^2", 20.0, kPlausibleAccelMS2.highest,

@@ -99,6 +99,7 @@ void add_acceptance(RegistrationConfig& r, SectionBuilder& s) {
 
 void add_registration_settings(RegistrationConfig& registration, std::vector<Setting>& settings) {
   SectionBuilder s("registration", UsedBy::kRobot, settings);
+  s.applies(Apply::kStage);
   add_preparation(registration, s);
   add_iteration(registration, s);
   add_information(registration, s);

@@ -33,7 +33,8 @@ Setting& SectionBuilder::choice(const char* name, Setting::Target target,
 }
 
 Setting& SectionBuilder::add(const char* name, Setting::Target target, const char* doc) {
-  settings_.push_back({.key = prefix_ + name, .target = target, .doc = doc, .used_by = used_by_});
+  settings_.push_back(
+      {.key = prefix_ + name, .target = target, .doc = doc, .used_by = used_by_, .apply = apply_});
   return settings_.back();
 }
 

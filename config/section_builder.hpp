@@ -26,6 +26,9 @@ class SectionBuilder {
   Setting& choice(const char* name, Setting::Target target, const std::vector<std::string>& choices,
                   const char* doc);
 
+  /// When a change of the settings added from here on takes effect.
+  void applies(Apply apply) { apply_ = apply; }
+
   /// The roles that use the settings added from here on.
   void used_by(UsedBy used_by) { used_by_ = used_by; }
 
@@ -34,6 +37,7 @@ class SectionBuilder {
 
   std::string prefix_;
   UsedBy used_by_;
+  Apply apply_ = Apply::kRestart;
   std::vector<Setting>& settings_;
 };
 

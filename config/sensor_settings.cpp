@@ -31,6 +31,7 @@ void add_lidar(LidarSettings& lidar, std::vector<Setting>& settings) {
       .basic();
   add_position(s, lidar.mount, "Origin of the lidar in base_link. 0: at the origin of base_link.");
   add_rotation(s, lidar.mount);
+  s.applies(Apply::kLive);
   s.number("min_range_m", &lidar.min_range_m, "m", 0.0, 10.0,
            "Shortest range; the driver drops nearer returns, which come from housing and mount. 0 keeps "
            "all.");

@@ -44,6 +44,7 @@ void add_deadline(const char* name, double& limit_ms, const char* doc, SectionBu
 // With the defaults one map update in 650 was late beside `stress-ng --cpu 4`, and nothing else
 // (tests/benchmark/live).
 void add_deadlines(RealtimeSettings& realtime, SectionBuilder& s) {
+  s.applies(Apply::kLive);
   add_deadline("lidar_deadline_ms", realtime.lidar_deadline_ms,
                "Deadline from the end of a scan to its hand-over to the registration. Misses are counted and "
                "shown in the diagnostics. 10: the packet that shows the end comes up to 3 ms after it.",
@@ -88,6 +89,7 @@ void add_output(OutputSettings& output, std::vector<Setting>& settings) {
   s.text("directory", output.directory, TextRule::kAny,
          "Output folder for trajectory, map and status. Empty: no files are written.")
       .basic();
+  s.applies(Apply::kLive);
   s.number("cloud_interval_s", &output.cloud_interval_s, "s", 0.2, 3'600.0,
            "Interval between two map clouds for viewers. 2: fast enough to watch, and each cloud holds the "
            "whole local map.");

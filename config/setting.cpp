@@ -56,7 +56,8 @@ std::vector<Setting> settings_of(Config& config) {
               "6dof-altitude, 4dof-altitude: the height from air pressure only predicts z. odometry: no ICP.",
        .choices = method_choices(),
        .used_by = UsedBy::kRobot,
-       .audience = Audience::kBasic});
+       .audience = Audience::kBasic,
+       .apply = Apply::kStage});
   add_sensor_settings(config, settings);
   add_service_settings(config, settings);
   add_dds_settings(config.dds, settings);

@@ -29,6 +29,9 @@ class BaseStationGraph final : public Graph {
   [[nodiscard]] std::string inputs() const override;
   [[nodiscard]] BarometerState barometer_state() const override;
   void fill_health(std::int64_t now_ns, ipc::HealthReport& report) override;
+  /// A base station starts in a second and has no state to lose.
+  [[nodiscard]] Apply apply_of(const Setting& /*setting*/) const override { return Apply::kRestart; }
+  void apply(const ConfigChange& /*change*/) override {}
 
  private:
   Config config_;

@@ -24,6 +24,9 @@ class Deadline {
   /// @param limit_ms allowed time from input to output, > 0
   explicit Deadline(double limit_ms) { status_.limit_ns = static_cast<std::int64_t>(limit_ms * 1e6); }
 
+  /// Changes the limit; what was counted stays.
+  void set_limit(double limit_ms) noexcept { status_.limit_ns = static_cast<std::int64_t>(limit_ms * 1e6); }
+
   /// Records an output.
   /// @param complete_ns when its input was complete, robot clock
   /// @param now_ns when it was published, robot clock

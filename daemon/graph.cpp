@@ -25,7 +25,8 @@ std::vector<std::string> refusals_of(const WorkerGroup& workers, const RealtimeS
 
 /// The supervise loop: publishes health reports, logs level changes, and feeds the watchdog while no thread
 /// hangs.
-void supervise(Graph& graph, Service& service, std::vector<std::string> realtime_refusals) {
+void supervise(Graph& graph, Service& service, Configuration& configuration,
+               std::vector<std::string> realtime_refusals) {
   HealthReporter reporter(graph, std::move(realtime_refusals));
   ReportSchedule schedule;
   LevelChanges known;
@@ -33,6 +34,8 @@ void supervise(Graph& graph, Service& service, std::vector<std::string> realtime
   service.ready();
   service.supervise([&] {
     const std::int64_t now_ns = RobotClock::now_ns();
+    configuration.poll(graph, service);
+    graph.collect();
     if (!schedule.due(now_ns, graph.barometer_state())) return false;
     ipc::HealthReport report;
     const bool alive = reporter.fill(now_ns, report);
@@ -44,11 +47,13 @@ void supervise(Graph& graph, Service& service, std::vector<std::string> realtime
 
 }  // namespace
 
-void run(Graph& graph, Service& service, const RealtimeSettings& realtime) {
-  std::vector<std::string> refusals = refusals_of(graph.workers(), realtime);
+void run(Graph& graph, Service& service, Configuration& configuration) {
+  std::vector<std::string> refusals = refusals_of(graph.workers(), configuration.config().realtime);
+  graph.add_health(
+      [&configuration](std::int64_t /*now_ns*/, ipc::HealthReport& report) { configuration.fill(report); });
   graph.start();
   spdlog::info("ready: {}", graph.inputs());
-  supervise(graph, service, std::move(refusals));
+  supervise(graph, service, configuration, std::move(refusals));
   spdlog::info("stopping");
   graph.stop();
 }

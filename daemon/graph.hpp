@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "config/config.hpp"
+#include "config/config_change.hpp"
+#include "daemon/configuration.hpp"
 #include "daemon/service.hpp"
 #include "daemon/worker_group.hpp"
 #include "drivers/barometer/barometer_device.hpp"
@@ -44,6 +46,14 @@ class Graph {
   /// @param now_ns robot clock
   virtual void fill_health(std::int64_t now_ns, ipc::HealthReport& report) = 0;
 
+  /// When this graph can apply a changed setting while it runs.
+  [[nodiscard]] virtual Apply apply_of(const Setting& setting) const = 0;
+  /// Hands the live and stage keys of a change to their stages; poses go on.
+  /// @throws ConfigError, ServiceError when a stage refuses; nothing has then changed
+  virtual void apply(const ConfigChange& change) = 0;
+  /// Frees what the stages no longer need. Every tick of the supervise loop.
+  virtual void collect() {}
+
   /// Adds entries of a part of the program that is no stage, such as the configuration or the disk; called
   /// for each report, after fill_health():
   ///
@@ -57,11 +67,11 @@ class Graph {
   std::vector<HealthSource> sources_;
 };
 
-/// Runs the graph until a stop signal: start, supervise (health report, watchdog, level changes to the log),
-/// stop. Real-time settings that the system refuses become warnings in the health report; the graph runs
+/// Runs the graph until a stop signal: start, supervise (health report, watchdog, level changes to the log,
+/// changed configurations), stop. Real-time settings that the system refuses become warnings in the health report; the graph runs
 /// without them, with more latency jitter.
 /// @throws ServiceError when the files of the run cannot be written
 /// @throws std::system_error when the kernel refuses a thread
-void run(Graph& graph, Service& service, const RealtimeSettings& realtime);
+void run(Graph& graph, Service& service, Configuration& configuration);
 
 }  // namespace isobar

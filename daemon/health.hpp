@@ -38,6 +38,9 @@ class HealthMonitor {
   HealthMonitor(const HealthMonitor&) = delete;
   HealthMonitor& operator=(const HealthMonitor&) = delete;
 
+  /// Takes a changed configuration.
+  void configure(const Config& config) { config_ = config; }
+
   void fill(const StatusSnapshot& now, ipc::HealthReport& report);
 
  private:

@@ -30,6 +30,10 @@ void LidarThread::loop() noexcept {
 }
 
 void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
+  changes_.take([this](const Change& change) {
+    decoder_.set_limits(change.config);
+    deadline_.set_limit(change.deadline_ms);
+  });
   draft_status_.last_packet_ns = datagram.stamp_ns;
   Scan& scan = loaned_ != nullptr ? *loaned_ : spare_scan_;
   if (decoder_.add_packet(datagram.payload, datagram.stamp_ns, scan).scan_complete) publish_scan();

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 
 #include "core/time/stream_pace.hpp"
 #include "daemon/deadline.hpp"
+#include "daemon/handover.hpp"
 #include "daemon/packet_pacing.hpp"
 #include "daemon/seq_lock.hpp"
 #include "daemon/worker.hpp"
@@ -38,10 +40,21 @@ class LidarThread {
   LidarThread& operator=(const LidarThread&) = delete;
 
   [[nodiscard]] Worker& worker() noexcept { return worker_; }
+  /// Changes the range and the masked sector of the returns, and the deadline, from the next packet on. Main
+  /// thread, as collect().
+  void configure(const velodyne::VelodyneConfig& config, double deadline_ms) {
+    changes_.offer(std::make_unique<Change>(Change{config, deadline_ms}));
+  }
+  void collect() { changes_.collect(); }
+
   [[nodiscard]] LidarStatus status() const noexcept { return status_.get(); }
   [[nodiscard]] std::uint16_t port() const noexcept { return receiver_.port(); }
 
  private:
+  struct Change {
+    velodyne::VelodyneConfig config;
+    double deadline_ms;
+  };
   void loop() noexcept;
   void take_packet(const ReceivedDatagram& datagram) noexcept;
   void publish_scan() noexcept;
@@ -56,6 +69,7 @@ class LidarThread {
       spare_scan_;  ///< decoded into while no chunk is free, so that the next scan starts at the right packet
   PacketPacing pacing_;
   Deadline deadline_;
+  Handover<Change> changes_;
   LidarStatus draft_status_;
   SeqLock<LidarStatus> status_;
   Worker worker_;

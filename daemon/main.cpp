@@ -14,10 +14,11 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "config/config_io.hpp"
+#include "config/problems.hpp"
 #include "core/errors.hpp"
 #include "daemon/barometer_source.hpp"
 #include "daemon/base_station.hpp"
+#include "daemon/configuration.hpp"
 #include "daemon/graph.hpp"
 #include "daemon/health.hpp"
 #include "daemon/lidar_thread.hpp"
@@ -96,6 +97,26 @@ class RobotGraph final : public Graph {
   void fill_health(std::int64_t now_ns, ipc::HealthReport& report) override {
     monitor_.fill(status(now_ns), report);
   }
+  [[nodiscard]] Apply apply_of(const Setting& setting) const override { return setting.apply; }
+  void apply(const ConfigChange& change) override {
+    config_ = change.running;
+    stages_ = stage_settings(config_);
+    const RobotScheduling scheduling = robot_scheduling(config_.realtime);
+    lidar_.configure(stages_.lidar, scheduling.lidar.deadline_ms);
+    prior_.configure(stages_.prior, scheduling.prior.deadline_ms);
+    if (change.concerns("method") || change.concerns("registration.") || change.concerns("realtime.")) {
+      registration_.rebuild(stages_, scan_queue_config(config_.realtime),
+                            scheduling.registration.deadline_ms);
+    }
+    map_.configure(stages_.map, config_.output.cloud_interval_s, scheduling.map.deadline_ms);
+    monitor_.configure(config_);
+  }
+  void collect() override {
+    lidar_.collect();
+    prior_.collect();
+    registration_.collect();
+    map_.collect();
+  }
 
  private:
   Config config_;
@@ -127,16 +148,18 @@ int main_with_errors(int argc, char** argv) {
   }
   // Before the first thread, so that all threads inherit the blocked signals.
   Service service;
-  Config config = options.config_file.empty() ? Config{} : load_config(options.config_file);
+  Configuration configuration(options.config_file, [&options](Config& config) {
+    if (!options.output_directory.empty()) config.output.directory = options.output_directory;
+  });
+  const Config& config = configuration.config();
   if (config.role == Role::kBaseStation) {
     if (!options.output_directory.empty()) throw UsageError("--output: a base station writes no run");
     BaseStationGraph graph(config);
-    run(graph, service, config.realtime);
+    run(graph, service, configuration);
     return 0;
   }
-  if (!options.output_directory.empty()) config.output.directory = options.output_directory;
   RobotGraph graph(config);
-  run(graph, service, config.realtime);
+  run(graph, service, configuration);
   return 0;
 }
 
@@ -148,6 +171,9 @@ int main(int argc, char** argv) {
   isobar::set_up_logging("isobard");
   try {
     return isobar::main_with_errors(argc, argv);
+  } catch (const isobar::ConfigErrors& errors) {
+    for (const std::string& problem : errors.all()) spdlog::error("{}", problem);
+    return errors.exit_code();
   } catch (const isobar::Error& error) {
     spdlog::error("{}", error.what());
     return error.exit_code();

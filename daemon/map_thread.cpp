@@ -32,6 +32,11 @@ void MapThread::loop() noexcept {
 // Freshness wins: only the newest waiting scan enters the map,
 // because the registration needs the map around it now.
 void MapThread::drain() noexcept {
+  changes_.take([this](const Change& change) {
+    map_.configure(change.config);
+    cloud_interval_ns_ = static_cast<std::int64_t>(change.cloud_interval_s * 1e9);
+    deadline_.set_limit(change.deadline_ms);
+  });
   auto newest = scans_.take();
   while (auto newer = scans_.take()) {
     newest = std::move(newer);

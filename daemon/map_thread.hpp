@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/map/local_map.hpp"
 #include "core/map/snapshot_exchange.hpp"
 #include "daemon/deadline.hpp"
+#include "daemon/handover.hpp"
 #include "daemon/seq_lock.hpp"
 #include "daemon/worker.hpp"
 #include "ipc/shared_memory.hpp"
@@ -37,6 +39,13 @@ class MapThread {
   /// Once stopped, the whole local map is in the store.
   [[nodiscard]] Worker& worker() noexcept { return worker_; }
   [[nodiscard]] SnapshotExchange<MapSnapshot>& snapshots() noexcept { return snapshots_; }
+  /// Changes the settings of the map (see LocalMap::configure()), the interval of its clouds and the deadline,
+  /// from the next scan on. Main thread, as collect().
+  void configure(const MapConfig& config, double cloud_interval_s, double deadline_ms) {
+    changes_.offer(std::make_unique<Change>(Change{config, cloud_interval_s, deadline_ms}));
+  }
+  void collect() { changes_.collect(); }
+
   [[nodiscard]] MapStatus status() const noexcept { return status_.get(); }
 
  private:
@@ -45,6 +54,11 @@ class MapThread {
     bool refused = false;
     bool damaged = false;
     bool forgotten = false;
+  };
+  struct Change {
+    MapConfig config;
+    double cloud_interval_s;
+    double deadline_ms;
   };
   void loop() noexcept;
   void drain() noexcept;
@@ -65,6 +79,7 @@ class MapThread {
   std::vector<MapPoint> points_;  ///< scratch
   std::uint64_t superseded_ = 0;  ///< scans dropped for a newer one
   Deadline deadline_;
+  Handover<Change> changes_;
   MapStatus draft_status_;
   SeqLock<MapStatus> status_;
   Worker worker_;

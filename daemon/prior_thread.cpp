@@ -47,6 +47,10 @@ ipc::Received<Sample> PriorThread::take(ipc::Subscriber<Sample>& from, datagram:
 
 // Slow sensors first: a measurement older than an IMU sample contributes to that sample's prior.
 void PriorThread::drain() noexcept {
+  changes_.take([this](const Change& change) {
+    estimator_.configure(change.config);
+    deadline_.set_limit(change.deadline_ms);
+  });
   using datagram::Kind;
   while (const auto sample = take(base_barometer_, Kind::kBasePressure)) {
     if (sample->station < draft_status_.base_stations.size()) {

@@ -3,11 +3,13 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 
 #include "core/prior/prior_estimator.hpp"
 #include "core/time/cadence.hpp"
 #include "core/time/stream_pace.hpp"
 #include "daemon/deadline.hpp"
+#include "daemon/handover.hpp"
 #include "daemon/seq_lock.hpp"
 #include "daemon/worker.hpp"
 #include "drivers/datagram/datagram.hpp"
@@ -39,9 +41,20 @@ class PriorThread {
   PriorThread(const PriorConfig& config, ThreadSettings settings);
 
   [[nodiscard]] Worker& worker() noexcept { return worker_; }
+  /// Changes the deadline and the settings that PriorEstimator::configure() takes, from the next round on. Main
+  /// thread, as collect().
+  void configure(const PriorConfig& config, double deadline_ms) {
+    changes_.offer(std::make_unique<Change>(Change{config, deadline_ms}));
+  }
+  void collect() { changes_.collect(); }
+
   [[nodiscard]] PriorStatus status() const noexcept { return status_.get(); }
 
  private:
+  struct Change {
+    PriorConfig config;
+    double deadline_ms;
+  };
   void loop() noexcept;
   void drain() noexcept;
   template <class Sample>
@@ -56,6 +69,7 @@ class PriorThread {
   ipc::Publisher<Prior> publisher_;
   ipc::Waiter waiter_;
   Deadline deadline_;
+  Handover<Change> changes_;
   PriorStatus draft_status_;
   SeqLock<PriorStatus> status_;
   Worker worker_;

@@ -7,16 +7,18 @@ namespace isobar {
 
 RegistrationStage::RegistrationStage(const RegistrationConfig& config, Method method,
                                      const Eigen::Isometry3d& T_base_lidar, EstimateSink& sink)
-    : registration_(config, method, T_base_lidar), sink_(sink), without_points_(std::make_unique<Scan>()) {}
+    : registration_(std::make_unique<Registration>(config, method, T_base_lidar)),
+      sink_(sink),
+      without_points_(std::make_unique<Scan>()) {}
 
 void RegistrationStage::add_prior(const Prior& prior) {
   newest_prior_ = prior;
-  registration_.add_prior(prior);
+  registration_->add_prior(prior);
 }
 
 void RegistrationStage::register_scan(const Scan& scan, const MapSnapshot& map, RegisteredScan& out) {
   const CpuTimer timer;
-  registration_.register_scan(scan, map, out);
+  registration_->register_scan(scan, map, out);
   out.pose.registration_ms = timer.elapsed_ms();
   emit(out.pose, true);
 }
@@ -25,14 +27,14 @@ void RegistrationStage::register_scan(const Scan& scan, const MapSnapshot& map, 
 void RegistrationStage::skip_scan(const DroppedScan& scan, const MapSnapshot& map, RegisteredScan& scratch) {
   without_points_->stamp_ns = without_points_->end_stamp_ns = scan.end_stamp_ns;
   without_points_->sequence = scan.sequence;
-  registration_.register_scan(*without_points_, map, scratch);
+  registration_->register_scan(*without_points_, map, scratch);
   scratch.pose.registration_ms = 0.0;
   emit(scratch.pose, true);
 }
 
 bool RegistrationStage::bridge_silence() {
   PoseEstimate pose;
-  if (!silence_.due(newest_prior_.stamp_ns) || !registration_.propagate(pose)) return false;
+  if (!silence_.due(newest_prior_.stamp_ns) || !registration_->propagate(pose)) return false;
   emit(pose, false);
   return true;
 }

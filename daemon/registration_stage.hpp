@@ -31,6 +31,12 @@ class RegistrationStage {
   RegistrationStage(const RegistrationConfig& config, Method method, const Eigen::Isometry3d& T_base_lidar,
                     EstimateSink& sink);
 
+  /// Exchanges `next` for the registration in use, which goes on in it. Allocates nothing.
+  void replace(std::unique_ptr<Registration>& next) {
+    next->take_over(*registration_);
+    registration_.swap(next);
+  }
+
   /// Takes a prior; in order of time.
   void add_prior(const Prior& prior);
   /// Stamp of the newest prior; 0: none yet.
@@ -49,7 +55,7 @@ class RegistrationStage {
  private:
   void emit(const PoseEstimate& pose, bool from_scan);
 
-  Registration registration_;
+  std::unique_ptr<Registration> registration_;
   EstimateSink& sink_;
   std::unique_ptr<Scan> without_points_;  ///< stands in for a dropped scan
   Prior newest_prior_;

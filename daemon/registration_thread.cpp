@@ -51,7 +51,19 @@ std::chrono::nanoseconds RegistrationThread::timeout() const noexcept {
   return queue_.empty() ? kPollWithoutScan : kPollWithScan;
 }
 
+void RegistrationThread::rebuild(const StageSettings& stages, const ScanQueueConfig& queue,
+                                 double deadline_ms) {
+  changes_.offer(std::make_unique<Change>(
+      Change{std::make_unique<Registration>(stages.registration, stages.method, stages.T_base_lidar), queue,
+             deadline_ms}));
+}
+
 void RegistrationThread::drain() noexcept {
+  changes_.take([this](Change& change) {
+    stage_.replace(change.registration);
+    queue_.configure(change.queue);
+    deadline_.set_limit(change.deadline_ms);
+  });
   while (const auto prior = priors_.take()) stage_.add_prior(*prior);
   const std::int64_t now_ns = RobotClock::now_ns();
   bool scan_arrived = false;

@@ -9,6 +9,7 @@
 #include "core/map/map_snapshot.hpp"
 #include "core/map/snapshot_exchange.hpp"
 #include "daemon/deadline.hpp"
+#include "daemon/handover.hpp"
 #include "daemon/registration_stage.hpp"
 #include "daemon/scan_queue.hpp"
 #include "daemon/seq_lock.hpp"
@@ -53,6 +54,11 @@ class RegistrationThread final : private EstimateSink {
                      const ScanQueueConfig& queue, ThreadSettings settings);
 
   [[nodiscard]] Worker& worker() noexcept { return worker_; }
+  /// Builds the registration anew with other settings; before the next scan it replaces the one in use, whose
+  /// pose it continues. Main thread, as collect().
+  void rebuild(const StageSettings& stages, const ScanQueueConfig& queue, double deadline_ms);
+  void collect() { changes_.collect(); }
+
   [[nodiscard]] RegistrationStatus status() const noexcept { return status_.get(); }
 
  private:
@@ -63,6 +69,11 @@ class RegistrationThread final : private EstimateSink {
   /// Time without a scan after which no scan is in transit.
   static constexpr std::int64_t kQuietNs = 90'000'000;
 
+  struct Change {
+    std::unique_ptr<Registration> registration;
+    ScanQueueConfig queue;
+    double deadline_ms;
+  };
   void loop() noexcept;
   [[nodiscard]] std::chrono::nanoseconds timeout() const noexcept;
   void drain() noexcept;
@@ -84,6 +95,7 @@ class RegistrationThread final : private EstimateSink {
   std::int64_t quiet_since_ns_ = 0;              // robot clock
   std::unique_ptr<RegisteredScan> unpublished_;  ///< used while no chunk is free: the pose is still published
   Deadline deadline_;
+  Handover<Change> changes_;
   std::uint64_t warm_up_faults_ = 0;
   RegistrationStatus draft_status_;
   SeqLock<RegistrationStatus> status_;

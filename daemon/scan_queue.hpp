@@ -46,6 +46,12 @@ class ScanQueue {
 
   explicit ScanQueue(const ScanQueueConfig& config) : config_(config) {}
 
+  /// Changes reach and wait for the scans that wait and all later ones; not the admission.
+  void configure(const ScanQueueConfig& config) noexcept {
+    config_.reach_ns = config.reach_ns;
+    config_.wait_ns = config.wait_ns;
+  }
+
   /// Adds a scan that arrived at `now_ns`; in order. kNewest: a full queue drops its oldest scan. kEvery:
   /// call take() until it returns empty before the next push(), so that the queue is never full here.
   void push(Handle scan, std::int64_t now_ns) noexcept {

@@ -9,23 +9,48 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstring>
+#include <ctime>
+#include <initializer_list>
 
 #include "core/errors.hpp"
 
 namespace isobar {
 
-Service::Service() {
+namespace {
+
+/// Blocks signals and makes a descriptor that tells of them.
+int signal_descriptor(std::initializer_list<int> signals) {
   sigset_t set;
   sigemptyset(&set);
-  sigaddset(&set, SIGTERM);
-  sigaddset(&set, SIGINT);
+  for (const int signal : signals) sigaddset(&set, signal);
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  signals_ = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
-  if (signals_ < 0) throw ServiceError(std::string("signalfd: ") + std::strerror(errno));
+  const int descriptor = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
+  if (descriptor < 0) throw ServiceError(std::string("signalfd: ") + std::strerror(errno));
+  return descriptor;
 }
 
-Service::~Service() { close(signals_); }
+}  // namespace
+
+Service::Service() : signals_(signal_descriptor({SIGTERM, SIGINT})), hangups_(signal_descriptor({SIGHUP})) {}
+
+Service::~Service() {
+  close(signals_);
+  close(hangups_);
+}
+
+bool Service::take_reload_request() {
+  signalfd_siginfo info{};
+  return read(hangups_, &info, sizeof info) == static_cast<ssize_t>(sizeof info);
+}
+
+void Service::reloading() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  const std::int64_t monotonic_us = std::int64_t{now.tv_sec} * 1'000'000 + now.tv_nsec / 1'000;
+  sd_notify(0, ("RELOADING=1\nMONOTONIC_USEC=" + std::to_string(monotonic_us)).c_str());
+}
 
 // The signal is never read from the descriptor, so it stays pending: every later call returns false, too.
 bool Service::wait_for(std::chrono::milliseconds duration) {

@@ -12,7 +12,7 @@ namespace isobar {
 /// Signals and status of a service. Main thread only. Without a service manager the notifications do nothing.
 class Service {
  public:
-  /// Blocks SIGTERM and SIGINT in this thread and in all threads
+  /// Blocks SIGTERM, SIGINT and SIGHUP in this thread and in all threads
   /// started later: construct it before the first thread.
   /// @throws ServiceError when the kernel refuses a signal descriptor
   Service();
@@ -33,11 +33,16 @@ class Service {
 
   /// READY=1, with the line that `systemctl status` shows. Empty: no line.
   void ready(const std::string& status = {});
+  /// RELOADING=1 with MONOTONIC_USEC, before a reload; ready() ends it.
+  void reloading();
+  /// True once after each SIGHUP: `systemctl reload`, or the end of the terminal.
+  [[nodiscard]] bool take_reload_request();
   void set_status(const std::string& status);
   void feed_watchdog();
 
  private:
   int signals_ = -1;
+  int hangups_ = -1;
 };
 
 }  // namespace isobar

@@ -77,7 +77,8 @@ struct ServiceStatus {
   static constexpr std::size_t kMaxSensors = 8;
   static constexpr std::size_t kMaxStages = 8;
 
-  char role[16] = {};  // NOLINT(modernize-avoid-c-arrays): "robot" or "base-station"
+  char configuration[16] = {};  // NOLINT(modernize-avoid-c-arrays): hash of the one in force, config_hash()
+  char role[16] = {};           // NOLINT(modernize-avoid-c-arrays): "robot" or "base-station"
   double uptime_s = 0.0;
   std::uint32_t sensor_count = 0;
   std::uint32_t stage_count = 0;

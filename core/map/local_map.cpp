@@ -43,6 +43,15 @@ LocalMap::LocalMap(const MapConfig& config, const Eigen::Isometry3d& T_base_lida
       fitter_(config, [this](const TileKey& key) { return find_tile(key); }),
       seen_through_(config, T_base_lidar) {}
 
+void LocalMap::configure(const MapConfig& config) {
+  const MapConfig before = config_;
+  config_ = config;
+  config_.cell_m = before.cell_m;
+  config_.matcher = before.matcher;
+  fitter_ = PlaneFitter(config_, [this](const TileKey& key) { return find_tile(key); });
+  seen_through_ = SeenThrough(config_, T_base_lidar_);
+}
+
 bool LocalMap::wants(const PoseEstimate& pose) const {
   if (!started_) {
     return true;

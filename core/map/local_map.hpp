@@ -36,6 +36,9 @@ class LocalMap {
   /// s apart are decimated: each inserts another share of its points. Returns true if snapshot() changed.
   bool update(const RegisteredScan& scan);
 
+  /// Changes settings for the next updates, but not the cells' edge and the matcher, which the map has.
+  void configure(const MapConfig& config);
+
   /// Newest snapshot, never null, to be published by a SnapshotExchange.
   [[nodiscard]] const std::shared_ptr<const MapSnapshot>& snapshot() const { return snapshot_; }
 

@@ -20,6 +20,8 @@ class WheelOdometer {
  public:
   explicit WheelOdometer(const DeadReckoningConfig& config) : config_(config) {}
 
+  void configure(const DeadReckoningConfig& config) { config_ = config; }
+
   WheelStatus add(const WheelSample& sample);
 
   /// Displacement in base_link since the last call, up to `stamp_ns` [m]; zero where the wheels are not

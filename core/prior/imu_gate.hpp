@@ -23,6 +23,8 @@ class ImuGate {
  public:
   explicit ImuGate(const PriorLimits& limits) : limits_(limits) {}
 
+  void configure(const PriorLimits& limits) { limits_ = limits; }
+
   ImuStatus check(const ImuSample& sample);
   /// Time since the sample before; 0 with kFirst and after a jump back.
   [[nodiscard]] double dt_s() const { return dt_s_; }

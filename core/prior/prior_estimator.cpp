@@ -31,6 +31,14 @@ PriorEstimator::~PriorEstimator() = default;
 PriorEstimator::PriorEstimator(PriorEstimator&&) noexcept = default;
 PriorEstimator& PriorEstimator::operator=(PriorEstimator&&) noexcept = default;
 
+void PriorEstimator::configure(const PriorConfig& config) {
+  State& s = *state_;
+  s.config.limits = config.limits;
+  s.imu_gate.configure(config.limits);
+  s.standstill.configure(config.standstill);
+  s.wheels.configure(config.dead_reckoning);
+}
+
 const PriorCounters& PriorEstimator::counters() const { return state_->counters; }
 const BarometerHealth& PriorEstimator::barometers() const { return state_->barometers; }
 

@@ -72,6 +72,10 @@ class PriorEstimator {
   PriorEstimator(PriorEstimator&&) noexcept;
   PriorEstimator& operator=(PriorEstimator&&) noexcept;
 
+  /// Changes the limits, the standstill detection and the dead reckoning; the estimate goes on. Allocates
+  /// nothing.
+  void configure(const PriorConfig& config);
+
   /// True, and `out` filled, if the sample was accepted.
   bool add_imu(const ImuSample& sample, Prior& out);
   /// Raw samples: PriorConfig's calibrations are applied here and nowhere else.

@@ -14,6 +14,8 @@ class StandstillDetector {
  public:
   explicit StandstillDetector(const StandstillConfig& config) : config_(config) {}
 
+  void configure(const StandstillConfig& config) { config_ = config; }
+
   /// One IMU sample, base axes. `bias_sigma_rad_s`: standard deviation of the gyro bias. Of `force_m_s2` only
   /// the variance within a window counts.
   void add_imu(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& gyro_bias_rad_s,

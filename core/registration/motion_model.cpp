@@ -30,6 +30,12 @@ double non_negative_root(double x) { return std::sqrt(std::max(x, 0.0)); }
 
 }  // namespace
 
+void MotionModel::take_over(const MotionModel& other) {
+  const RegistrationConfig own = config_;
+  *this = other;
+  config_ = own;
+}
+
 void MotionModel::start(const Prior& prior) {
   const Eigen::Matrix3d& R = prior.T_odom_base.linear();
   T_map_base_.setIdentity();

@@ -27,6 +27,9 @@ class MotionModel {
  public:
   explicit MotionModel(const RegistrationConfig& config) : config_(config) {}
 
+  /// Takes over the motion of another model, not its configuration.
+  void take_over(const MotionModel& other);
+
   /// Starts at yaw 0 and x = y = 0, with roll and pitch of the prior; z is its height, 0 without a barometer.
   void start(const Prior& prior);
   [[nodiscard]] bool started() const { return started_; }

@@ -58,6 +58,15 @@ Registration::Registration(const RegistrationConfig& config, Method method,
   last_.method = method;
 }
 
+void Registration::take_over(const Registration& other) {
+  history_ = other.history_;  // rings of one length
+  motion_.take_over(other.motion_);
+  last_ = other.last_;
+  scans_without_gravity_ = other.scans_without_gravity_;
+  bootstrap_scans_ = other.bootstrap_scans_;
+  bootstrapping_ = other.bootstrapping_;
+}
+
 void Registration::add_prior(const Prior& prior) { history_.add(prior); }
 
 bool Registration::ready(const Scan& scan) const {

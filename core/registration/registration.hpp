@@ -28,6 +28,9 @@ class Registration {
   /// Appends a prior; priors come in order of time.
   void add_prior(const Prior& prior);
 
+  /// Takes over what another Registration with other settings has learnt: the pose goes on. Allocates nothing.
+  void take_over(const Registration& other);
+
   /// True where the priors reach the end of the scan: register_scan() then extrapolates nothing.
   [[nodiscard]] bool ready(const Scan& scan) const;
 

@@ -48,6 +48,10 @@ ReturnDecoder::ReturnDecoder(const VelodyneConfig& config)
     directions_[count] = {static_cast<float>(std::cos(azimuth_rad)),
                           -static_cast<float>(std::sin(azimuth_rad))};
   }
+  set_limits(config);
+}
+
+void ReturnDecoder::set_limits(const VelodyneConfig& config) {
   constexpr double kMaxCount = 65'535.0;
   // 1e-6 absorbs rounding: 0.3 m / 2 mm is 150.00000000000003.
   min_count_ = static_cast<std::uint32_t>(

@@ -30,6 +30,9 @@ class ReturnDecoder {
  public:
   explicit ReturnDecoder(const VelodyneConfig& config);
 
+  /// Changes the range and the masked sector, not the model. Allocates nothing.
+  void set_limits(const VelodyneConfig& config);
+
   /// Decodes blocks first_block … end_block - 1.
   /// @param since_start_ns time of the packet's first firing after the scan's start; all blocks decoded must
   ///         fire 0 … 262 ms after that start

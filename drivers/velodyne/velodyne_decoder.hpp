@@ -65,6 +65,9 @@ class VelodyneDecoder {
   /// @param current scan being filled
   DecodeResult add_packet(std::span<const std::uint8_t> payload, std::int64_t host_stamp_ns, Scan& current);
 
+  /// Changes the range and the masked sector, not the model. Allocates nothing.
+  void set_limits(const VelodyneConfig& config) { returns_.set_limits(config); }
+
   /// Ends the open revolution; true when `current` holds a scan.
   bool flush(Scan& current);
 

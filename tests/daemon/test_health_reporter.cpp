@@ -25,6 +25,8 @@ class TalkativeGraph final : public Graph {
   void fill_health(std::int64_t /*now_ns*/, ipc::HealthReport& report) override {
     for (int i = 0; i < entries_; ++i) add_entry(report, "stage", ipc::HealthLevel::kOk, "", i);
   }
+  Apply apply_of(const Setting& setting) const override { return setting.apply; }
+  void apply(const ConfigChange& /*change*/) override {}
 
  private:
   int entries_;

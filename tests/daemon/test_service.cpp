@@ -3,60 +3,24 @@
 
 #include <doctest/doctest.h>
 #include <signal.h>  // NOLINT(modernize-deprecated-headers): sigtimedwait is POSIX
-#include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
-#include <array>
-#include <cstdlib>
-#include <filesystem>
 #include <string>
 #include <vector>
+
+#include "tests/support/notify_socket.hpp"
 
 namespace isobar::test::test_service {
 
 namespace {
 
-/// Receiving socket of sd_notify(3), in place of the service manager.
-class NotifySocket {
- public:
-  NotifySocket() : path_(std::filesystem::temp_directory_path() / ("notify-" + std::to_string(::getpid()))) {
-    socket_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    path_.native().copy(address.sun_path, sizeof(address.sun_path) - 1);
-    std::filesystem::remove(path_);
-    REQUIRE(::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
-    ::setenv("NOTIFY_SOCKET", path_.c_str(), 1);
-  }
-  ~NotifySocket() {
-    ::unsetenv("NOTIFY_SOCKET");
-    ::close(socket_);
-    std::filesystem::remove(path_);
-  }
-  NotifySocket(const NotifySocket&) = delete;
-  NotifySocket& operator=(const NotifySocket&) = delete;
-
-  std::vector<std::string> messages() {
-    std::vector<std::string> all;
-    std::array<char, 512> bytes{};
-    for (ssize_t length = 0; (length = ::recv(socket_, bytes.data(), bytes.size(), 0)) > 0;) {
-      all.emplace_back(bytes.data(), static_cast<std::size_t>(length));
-    }
-    return all;
-  }
-
- private:
-  std::filesystem::path path_;
-  int socket_ = -1;
-};
-
-/// Clears pending stop signals of this process and unblocks both of them.
+/// Clears pending signals of the service in this process and unblocks them.
 void clear_signals() {
   sigset_t set;
   sigemptyset(&set);
   sigaddset(&set, SIGTERM);
   sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGHUP);
   const timespec now{};
   while (sigtimedwait(&set, nullptr, &now) > 0) {
   }
@@ -64,6 +28,24 @@ void clear_signals() {
 }
 
 }  // namespace
+
+TEST_CASE("SIGHUP asks for one reload and does not stop; a reload is told with its time") {
+  using namespace std::chrono_literals;
+  NotifySocket manager;
+  {
+    Service service;
+    CHECK_FALSE(service.take_reload_request());
+    ::kill(::getpid(), SIGHUP);
+    CHECK(service.wait_for(0ms));
+    CHECK(service.take_reload_request());
+    CHECK_FALSE(service.take_reload_request());
+    service.reloading();
+  }
+  clear_signals();
+  const auto messages = manager.messages();
+  REQUIRE(messages.size() == 1);
+  CHECK(messages[0].starts_with("RELOADING=1\nMONOTONIC_USEC="));
+}
 
 TEST_CASE("the supervise loop feeds the watchdog only in ticks with all threads alive, and ends on SIGTERM") {
   using namespace std::chrono_literals;

@@ -64,16 +64,22 @@ RegistrationRun::RegistrationRun(World world, Motion motion, MakePrior make_prio
     : world_(std::move(world)),
       motion_(std::move(motion)),
       make_prior_(std::move(make_prior)),
-      registration_(RegistrationConfig{}, method, run_lidar_mount()),
+      registration_(std::make_unique<Registration>(RegistrationConfig{}, method, run_lidar_mount())),
       map_(MapConfig{}, run_lidar_mount()) {
-  registration_.add_prior(make_prior_(kRunStartNs));
+  registration_->add_prior(make_prior_(kRunStartNs));
+}
+
+void RegistrationRun::rebuild(const RegistrationConfig& config, Method method) {
+  auto next = std::make_unique<Registration>(config, method, run_lidar_mount());
+  next->take_over(*registration_);
+  registration_ = std::move(next);
 }
 
 const PoseEstimate& RegistrationRun::step(bool scan_arrives) {
   constexpr std::int64_t kPriorNs = 5'000'000;
   const std::int64_t begin = kRunStartNs + index_++ * kRunScanNs;
   for (std::int64_t t = begin + kPriorNs; t <= begin + kRunScanNs + kPriorNs; t += kPriorNs) {
-    registration_.add_prior(make_prior_(t));
+    registration_->add_prior(make_prior_(t));
   }
   if (scan_arrives) {
     scan_world(world_, motion_, run_lidar_mount(), begin, kNoiseM, random_, *scan_);
@@ -90,7 +96,7 @@ void RegistrationRun::steps(int count) {
 
 const PoseEstimate& RegistrationRun::register_scan() {
   const std::size_t before = allocation_count();
-  registration_.register_scan(*scan_, *map_.snapshot(), *out_);
+  registration_->register_scan(*scan_, *map_.snapshot(), *out_);
   allocations_ += allocation_count() - before;
   map_.update(*out_);
   return out_->pose;

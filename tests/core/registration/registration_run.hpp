@@ -52,7 +52,9 @@ class RegistrationRun {
   [[nodiscard]] double rotation_error_deg() const;
 
   [[nodiscard]] const PoseEstimate& pose() const { return out_->pose; }
-  Registration& registration() { return registration_; }
+  Registration& registration() { return *registration_; }
+  /// Builds the registration anew with other settings, as a live run does when its configuration changes.
+  void rebuild(const RegistrationConfig& config, Method method);
   Scan& scan() { return *scan_; }
   /// Replaces the world from the next scan on.
   void enter(const World& world) { world_ = world; }
@@ -63,7 +65,7 @@ class RegistrationRun {
   World world_;
   Motion motion_;
   MakePrior make_prior_;
-  Registration registration_;
+  std::unique_ptr<Registration> registration_;
   LocalMap map_;
   std::mt19937 random_{42};
   std::int64_t index_ = 0;

@@ -21,6 +21,7 @@
 #include "drivers/clock/robot_clock.hpp"
 #include "ipc/shared_memory.hpp"
 #include "tests/integration/live/stopped_thread.hpp"
+#include "tests/integration/live/tap.hpp"
 #include "tests/ipc/child_process.hpp"
 
 namespace isobar::test::test_stall {
@@ -28,71 +29,19 @@ namespace isobar::test::test_stall {
 namespace {
 
 using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
+using test::check_steady;
 using test::ChildProcess;
+using test::Drive;
+using test::Pose;
 using test::StoppedThread;
+using test::Tap;
 
 constexpr std::int64_t kMs = 1'000'000;
 
-/// A simulated drive of 20 s with its configuration, made once.
-struct Drive {
-  std::string recording = std::filesystem::temp_directory_path() / "stall-recording";
-  std::string config = std::filesystem::temp_directory_path() / "stall.toml";
-  Drive() {
-    ChildProcess simulate({ISOBAR_PROGRAM, "simulate", "stairs-demo", "--seed", "5", "--short",
-                           "--stop-after", "20", "--out", recording});
-    REQUIRE(simulate.wait(300s) == 0);
-    ChildProcess show(
-        {"/bin/sh", "-c",
-         std::string(ISOBAR_PROGRAM) + " config show --sensors-of " + recording + " >" + config});
-    REQUIRE(show.wait(20s) == 0);
-  }
-};
 const Drive& drive() {
-  static const Drive once;
+  static const Drive once("stall");
   return once;
 }
-
-struct Pose {
-  PoseEstimate estimate;
-  std::int64_t received_ns = 0;
-};
-
-/// A reader of shared memory outside isobard. A process can attach only once, so that all tests share one run
-/// of isobard.
-class Tap {
- public:
-  /// Collects messages for `duration`.
-  void gather(std::chrono::milliseconds duration) {
-    const auto end = std::chrono::steady_clock::now() + duration;
-    while (std::chrono::steady_clock::now() < end) {
-      REQUIRE(waiter_.wait_for(20ms) != ipc::Waiter::Event::kStopped);
-      while (const auto scan = scans_.take()) scan_ends_ns.push_back(scan->end_stamp_ns);
-      while (const auto pose = poses_.take()) poses.push_back({*pose, RobotClock::now_ns()});
-      if (const auto report = reports_.take_latest()) health = *report;
-    }
-  }
-  [[nodiscard]] const ipc::HealthEntry* entry(const std::string& name) const {
-    for (std::uint32_t i = 0; i < health.entry_count; ++i) {
-      if (name == health.entries[i].name) return &health.entries[i];
-    }
-    return nullptr;
-  }
-  void forget() {
-    scan_ends_ns.clear();
-    poses.clear();
-  }
-
-  std::vector<std::int64_t> scan_ends_ns;
-  std::vector<Pose> poses;
-  ipc::HealthReport health;
-
- private:
-  ipc::Attachment attachment_{"stall-test", 10s};
-  ipc::Subscriber<Scan> scans_{ipc::topics::kLidarScan};
-  ipc::Subscriber<PoseEstimate> poses_{ipc::topics::kPose};
-  ipc::Subscriber<ipc::HealthReport> reports_{ipc::topics::kHealth};
-  ipc::Waiter waiter_{&scans_.raw(), &poses_.raw(), &reports_.raw()};
-};
 
 /// Receiving socket of the watchdog, in place of the service manager.
 class Manager {
@@ -143,19 +92,6 @@ void check_one_pose_a_scan(const Tap& tap) {
       found += std::abs(pose.estimate.stamp_ns - end_ns) <= kRevolutionJitterNs ? 1 : 0;
     }
     CHECK(found == 1);
-  }
-}
-
-/// Poses are in order of time. Successive ones differ by at most 2 m/s times the elapsed time plus
-/// `correction_m`, the largest correction of a prior by the registration.
-void check_steady(const std::vector<Pose>& poses, double correction_m) {
-  for (std::size_t i = 1; i < poses.size(); ++i) {
-    const PoseEstimate& before = poses[i - 1].estimate;
-    const PoseEstimate& now = poses[i].estimate;
-    CHECK(now.stamp_ns > before.stamp_ns);
-    const double elapsed_s = static_cast<double>(now.stamp_ns - before.stamp_ns) * 1e-9;
-    CHECK((now.T_map_base.translation() - before.T_map_base.translation()).norm() <
-          correction_m + 2.0 * elapsed_s);
   }
 }
 
