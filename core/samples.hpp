@@ -22,6 +22,13 @@ struct ImuSample {
   bool has_attitude = false;                                        ///< q_world_imu is valid
 };
 
+/// Way on which a sample reached this machine.
+enum class SamplePath : std::uint8_t {
+  kLocal,     ///< a sensor of this machine, or a recording
+  kDatagram,  ///< sample datagram (UDP)
+  kDds,       ///< isobar-dds
+};
+
 /// One barometer sample, of the robot or of a base station.
 struct PressureSample {
   std::int64_t stamp_ns = 0;   ///< time of the measurement, robot clock, also of a base station's sample
@@ -30,6 +37,7 @@ struct PressureSample {
   /// White noise of this sample as stated by its sender [Pa^2], NaN if unknown.
   double variance_pa2 = std::numeric_limits<double>::quiet_NaN();
   std::uint8_t station = 0;  ///< base station: 0 the first, 1 the second
+  SamplePath path = SamplePath::kLocal;
 };
 
 /// Wheel odometry: twist of base_link in base_link.

@@ -35,21 +35,34 @@ void BaseStationStream::Clock::add(std::int64_t stamp_ns, std::int64_t receive_n
   ++samples;
 }
 
-BaseVerdict BaseStationStream::check(std::uint64_t sender, PressureSample& sample,
-                                     std::int64_t receive_ns) noexcept {
-  const std::uint64_t print = fingerprint(sample);
+BaseVerdict BaseStationStream::check(std::uint64_t sender, PressureSample& sample, std::int64_t receive_ns,
+                                     const SystemClockWatch* system) noexcept {
+  const std::uint64_t print = fingerprint(sample);  // of the stamp as sent
+  if (system != nullptr) {
+    sample.stamp_ns = without_steps_ns(sender, sample.stamp_ns, receive_ns, *system);
+  }
   const BaseVerdict verdict = verdict_on(sender, sample, print, receive_ns);
   if (verdict == BaseVerdict::kAccepted) accept(sample, print, receive_ns);
   ++status_.samples[static_cast<std::size_t>(verdict)];
   return verdict;
 }
 
+std::int64_t BaseStationStream::without_steps_ns(std::uint64_t sender, std::int64_t stamp_ns,
+                                                 std::int64_t receive_ns,
+                                                 const SystemClockWatch& system) noexcept {
+  Clock& clock = sender == clock_.sender ? clock_ : sender == previous_.sender ? previous_ : candidate_;
+  const bool continues = clock.samples > 0 && clock.sender == sender;
+  return clock.steps.without_steps_ns(stamp_ns, receive_ns - clock.anchor.offset_ns(), continues, system);
+}
+
 BaseVerdict BaseStationStream::verdict_on(std::uint64_t sender, const PressureSample& sample,
                                           std::uint64_t print, std::int64_t receive_ns) noexcept {
   if (!cadence_.started()) {
     clock_.sender = sender;
+    clock_.steps = candidate_.steps;
     return BaseVerdict::kAccepted;
   }
+  if (returns(sender, sample.stamp_ns, receive_ns) && !remembers(print)) take_back();
   const bool is_new = sender != clock_.sender;
   if (is_new && !may_follow(sender, receive_ns)) {
     note_rival(sender, receive_ns);
@@ -60,17 +73,43 @@ BaseVerdict BaseStationStream::verdict_on(std::uint64_t sender, const PressureSa
     if (candidate_.sender == sender) candidate_.samples = 0;
     return BaseVerdict::kRepeated;
   }
-  const BaseVerdict verdict = is_new ? BaseVerdict::kUnconfirmed : judge(sample.stamp_ns, receive_ns);
+  const BaseVerdict verdict = is_new ? BaseVerdict::kUnconfirmed : judge(clock_, sample.stamp_ns, receive_ns);
   if (verdict == BaseVerdict::kAccepted || !confirms(sender, sample.stamp_ns, receive_ns)) return verdict;
+  replace(is_new);
+  return BaseVerdict::kAccepted;
+}
+
+void BaseStationStream::replace(bool is_new) noexcept {
   ++(is_new ? status_.restarts : status_.clock_steps);
-  clock_ = candidate_;
   if (is_new) {
+    previous_ = clock_;
     cadence_.restart();
     left_ = false;
     rivals_ = {};
     next_rival_ = 0;
+  } else {
+    candidate_.steps = clock_.steps;
   }
-  return BaseVerdict::kAccepted;
+  clock_ = candidate_;
+}
+
+bool BaseStationStream::returns(std::uint64_t sender, std::int64_t stamp_ns,
+                                std::int64_t receive_ns) const noexcept {
+  return previous_.samples > 0 && sender == previous_.sender && sender != clock_.sender &&
+         judge(previous_, stamp_ns, receive_ns) == BaseVerdict::kAccepted;
+}
+
+// The usurper is now known as another base station beside this one.
+void BaseStationStream::take_back() noexcept {
+  ++status_.returns;
+  rivals_ = {};
+  rivals_[0] = {clock_.sender, true, true};
+  next_rival_ = 1;
+  clock_ = previous_;
+  previous_.samples = 0;
+  candidate_.samples = 0;
+  cadence_.restart();
+  left_ = false;
 }
 
 const BaseStationStream::Rival* BaseStationStream::find_rival(std::uint64_t sender) const noexcept {
@@ -85,8 +124,10 @@ bool BaseStationStream::may_follow(std::uint64_t sender, std::int64_t receive_ns
                                 receive_ns - candidate_.newest_receive_ns <= kCandidateSilenceNs;
   if (other_is_watched) return false;
   const Rival* rival = find_rival(sender);
-  if (rival == nullptr || !rival->is_beside) return lost(receive_ns);
-  return receive_ns - cadence_.last_ns() > std::max(config_.takeover_ns, cadence_.limit_ns());
+  const bool is_beside = rival != nullptr && rival->is_beside;
+  if (!is_beside && left_) return true;
+  const std::int64_t silence_ns = is_beside ? config_.takeover_ns : config_.replace_ns;
+  return receive_ns - cadence_.last_ns() > std::max(silence_ns, cadence_.limit_ns());
 }
 
 void BaseStationStream::note_rival(std::uint64_t sender, std::int64_t receive_ns) noexcept {
@@ -98,9 +139,10 @@ void BaseStationStream::note_rival(std::uint64_t sender, std::int64_t receive_ns
   next_rival_ = (next_rival_ + 1) % kRivals;
 }
 
-BaseVerdict BaseStationStream::judge(std::int64_t stamp_ns, std::int64_t receive_ns) const noexcept {
-  const std::int64_t late_ns = clock_.lateness_ns(stamp_ns, receive_ns);
-  if (stamp_ns <= clock_.newest_ns) return BaseVerdict::kOutdated;
+BaseVerdict BaseStationStream::judge(const Clock& clock, std::int64_t stamp_ns,
+                                     std::int64_t receive_ns) const noexcept {
+  const std::int64_t late_ns = clock.lateness_ns(stamp_ns, receive_ns);
+  if (stamp_ns <= clock.newest_ns) return BaseVerdict::kOutdated;
   if (late_ns < -config_.max_early_ns) return BaseVerdict::kAhead;
   return late_ns > config_.max_age_ns ? BaseVerdict::kTooOld : BaseVerdict::kAccepted;
 }

@@ -8,6 +8,7 @@
 #include "core/samples.hpp"
 #include "core/time/cadence.hpp"
 #include "core/time/clock_anchor.hpp"
+#include "core/time/system_clock_watch.hpp"
 
 namespace isobar {
 
@@ -26,6 +27,9 @@ struct BaseStationConfig {
   std::int64_t agreement_ns = 250'000'000;
   /// Shortest duration of these samples, on both clocks [ns].
   std::int64_t confirm_ns = 500'000'000;
+  /// Silence after which a sender that was never heard beside the one in use, such as a restart of it,
+  /// replaces it [ns]. An ended sender is replaced at once.
+  std::int64_t replace_ns = 5'000'000'000;
   /// Silence after which another base station of the same name, heard beside the one in use, replaces it
   /// [ns]. Longer than the altimeter's default time-out: the altimeter reports the loss before it receives
   /// samples of the other one.
@@ -48,6 +52,7 @@ struct BaseStationStatus {
   std::array<std::uint64_t, 7> samples{};  ///< by BaseVerdict
   std::uint64_t outages = 0;               ///< silences that ended
   std::uint64_t restarts = 0;              ///< replacements of a lost sender
+  std::uint64_t returns = 0;               ///< returns of a replaced sender, which is used again
   std::uint64_t clock_steps = 0;           ///< settings of the base's clock
   std::int64_t last_ns = 0;         ///< arrival of the newest accepted sample, robot clock; 0: none yet
   std::int64_t interval_ns = 0;     ///< learnt sample interval; 0: unknown
@@ -74,9 +79,10 @@ struct BaseStationStatus {
 /// its samples are among the last 4000 or more, which are remembered. Not detectable: a replay of never
 /// received samples while there is no base, which looks like a base with a wrong clock.
 ///
-/// The first sender is used; a new one replaces it after it is lost. A sender heard beside it is another base
-/// station at another place: its samples are never mixed in, and it replaces the one in use only after a
-/// silence of takeover_ns. No allocation; single thread.
+/// The first sender is used; a new one replaces it after it has ended or was silent for replace_ns. A sender
+/// heard beside it is another base station at another place: its samples are never mixed in, and it replaces
+/// the one in use only after a silence of takeover_ns. A replaced sender that returns on its known clock is
+/// used again at once, so that no other one can lock it out. No allocation; single thread.
 class BaseStationStream {
  public:
   explicit BaseStationStream(const BaseStationConfig& config = {});
@@ -85,7 +91,9 @@ class BaseStationStream {
   /// @param sample plausible, stamp on the sender's clock; if kAccepted, its stamp is replaced by the robot's
   ///        clock, strictly ascending
   /// @param receive_ns time of arrival, robot clock
-  BaseVerdict check(std::uint64_t sender, PressureSample& sample, std::int64_t receive_ns) noexcept;
+  /// @param system steps of this machine's system clock, which senders on it share; null: unknown
+  BaseVerdict check(std::uint64_t sender, PressureSample& sample, std::int64_t receive_ns,
+                    const SystemClockWatch* system = nullptr) noexcept;
 
   /// The sender has ended (a DDS writer was deleted).
   void sender_gone(std::uint64_t sender) noexcept;
@@ -98,6 +106,7 @@ class BaseStationStream {
   /// Clock of a base station, estimated from its samples.
   struct Clock {
     ClockAnchor anchor;
+    SenderClock steps;
     std::int64_t first_ns = 0;          // base's clock
     std::int64_t first_receive_ns = 0;  // robot's
     std::int64_t newest_ns = 0;
@@ -128,10 +137,19 @@ class BaseStationStream {
 
   [[nodiscard]] BaseVerdict verdict_on(std::uint64_t sender, const PressureSample& sample,
                                        std::uint64_t print, std::int64_t receive_ns) noexcept;
+  /// The stamp without the steps of the system clock that this sender shares.
+  [[nodiscard]] std::int64_t without_steps_ns(std::uint64_t sender, std::int64_t stamp_ns,
+                                              std::int64_t receive_ns,
+                                              const SystemClockWatch& system) noexcept;
+  [[nodiscard]] bool returns(std::uint64_t sender, std::int64_t stamp_ns,
+                             std::int64_t receive_ns) const noexcept;
+  void take_back() noexcept;
+  void replace(bool is_new) noexcept;
   [[nodiscard]] bool may_follow(std::uint64_t sender, std::int64_t receive_ns) const noexcept;
   [[nodiscard]] const Rival* find_rival(std::uint64_t sender) const noexcept;
   void note_rival(std::uint64_t sender, std::int64_t receive_ns) noexcept;
-  [[nodiscard]] BaseVerdict judge(std::int64_t stamp_ns, std::int64_t receive_ns) const noexcept;
+  [[nodiscard]] BaseVerdict judge(const Clock& clock, std::int64_t stamp_ns,
+                                  std::int64_t receive_ns) const noexcept;
   [[nodiscard]] bool confirms(std::uint64_t sender, std::int64_t stamp_ns, std::int64_t receive_ns) noexcept;
   void accept(PressureSample& sample, std::uint64_t print, std::int64_t receive_ns) noexcept;
   [[nodiscard]] static std::uint64_t fingerprint(const PressureSample& sample) noexcept;
@@ -141,6 +159,7 @@ class BaseStationStream {
   BaseStationConfig config_;
   Clock clock_;
   Clock candidate_;
+  Clock previous_;  // of the replaced sender; without samples: none
   Cadence cadence_;
   BaseStationStatus status_;
   bool left_ = false;

@@ -6,10 +6,6 @@
 namespace isobar {
 namespace {
 
-/// The kernel stamps a datagram milliseconds before it is read. A wall-clock stamp older than this, or in the
-/// future, was taken before the wall clock was set.
-constexpr std::int64_t kMaxAgeNs = 1'000'000'000;
-
 std::int64_t read_clock(clockid_t clock) {
   timespec now{};
   clock_gettime(clock, &now);
@@ -20,17 +16,29 @@ std::int64_t read_clock(clockid_t clock) {
 
 std::int64_t monotonic_ns() noexcept { return read_clock(CLOCK_MONOTONIC); }
 
+ClockPair read_clocks() noexcept {
+  // A reading that took longer was interrupted between the clocks: read again.
+  constexpr std::int64_t kUsualNs = 20'000;
+  constexpr int kAttempts = 3;
+  ClockPair best{0, 0, INT64_MAX};
+  for (int attempt = 0; attempt < kAttempts && best.apart_ns > kUsualNs; ++attempt) {
+    const std::int64_t before_ns = monotonic_ns();
+    const std::int64_t system_ns = read_clock(CLOCK_REALTIME);
+    const std::int64_t after_ns = monotonic_ns();
+    const std::int64_t apart_ns = after_ns - before_ns;
+    if (apart_ns < best.apart_ns) best = {before_ns + apart_ns / 2, system_ns, apart_ns};
+  }
+  return best;
+}
+
 std::int64_t RobotClock::offset_ns() noexcept {
-  static const std::int64_t offset_ns = read_clock(CLOCK_REALTIME) - read_clock(CLOCK_MONOTONIC);
+  static const std::int64_t offset_ns = [] {
+    const ClockPair now = read_clocks();
+    return now.system_ns - now.monotonic_ns;
+  }();
   return offset_ns;
 }
 
 std::int64_t RobotClock::now_ns() noexcept { return monotonic_ns() + offset_ns(); }
-
-std::int64_t RobotClock::from_realtime_ns(std::int64_t realtime_ns) noexcept {
-  const std::int64_t age_ns = read_clock(CLOCK_REALTIME) - realtime_ns;
-  const bool believable = age_ns >= 0 && age_ns <= kMaxAgeNs;
-  return now_ns() - (believable ? age_ns : 0);
-}
 
 }  // namespace isobar

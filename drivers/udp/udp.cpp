@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -20,6 +21,9 @@ namespace {
 
 /// Requested socket buffer, 3 s of a VLP-16's packets; the kernel caps it at net.core.rmem_max.
 constexpr int kReceiveBufferBytes = 4 * 1024 * 1024;
+/// Interval of the attempts to open a socket whose address or port is not there yet.
+constexpr std::int64_t kRetryNs = 1'000'000'000;
+
 std::string place(const std::string& address, std::uint16_t port) {
   return "UDP " + address + ":" + std::to_string(port);
 }
@@ -34,17 +38,20 @@ sockaddr_in parse_address(const std::string& address, std::uint16_t port) {
   return result;
 }
 
-[[noreturn]] void fail_bind(const std::string& address, std::uint16_t port, int error) {
+/// Refusals that another moment may lift; any other one is a fault of the configuration.
+bool may_pass(int error) { return error != EACCES && error != EPERM && error != EAFNOSUPPORT; }
+
+std::string refusal_text(const std::string& address, std::uint16_t port, int error) {
   const std::string where = place(address, port) + ": ";
   switch (error) {
     case EADDRINUSE:
-      throw ServiceError(where + "the port is in use by another program");
+      return where + "the port is in use by another program, which `ss -lunp` names";
     case EADDRNOTAVAIL:
-      throw ServiceError(where + "no network interface of this machine has that address");
+      return where + "no network interface of this machine has that address, see `ip address`";
     case EACCES:
-      throw ServiceError(where + "ports below 1024 need the capability CAP_NET_BIND_SERVICE");
+      return where + "ports below 1024 need the capability CAP_NET_BIND_SERVICE";
     default:
-      throw ServiceError(where + "cannot be opened: " + std::strerror(error));
+      return where + "cannot be opened: " + std::strerror(error);
   }
 }
 
@@ -79,18 +86,46 @@ Ancillary read_ancillary(msghdr& message) {
 
 }  // namespace
 
-UdpReceiver::UdpReceiver(const std::string& address, std::uint16_t port) : buffer_(65'536) {
-  const sockaddr_in where = parse_address(address, port);
-  [[maybe_unused]] const std::int64_t fixed_ns =
-      RobotClock::offset_ns();  // fixed now, not by the first datagram
-  socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+std::string ipv4_text(std::uint32_t ipv4) {
+  const in_addr address{htonl(ipv4)};
+  std::array<char, INET_ADDRSTRLEN> text{};
+  inet_ntop(AF_INET, &address, text.data(), text.size());
+  return text.data();
+}
+
+std::uint32_t ipv4_of(const std::string& text) {
+  in_addr address{};
+  return inet_pton(AF_INET, text.c_str(), &address) == 1 ? ntohl(address.s_addr) : 0;
+}
+
+UdpReceiver::UdpReceiver(const std::string& address, std::uint16_t port, ClockSource clocks)
+    : address_(address), wanted_port_(port), port_(port), buffer_(65'536), clock_(clocks) {
+  static_cast<void>(parse_address(address, port));
   stop_event_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  if (socket_ < 0 || stop_event_ < 0 ||
-      bind(socket_, reinterpret_cast<const sockaddr*>(&where), sizeof where) != 0) {
-    const int error = errno;
-    close(socket_);
+  const int error = stop_event_ < 0 ? errno : open();
+  if (stop_event_ < 0 || (error != 0 && !may_pass(error))) {
     close(stop_event_);
-    fail_bind(address, port, error);
+    throw ServiceError(refusal_text(address, port, error));
+  }
+}
+
+UdpReceiver::~UdpReceiver() {
+  close_socket();
+  close(stop_event_);
+}
+
+int UdpReceiver::open() noexcept {
+  next_attempt_ns_ = monotonic_ns() + kRetryNs;
+  sockaddr_in where{};
+  where.sin_family = AF_INET;
+  where.sin_port = htons(wanted_port_);
+  inet_pton(AF_INET, address_.c_str(), &where.sin_addr);
+  socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (socket_ < 0 || bind(socket_, reinterpret_cast<const sockaddr*>(&where), sizeof where) != 0) {
+    const int error = errno;
+    close_socket();
+    refusal_.store(error, std::memory_order_relaxed);
+    return error;
   }
   set_option(socket_, SO_RCVBUF, kReceiveBufferBytes);
   set_option(socket_, SO_TIMESTAMPNS, 1);
@@ -98,15 +133,36 @@ UdpReceiver::UdpReceiver(const std::string& address, std::uint16_t port) : buffe
   sockaddr_in bound{};
   socklen_t length = sizeof bound;
   getsockname(socket_, reinterpret_cast<sockaddr*>(&bound), &length);
-  port_ = ntohs(bound.sin_port);
+  port_.store(ntohs(bound.sin_port), std::memory_order_relaxed);
+  last_overflow_ = 0;
+  refusal_.store(0, std::memory_order_relaxed);
+  return 0;
 }
 
-UdpReceiver::~UdpReceiver() {
-  close(socket_);
-  close(stop_event_);
+void UdpReceiver::close_socket() noexcept {
+  if (socket_ >= 0) close(socket_);
+  socket_ = -1;
+}
+
+std::string UdpReceiver::waiting_for() const {
+  const int error = refusal_.load(std::memory_order_relaxed);
+  return error == 0 ? std::string{} : refusal_text(address_, wanted_port_, error);
+}
+
+UdpReceiver::Status UdpReceiver::wait_for_address(int timeout_ms) noexcept {
+  const std::int64_t due_ns = next_attempt_ns_ - monotonic_ns();
+  if (due_ns <= 0) {
+    open();
+    return Status::kTimeout;
+  }
+  const int due_ms = static_cast<int>(due_ns / 1'000'000) + 1;
+  pollfd wait{stop_event_, POLLIN, 0};
+  const int ready = poll(&wait, 1, timeout_ms < 0 ? due_ms : std::min(timeout_ms, due_ms));
+  return ready > 0 ? Status::kStopped : Status::kTimeout;
 }
 
 UdpReceiver::Status UdpReceiver::receive(ReceivedDatagram& datagram, int timeout_ms) {
+  if (socket_ < 0) return wait_for_address(timeout_ms);
   std::array<pollfd, 2> waits{pollfd{socket_, POLLIN, 0}, pollfd{stop_event_, POLLIN, 0}};
   const int ready = poll(waits.data(), waits.size(), timeout_ms);
   if (ready == 0 || (ready < 0 && errno == EINTR)) {
@@ -115,9 +171,10 @@ UdpReceiver::Status UdpReceiver::receive(ReceivedDatagram& datagram, int timeout
   if (ready < 0) {
     return Status::kError;
   }
-  if (waits[1].revents != 0) {
-    return Status::kStopped;
-  }
+  return waits[1].revents != 0 ? Status::kStopped : read(datagram);
+}
+
+UdpReceiver::Status UdpReceiver::read(ReceivedDatagram& datagram) noexcept {
   iovec bytes{buffer_.data(), buffer_.size()};
   alignas(cmsghdr) std::array<char, 128> control;
   sockaddr_in sender{};
@@ -130,7 +187,11 @@ UdpReceiver::Status UdpReceiver::receive(ReceivedDatagram& datagram, int timeout
   message.msg_controllen = control.size();
   const ssize_t length = recvmsg(socket_, &message, 0);
   if (length < 0) {
-    return errno == EAGAIN || errno == EINTR ? Status::kTimeout : Status::kError;
+    if (errno == EAGAIN || errno == EINTR) return Status::kTimeout;
+    refusal_.store(errno, std::memory_order_relaxed);
+    next_attempt_ns_ = monotonic_ns();
+    close_socket();  // opened anew by the next receive()
+    return Status::kError;
   }
   const Ancillary ancillary = read_ancillary(message);
   if (ancillary.has_overflow) {  // the kernel's counter wraps at 2^32
@@ -139,8 +200,8 @@ UdpReceiver::Status UdpReceiver::receive(ReceivedDatagram& datagram, int timeout
   }
   datagram.payload = {buffer_.data(), static_cast<std::size_t>(length)};
   datagram.stamp_ns =
-      ancillary.realtime_ns == 0 ? RobotClock::now_ns() : RobotClock::from_realtime_ns(ancillary.realtime_ns);
-  datagram.sender_ipv4 = ntohl(sender.sin_addr.s_addr);
+      ancillary.realtime_ns == 0 ? clock_.now_ns() : clock_.to_robot_ns(ancillary.realtime_ns);
+  datagram.sender = {ntohl(sender.sin_addr.s_addr), ntohs(sender.sin_port)};
   datagram.cut = (message.msg_flags & MSG_TRUNC) != 0;
   return Status::kDatagram;
 }

@@ -21,7 +21,7 @@ TEST_CASE(
     for (std::int64_t i = 0; i < 320; ++i) robot.give(before, i);
     if (goodbye) robot.stream.sender_gone(kFirst);
     CHECK(robot.stream.lost(kRobot + 10 * kSecond) == goodbye);
-    const std::int64_t back = goodbye ? 321 : 337;  // at 32 Hz: at once, or after half a second of silence
+    const std::int64_t back = goodbye ? 321 : 481;  // at 32 Hz: at once, or after 5 s of silence
     for (std::int64_t i = back; i < back + 64; ++i) {
       // Half a second of confirmation: no single message can replace a base.
       CHECK(robot.give(after, i, 2 * kMs, kSecondSender) == (i < back + 16 ? V::kUnconfirmed : V::kAccepted));
@@ -60,7 +60,41 @@ TEST_CASE(
       CHECK(robot.give(other, i, 3 * kMs, kSecondSender) ==
             (i < takeover + 16 ? V::kUnconfirmed : V::kAccepted));
     }
-    CHECK(robot.give(base, takeover + 64) == V::kOtherSender);
+  }
+}
+
+TEST_CASE("A first base station that returns after it was replaced is used again at once, and stays") {
+  const Base base;
+  Base other;
+  other.pressure_pa = 97'900.0;
+  Listener robot;
+  for (std::int64_t i = 0; i < 320; ++i) {
+    robot.give(base, i);
+    robot.give(other, i, 3 * kMs, kSecondSender);
+  }
+  const std::int64_t replaced = 320 + base.samples_in(16 * kSecond);
+  for (std::int64_t i = 320; i < replaced; ++i) robot.give(other, i, 3 * kMs, kSecondSender);
+  REQUIRE(robot.stream.sender() == kSecondSender);
+  for (std::int64_t i = replaced; i < replaced + 320; ++i) {
+    CHECK(robot.give(base, i) == V::kAccepted);
+    CHECK(robot.give(other, i, 3 * kMs, kSecondSender) == V::kOtherSender);
+  }
+  CHECK(robot.stream.status().returns == 1);
+  CHECK(robot.worst_error_ms < 5.0);
+}
+
+TEST_CASE("In a gap of 1 s of the true base station a rogue neither takes over nor locks it out") {
+  const Base base;
+  Base rogue;
+  rogue.pressure_pa = 97'900.0;
+  Listener robot;
+  for (std::int64_t i = 0; i < 320; ++i) robot.give(base, i);
+  for (std::int64_t i = 320; i < 352; ++i) {
+    CHECK(robot.give(rogue, i, 3 * kMs, kSecondSender) == V::kOtherSender);
+  }
+  for (std::int64_t i = 352; i < 992; ++i) {
+    CHECK(robot.give(base, i) == V::kAccepted);
+    CHECK(robot.give(rogue, i, 3 * kMs, kSecondSender) == V::kOtherSender);
   }
 }
 
@@ -83,13 +117,13 @@ TEST_CASE("A slow base restarted before its silence is detected does not count a
   const Base base = base_at(1.0);
   Listener robot;
   for (std::int64_t i = 0; i < 20; ++i) robot.give(base, i);
-  // Killed and back within 2 s without notice: four silent seconds must pass and three samples agree.
+  // Killed and back within 2 s without notice: five silent seconds must pass and three samples agree.
   std::int64_t first_taken = 0;
   for (std::int64_t i = 21; i < 40 && first_taken == 0; ++i) {
     if (robot.give(base, i, 2 * kMs, kSecondSender) == V::kAccepted) first_taken = i;
   }
-  CHECK(first_taken >= 24);
-  CHECK(first_taken <= 26);
+  CHECK(first_taken >= 25);
+  CHECK(first_taken <= 27);
   CHECK(robot.stream.status().restarts == 1);
   CHECK(robot.stream.status().rival_ns == 0);
 }

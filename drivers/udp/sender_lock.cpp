@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/udp/sender_lock.hpp"
+
+#include <algorithm>
+
+namespace isobar {
+
+bool SenderLock::admits(const SenderAddress& sender, std::int64_t now_ns) noexcept {
+  if (!is_allowed(sender.ipv4)) return refuse(sender, now_ns);
+  if (status_.in_use.ipv4 == 0 || status_.in_use == sender) return admit(sender, now_ns);
+  if (now_ns - heard_ns_ > kTakeoverNs) {
+    ++status_.takeovers;
+    status_.takeover_ns = now_ns;
+    contested_ = false;
+    earlier_port_ = 0;
+    return admit(sender, now_ns);
+  }
+  if (status_.in_use.ipv4 != sender.ipv4) return refuse(sender, now_ns);
+  if (sender.port == earlier_port_ && !contested_) {
+    contested_ = true;
+    const SenderAddress later = status_.in_use;
+    admit(sender, now_ns);
+    static_cast<void>(refuse(later, now_ns));
+    return true;
+  }
+  if (contested_) return refuse(sender, now_ns);
+  earlier_port_ = status_.in_use.port;
+  return admit(sender, now_ns);
+}
+
+bool SenderLock::is_allowed(std::uint32_t ipv4) const noexcept {
+  return allowed_.empty() || std::find(allowed_.begin(), allowed_.end(), ipv4) != allowed_.end();
+}
+
+bool SenderLock::admit(const SenderAddress& sender, std::int64_t now_ns) noexcept {
+  status_.in_use = sender;
+  heard_ns_ = now_ns;
+  return true;
+}
+
+bool SenderLock::refuse(const SenderAddress& sender, std::int64_t now_ns) noexcept {
+  status_.other = sender;
+  status_.other_ns = now_ns;
+  ++status_.refused;
+  return false;
+}
+
+}  // namespace isobar
