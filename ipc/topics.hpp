@@ -70,6 +70,9 @@ struct HealthReport {
   /// processes of the machine, so a reader gets the current robot time by adding this offset to its own
   /// reading.
   std::int64_t robot_clock_offset_ns = 0;
+  /// System clock (CLOCK_REALTIME) minus robot clock at this report: 0 until somebody sets the system clock.
+  /// Added to a stamp it gives the time of day.
+  std::int64_t system_clock_ahead_ns = 0;
   ServiceStatus status;
   std::uint32_t entry_count = 0;     ///< entries[0 … entry_count-1] are valid
   HealthEntry entries[kMaxEntries];  // NOLINT(modernize-avoid-c-arrays): payload in shared memory

@@ -5,6 +5,7 @@
 
 #include "daemon/base_station_health.hpp"
 #include "daemon/logging.hpp"
+#include "drivers/clock/robot_clock.hpp"
 
 namespace isobar::bridge {
 namespace {
@@ -84,9 +85,20 @@ std::chrono::nanoseconds Forwarding::silence() const noexcept {
 
 void Forwarding::note_data() noexcept { last_data_ns_.store(steady_ns(), std::memory_order_relaxed); }
 
+// Published stamps follow the system clock, which consumers compare them with; isobard's own never jump.
+void Forwarding::follow_system_clock() noexcept {
+  if (!system_clock_) return;
+  system_clock_->note(read_clocks());
+  const std::int64_t shift_ns = system_clock_->ahead_ns();
+  stamp_shift_ns_.store(shift_ns, std::memory_order_relaxed);
+  if (outputs_.poses) outputs_.poses->set_stamp_shift_ns(shift_ns);
+}
+
 void Forwarding::forward_poses() noexcept {
   while (pose_waiter_.wait_for(kMaxWait) != ipc::Waiter::Event::kStopped) {
     rounds_.fetch_add(1, std::memory_order_relaxed);
+    forward_health();  // first: it tells isobard's clock, on which all stamps are
+    follow_system_clock();
     // Priors first: a pose needs the altimeter's height at its stamp.
     while (const auto prior = prior_in_.take()) {
       note_data();
@@ -97,9 +109,9 @@ void Forwarding::forward_poses() noexcept {
       if (outputs_.poses) outputs_.poses->on_pose(*pose);
     }
     while (const auto sample = station_in_.take()) {
-      if (outputs_.station) outputs_.station->on_pressure(*sample);
+      if (outputs_.station)
+        outputs_.station->on_pressure(*sample, stamp_shift_ns_.load(std::memory_order_relaxed));
     }
-    forward_health();
   }
 }
 
@@ -115,7 +127,9 @@ void Forwarding::forward_health() {
   if (report) {
     note_data();
     clock_.set_offset_ns(report->robot_clock_offset_ns);
-    diagnostics_.start(report->stamp_ns);
+    if (!system_clock_) system_clock_.emplace(report->robot_clock_offset_ns);
+    follow_system_clock();
+    diagnostics_.start(report->stamp_ns + stamp_shift_ns_.load(std::memory_order_relaxed));
     const bool has_summary =
         report->entry_count > 0 && ipc::HealthReport::kSummaryName == report->entries[0].name;
     if (!has_summary) reserve_summary(all_);
@@ -193,10 +207,10 @@ void Forwarding::add_station_health(const ReceivedCounts& received) {
 void Forwarding::forward_clouds() noexcept {
   while (clouds_in_->waiter.wait_for(kMaxWait) != ipc::Waiter::Event::kStopped) {
     if (const auto scan = clouds_in_->scan.take_latest()) {
-      outputs_.clouds->on_scan(*scan);
+      outputs_.clouds->on_scan(*scan, stamp_shift_ns_.load(std::memory_order_relaxed));
     }
     if (const auto map = clouds_in_->map.take_latest()) {
-      outputs_.clouds->on_map(*map);
+      outputs_.clouds->on_map(*map, stamp_shift_ns_.load(std::memory_order_relaxed));
     }
     clouds_dropped_.store(clouds_in_->scan.dropped(), std::memory_order_relaxed);
     cloud_failures_.store(outputs_.clouds->failures(), std::memory_order_relaxed);

@@ -11,6 +11,7 @@
 #include <string>
 #include <thread>
 
+#include "core/time/system_clock_watch.hpp"
 #include "daemon/bridge/outputs.hpp"
 #include "daemon/bridge/receiving.hpp"
 #include "daemon/health_summary.hpp"
@@ -50,6 +51,7 @@ class Forwarding {
     ipc::Waiter waiter;
   };
 
+  void follow_system_clock() noexcept;
   void forward_poses() noexcept;
   void forward_clouds() noexcept;
   void forward_health();
@@ -81,7 +83,9 @@ class Forwarding {
   LevelHold hold_;
   LevelChanges changes_;
   IsobardClock clock_;
-  std::int64_t last_report_ns_ = 0;  ///< steady clock; pose thread
+  std::optional<SystemClockWatch> system_clock_;  ///< pose thread; from the first health report on
+  std::atomic<std::int64_t> stamp_shift_ns_{0};   ///< time of day minus robot clock
+  std::int64_t last_report_ns_ = 0;               ///< steady clock; pose thread
   std::thread pose_thread_;
   std::thread cloud_thread_;
 };

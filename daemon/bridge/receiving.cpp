@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/bridge/receiving.hpp"
 
-#include <chrono>
-
+#include "drivers/clock/robot_clock.hpp"
 #include "ipc/dds/samples.hpp"
 
 namespace isobar::bridge {
 namespace {
-
-std::int64_t monotonic_ns() {
-  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
-}
 
 template <class Stream>
 void add_reader(const std::optional<Stream>& stream, std::vector<dds_entity_t>& readers) {
@@ -96,8 +91,12 @@ void Receiving::forward(std::optional<Stream<Message, Sample>>& stream) {
       too_early_.fetch_add(1, std::memory_order_relaxed);
       return;
     }
-    // The sender's clock is that of another machine, or this machine's wall clock, which can step.
-    static_cast<void>(stream->anchor.add(sample.stamp_ns, clock_.now_ns()));
+    // The sender's clock is that of another machine, or this machine's system clock, which can step.
+    const std::int64_t now_ns = clock_.now_ns();
+    const std::int64_t stamp_ns = stream->sender_clock.without_steps_ns(
+        sample.stamp_ns, now_ns - stream->anchor.offset_ns(), stream->anchored, system_clock_);
+    static_cast<void>(stream->anchor.add(stamp_ns, now_ns));
+    stream->anchored = true;
     sample.stamp_ns = stream->anchor.to_host_ns(stream->anchor.device_unwrapped_ns());
     if (!stream->publisher.send(sample)) too_early_.fetch_add(1, std::memory_order_relaxed);
   });
@@ -107,7 +106,7 @@ void Receiving::forward_stations() {
   std::array<BaseStationStatus, 2> status;
   for (std::size_t i = 0; i < stations_.size(); ++i) {
     if (clock_.known()) {
-      refused_.fetch_add(stations_[i]->take(clock_.now_ns(),
+      refused_.fetch_add(stations_[i]->take(clock_.now_ns(), system_clock_,
                                             [this](const PressureSample& sample) {
                                               if (!base_pressure_->send(sample)) {
                                                 too_early_.fetch_add(1, std::memory_order_relaxed);
@@ -125,6 +124,7 @@ void Receiving::forward_stations() {
 void Receiving::loop() noexcept {
   bool stopped = false;
   while (!stopped && dds_waitset_wait(waitset_.get(), nullptr, 0, DDS_INFINITY) >= 0) {
+    system_clock_.note(read_clocks());
     forward_stations();
     forward(wheel_);
     forward(imu_);

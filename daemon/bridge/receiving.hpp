@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/time/clock_anchor.hpp"
+#include "core/time/system_clock_watch.hpp"
 #include "daemon/bridge/settings.hpp"
 #include "daemon/bridge/station_input.hpp"
 #include "daemon/seq_lock.hpp"
@@ -67,6 +68,8 @@ class Receiving {
     dds::Reader<Message> reader;
     ipc::Publisher<Sample> publisher;
     ClockAnchor anchor;
+    SenderClock sender_clock;
+    bool anchored = false;
 
     Stream(dds_entity_t participant, const dds::DdsTopic<Message>& from, const std::string& ros_namespace,
            const ipc::Topic<Sample>& to)
@@ -79,6 +82,7 @@ class Receiving {
   void loop() noexcept;
 
   const IsobardClock& clock_;
+  SystemClockWatch system_clock_{0};  ///< its steps, which ROS 2 nodes of this machine share
   std::vector<std::unique_ptr<StationInput>> stations_;
   std::optional<ipc::Publisher<PressureSample>> base_pressure_;
   std::optional<Stream<dds::ImuMessage, ImuSample>> imu_;

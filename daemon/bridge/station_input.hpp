@@ -40,10 +40,11 @@ class StationInput {
 
   /// Takes all waiting messages.
   /// @param now_ns robot clock
+  /// @param system steps of this machine's system clock
   /// @param hand_on called with each accepted PressureSample, stamp on the robot clock
   /// @return number of implausible messages
   template <class HandOn>
-  std::uint64_t take(std::int64_t now_ns, const HandOn& hand_on) {
+  std::uint64_t take(std::int64_t now_ns, const SystemClockWatch& system, const HandOn& hand_on) {
     std::uint64_t refused = 0;
     pressure_.take([&](const dds::PressureMessage& message, dds_instance_handle_t writer) {
       PressureSample sample;
@@ -53,9 +54,10 @@ class StationInput {
       }
       refused += take_temperatures();
       sample.station = station_;
+      sample.path = SamplePath::kDds;
       sample.temperature_c =
           temperatures_.at(source_of(pressure_.get(), writer, pressure_source_), sample.stamp_ns);
-      if (stream_.check(writer, sample, now_ns) == BaseVerdict::kAccepted) hand_on(sample);
+      if (stream_.check(writer, sample, now_ns, &system) == BaseVerdict::kAccepted) hand_on(sample);
     });
     note_departures();
     return refused;

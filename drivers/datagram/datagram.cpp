@@ -199,7 +199,7 @@ void DatagramParser::begin(std::span<const std::uint8_t> payload) {
   rest_ = {reinterpret_cast<const char*>(payload.data()), payload.size()};
 }
 
-bool DatagramParser::next(Sample& sample) {
+bool DatagramParser::next_line(Sample& sample, LineStatus& status) {
   while (!rest_.empty()) {
     const auto end = rest_.find('\n');
     std::string_view line = rest_.substr(0, end);
@@ -210,24 +210,11 @@ bool DatagramParser::next(Sample& sample) {
     if (line.empty()) {
       continue;
     }
-    switch (parse_line(line, sample)) {
-      case LineStatus::kUnknownKind:
-        ++counters_.unknown_kind;
-        break;
-      case LineStatus::kMalformed:
-        ++counters_.malformed;
-        break;
-      case LineStatus::kImplausible:
-        follow_sequence(sample);  // received, so not lost
-        ++counters_.implausible;
-        break;
-      case LineStatus::kOk:
-        if (follow_sequence(sample)) {
-          ++counters_.samples[static_cast<std::size_t>(sample.kind)];
-          return true;
-        }
-        break;
+    status = parse_line(line, sample);
+    if (status == LineStatus::kOk || status == LineStatus::kImplausible) {
+      return true;
     }
+    ++(status == LineStatus::kMalformed ? counters_.malformed : counters_.unknown_kind);
   }
   return false;
 }
@@ -243,6 +230,7 @@ bool DatagramParser::follow_sequence(const Sample& sample) {
   const bool restarted = ahead > 0 ? static_cast<std::uint32_t>(ahead) > kMaxLoss
                                    : !in_window || (seen && sample.sequence == 0 && behind > 0);
   if (!stream.started || restarted) {
+    counters_.restarts[kind] += stream.started ? 1 : 0;
     stream = {true, sample.sequence, 1};
     return true;
   }

@@ -58,6 +58,13 @@ LineStatus parse_line(std::string_view line, Sample& sample);
 /// @return length [bytes]
 std::size_t format_line(const Sample& sample, std::span<char> out);
 
+/// What becomes of a line of a good format.
+enum class Admission : std::uint8_t {
+  kSkip,             ///< skipped as if it had not come; its sequence number counts for nothing
+  kInSequence,       ///< used if its sequence number is new
+  kWithoutSequence,  ///< used; its sequence number is none of the stream's
+};
+
 /// Counters since construction; one writer.
 struct Counters {
   std::uint64_t datagrams = 0;
@@ -65,6 +72,7 @@ struct Counters {
   std::uint64_t lost[kKinds] = {};        // NOLINT(modernize-avoid-c-arrays): from gaps in SEQ
   std::uint64_t duplicated[kKinds] = {};  // NOLINT(modernize-avoid-c-arrays)
   std::uint64_t reordered[kKinds] = {};   // NOLINT(modernize-avoid-c-arrays)
+  std::uint64_t restarts[kKinds] = {};    // NOLINT(modernize-avoid-c-arrays): SEQ began anew
   std::uint64_t malformed = 0;
   std::uint64_t implausible = 0;
   std::uint64_t unknown_kind = 0;
@@ -78,10 +86,36 @@ class DatagramParser {
  public:
   void begin(std::span<const std::uint8_t> payload);
   /// The next good sample of the datagram, reordered ones included, duplicates skipped; false at the end.
-  bool next(Sample& sample);
+  bool next(Sample& sample) {
+    return next(sample, [](const Sample&, LineStatus) { return Admission::kInSequence; });
+  }
+  /// As above.
+  /// @param admit called with each line of a good format and its status, kOk or kImplausible; returns its
+  ///        Admission
+  template <class Admit>
+  bool next(Sample& sample, const Admit& admit) {
+    LineStatus status = LineStatus::kOk;
+    while (next_line(sample, status)) {
+      const Admission admission = admit(sample, status);
+      if (admission == Admission::kSkip) continue;
+      // The sequence of implausible lines, too: received, so not lost.
+      const bool is_new = admission == Admission::kWithoutSequence || follow_sequence(sample);
+      if (status == LineStatus::kImplausible) {
+        ++counters_.implausible;
+      } else if (is_new) {
+        ++counters_.samples[static_cast<std::size_t>(sample.kind)];
+        return true;
+      }
+    }
+    return false;
+  }
+  /// Forgets the sequence number of one stream: another sender follows.
+  void restart(Kind kind) { streams_[static_cast<std::size_t>(kind)] = {}; }
   [[nodiscard]] const Counters& counters() const { return counters_; }
 
  private:
+  /// The next line whose format is good; counts the others.
+  bool next_line(Sample& sample, LineStatus& status);
   bool follow_sequence(const Sample& sample);
 
   struct Stream {

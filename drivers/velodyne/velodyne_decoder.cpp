@@ -43,6 +43,10 @@ DecodeResult VelodyneDecoder::add_packet(std::span<const std::uint8_t> payload, 
   const auto finding = anchor_.add(static_cast<std::int64_t>(packet.timestamp_us) * 1'000, host_stamp_ns);
   packet.device_ns = anchor_.device_unwrapped_ns();
   counters_.clock_steps = anchor_.steps();
+  if (finding == ClockAnchor::Finding::kStep) {
+    last_step_ns_ = offset_before_ns - anchor_.offset_ns();
+    stepped_ns_ = host_stamp_ns;
+  }
   if (pending_) {
     take_pending(current);
   }

@@ -72,6 +72,10 @@ class VelodyneDecoder {
   bool flush(Scan& current);
 
   [[nodiscard]] const VelodyneCounters& counters() const { return counters_; }
+  /// Last step of the sensor's clock against the host's [ns], and the host stamp of the packet that showed it; 0:
+  /// none yet.
+  [[nodiscard]] std::int64_t last_step_ns() const { return last_step_ns_; }
+  [[nodiscard]] std::int64_t stepped_ns() const { return stepped_ns_; }
   /// Status text of a model mismatch: "packets of HDL-32E (product id 0x21), but VLP-16 is configured".
   [[nodiscard]] std::string wrong_model_message() const;
 
@@ -103,6 +107,8 @@ class VelodyneDecoder {
 
   ClockAnchor anchor_;
   VelodyneCounters counters_;
+  std::int64_t last_step_ns_ = 0;
+  std::int64_t stepped_ns_ = 0;
   std::uint8_t wrong_product_id_ = 0;
   std::array<Identity, 32> recent_{};
   std::size_t recent_next_ = 0;

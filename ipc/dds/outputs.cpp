@@ -35,13 +35,16 @@ PoseOutputs::PoseOutputs(dds_entity_t participant, const DdsConfig& config, cons
 void PoseOutputs::on_prior(const Prior& prior) {
   if (altitude_rate_.due(prior.stamp_ns)) {
     AltitudeMessage message{};
-    fill_altitude(prior, config_, message);
+    Prior published = prior;
+    published.stamp_ns += shift_ns_;
+    fill_altitude(published, config_, message);
     altitude_.write(message);
   }
   Odometry odometry;
   if (!propagator_.propagate(prior, odometry) || !odom_rate_.due(prior.stamp_ns)) {
     return;
   }
+  odometry.stamp_ns += shift_ns_;
   OdometryMessage message{};
   fill_odometry(odometry, config_, message);
   odom_.write(message);
@@ -50,8 +53,10 @@ void PoseOutputs::on_prior(const Prior& prior) {
 
 void PoseOutputs::on_pose(const PoseEstimate& pose) {
   propagator_.add_pose(pose);
+  PoseEstimate published = pose;
+  published.stamp_ns += shift_ns_;
   PoseMessage message{};
-  fill_pose(pose, config_, message);
+  fill_pose(published, config_, message);
   pose_.write(message);
 }
 
@@ -60,7 +65,9 @@ StationOutputs::StationOutputs(dds_entity_t participant, const std::string& name
       pressure_(participant, topics::kBasePressure, name),
       temperature_(participant, topics::kBaseTemperature, name) {}
 
-void StationOutputs::on_pressure(const PressureSample& sample) {
+void StationOutputs::on_pressure(const PressureSample& measured, std::int64_t shift_ns) {
+  PressureSample sample = measured;
+  sample.stamp_ns += shift_ns;
   // Temperature first: a robot matches it on receiving the pressure.
   if (!std::isnan(sample.temperature_c)) {
     TemperatureMessage message{};
@@ -105,17 +112,17 @@ CloudOutputs::CloudOutputs(dds_entity_t participant, const DdsConfig& config)
       scan_(participant, topics::kRegisteredScan, config.ros_namespace),
       map_(participant, topics::kMap, config.ros_namespace) {}
 
-void CloudOutputs::on_scan(const RegisteredScan& scan) {
+void CloudOutputs::on_scan(const RegisteredScan& scan, std::int64_t shift_ns) {
   if (!scan_.has_readers()) {
     return;
   }
   const std::uint32_t count = std::min(scan.point_count, RegisteredScan::kMaxPoints);
-  scan_.write(builder_.build(scan.pose.stamp_ns, config_.base_frame, scan.points, count, true));
+  scan_.write(builder_.build(scan.pose.stamp_ns + shift_ns, config_.base_frame, scan.points, count, true));
 }
 
-void CloudOutputs::on_map(const ipc::MapCloud& map) {
+void CloudOutputs::on_map(const ipc::MapCloud& map, std::int64_t shift_ns) {
   const std::uint32_t count = std::min(map.point_count, ipc::MapCloud::kMaxPoints);
-  map_.write(builder_.build(map.stamp_ns, config_.map_frame, map.points, count, false));
+  map_.write(builder_.build(map.stamp_ns + shift_ns, config_.map_frame, map.points, count, false));
 }
 
 }  // namespace isobar::dds

@@ -48,6 +48,9 @@ class PoseOutputs {
   PoseOutputs(const PoseOutputs&) = delete;
   PoseOutputs& operator=(const PoseOutputs&) = delete;
 
+  /// Time of day minus robot clock, added to the stamps of all later messages [ns]. The values of on_prior() and
+  /// on_pose() stay on the robot clock, which never jumps.
+  void set_stamp_shift_ns(std::int64_t shift_ns) noexcept { shift_ns_ = shift_ns; }
   /// Publishes altitude, odom and tf at their rates.
   void on_prior(const Prior& prior);
   /// Publishes the pose and passes it to the propagator of odom and tf.
@@ -61,6 +64,7 @@ class PoseOutputs {
   void write_transforms(const Odometry& odometry);
 
   DdsConfig config_;
+  std::int64_t shift_ns_ = 0;
   PosePropagator propagator_;
   RateLimit odom_rate_;
   RateLimit altitude_rate_;
@@ -81,7 +85,8 @@ class StationOutputs {
   StationOutputs& operator=(const StationOutputs&) = delete;
 
   /// A sample whose temperature is NaN gives a pressure message only.
-  void on_pressure(const PressureSample& sample);
+  /// @param shift_ns see PoseOutputs::set_stamp_shift_ns()
+  void on_pressure(const PressureSample& measured, std::int64_t shift_ns);
 
   [[nodiscard]] std::vector<dds_entity_t> writers() const { return {pressure_.get(), temperature_.get()}; }
   [[nodiscard]] std::uint64_t failures() const noexcept {
@@ -103,9 +108,10 @@ class CloudOutputs {
   CloudOutputs& operator=(const CloudOutputs&) = delete;
 
   /// Publishes the deskewed scan in base_link at the scan's end, which is its stamp. Skipped without readers.
-  void on_scan(const RegisteredScan& scan);
+  /// @param shift_ns see PoseOutputs::set_stamp_shift_ns()
+  void on_scan(const RegisteredScan& scan, std::int64_t shift_ns);
   /// Publishes the local map, in the map frame.
-  void on_map(const ipc::MapCloud& map);
+  void on_map(const ipc::MapCloud& map, std::int64_t shift_ns);
 
   [[nodiscard]] std::vector<dds_entity_t> writers() const { return {scan_.get(), map_.get()}; }
   [[nodiscard]] std::uint64_t failures() const noexcept { return scan_.failures() + map_.failures(); }
