@@ -35,6 +35,7 @@ struct LidarSettings {
   std::string model = "VLP-16";     ///< "VLP-16" or "HDL-32E"
   std::string address = "0.0.0.0";  ///< IPv4 address on which packets are received
   std::uint16_t port = 2368;        ///< UDP port of the data packets
+  std::string sender;               ///< IPv4 address of the lidar; empty: the first that sends
   Mount mount;                      ///< of the sensor in base_link
   double min_range_m = 0.3;         ///< these four: see velodyne::VelodyneConfig
   double max_range_m = 131.0;
@@ -69,7 +70,8 @@ struct BaseBarometerSettings {
 
 /// [input]: sample datagrams of IMU, barometers and wheels (drivers/datagram/datagram.hpp)
 struct InputSettings {
-  std::string address = "0.0.0.0";
+  std::string address = "127.0.0.1";
+  std::string senders;  ///< IPv4 addresses, separated by commas, whose datagrams are taken; empty: any
   std::uint16_t port = 7373;
   bool expect_wheels = false;       ///< health: wheels that were never heard are missing, not absent
   bool expect_base_station = true;  ///< the same for the base station

@@ -29,6 +29,10 @@ void add_lidar(LidarSettings& lidar, std::vector<Setting>& settings) {
   s.number("port", &lidar.port, "", 1, 65'535,
            "UDP port of the data packets. 2368 is the lidar's factory setting.")
       .basic();
+  s.text(
+      "sender", lidar.sender, TextRule::kIpv4OrEmpty,
+      "IPv4 address of the lidar. Packets of other senders are refused and counted. Empty: the first sender "
+      "heard is used; another one takes over after 5 s of its silence.");
   add_position(s, lidar.mount, "Origin of the lidar in base_link. 0: at the origin of base_link.");
   add_rotation(s, lidar.mount);
   s.applies(Apply::kLive);

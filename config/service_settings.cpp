@@ -70,7 +70,11 @@ void add_deadlines(RealtimeSettings& realtime, SectionBuilder& s) {
 void add_input(InputSettings& input, std::vector<Setting>& settings) {
   SectionBuilder s("input", UsedBy::kEveryRole, settings);
   s.text("address", input.address, TextRule::kIpv4,
-         "IPv4 address on which samples are received. 0.0.0.0: every interface.");
+         "IPv4 address on which samples are received. 127.0.0.1: from programs of this machine only. For a "
+         "sender in the network, the address of the interface, or 0.0.0.0 for all of them.");
+  s.text("senders", input.senders, TextRule::kIpv4List,
+         "IPv4 addresses whose sample datagrams are taken, separated by commas. Empty: any. In either case "
+         "each stream (imu, baro, base, wheel) is taken from one sender at a time, the first heard.");
   s.number("port", &input.port, "", 1, 65'535,
            "UDP port of the sample datagrams. Must differ from lidar.port.");
   s.used_by(UsedBy::kRobot);

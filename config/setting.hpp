@@ -19,6 +19,8 @@ namespace isobar {
 enum class TextRule : std::uint8_t {
   kAny,
   kIpv4,         ///< dotted IPv4 address
+  kIpv4OrEmpty,  ///< kIpv4, or empty
+  kIpv4List,     ///< up to 16 of kIpv4, separated by commas, or empty
   kName,         ///< 1 to 100 letters, digits, '_' or '/', no '/' at the ends
   kNameOrEmpty,  ///< kName, or empty
   kInterface,    ///< name or address of a network interface, or empty

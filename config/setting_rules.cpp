@@ -7,6 +7,8 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <sstream>
+#include <string>
 #include <type_traits>
 
 #include "config/config_io.hpp"
@@ -31,6 +33,23 @@ bool consists_of(const std::string& text, std::string_view also) {
   });
 }
 
+bool is_ipv4(const std::string& text) {
+  in_addr address{};
+  return inet_pton(AF_INET, text.c_str(), &address) == 1;
+}
+
+bool is_ipv4_list(const std::string& text) {
+  constexpr std::size_t kMaxAddresses = 16;
+  std::istringstream stream(text);
+  std::size_t count = 0;
+  for (std::string word; std::getline(stream, word, ',');) {
+    word.erase(0, word.find_first_not_of(' '));
+    word.erase(word.find_last_not_of(' ') + 1);
+    if (!is_ipv4(word) || ++count > kMaxAddresses) return false;
+  }
+  return text.empty() || text.back() != ',';
+}
+
 bool is_name(const std::string& text) {
   return !text.empty() && text.size() <= 100 && consists_of(text, "_/") && text.front() != '/' &&
          text.back() != '/';
@@ -40,6 +59,8 @@ bool is_name(const std::string& text) {
 constexpr std::array kTextRules = {
     "must be a text in quotation marks",
     "must be an IPv4 address such as \"0.0.0.0\"",
+    "must be empty, or an IPv4 address such as \"192.168.1.201\"",
+    "must be empty, or up to 16 IPv4 addresses separated by commas",
     "must be 1 to 100 letters, digits, '_' or '/', with no '/' at the ends",
     "must be empty, or up to 100 letters, digits, '_' or '/', with no '/' at the ends",
     "must be the name or the address of a network interface",
@@ -125,10 +146,12 @@ bool keeps_rule(TextRule rule, const std::string& text) {
   switch (rule) {
     case TextRule::kAny:
       return true;
-    case TextRule::kIpv4: {
-      in_addr address{};
-      return inet_pton(AF_INET, text.c_str(), &address) == 1;
-    }
+    case TextRule::kIpv4:
+      return is_ipv4(text);
+    case TextRule::kIpv4OrEmpty:
+      return text.empty() || is_ipv4(text);
+    case TextRule::kIpv4List:
+      return is_ipv4_list(text);
     case TextRule::kName:
       return is_name(text);
     case TextRule::kNameOrEmpty:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/recording/manifest.hpp"
 
+#include <arpa/inet.h>
 #include <toml++/toml.h>
 
 #include <cmath>
@@ -119,7 +120,7 @@ std::optional<LidarEntry> read_lidar(const toml::table& root, ManifestText& text
   if (table == nullptr) {
     return std::nullopt;
   }
-  text.warn_unknown_keys(*table, "lidar.", {"model", "file", "port", "xyz_m", "rpy_deg"});
+  text.warn_unknown_keys(*table, "lidar.", {"model", "file", "port", "sender", "xyz_m", "rpy_deg"});
   LidarEntry lidar;
   const toml::node* model = table->get("model");
   if (model == nullptr || !model->is_string() || model->value<std::string>()->empty()) {
@@ -134,6 +135,14 @@ std::optional<LidarEntry> read_lidar(const toml::table& root, ManifestText& text
       text.fail(*port, "lidar.port", "must be a whole number within 1 … 65535");
     }
     lidar.port = static_cast<std::uint16_t>(*value);
+  }
+  if (const toml::node* sender = table->get("sender"); sender != nullptr) {
+    const auto value = sender->value<std::string>();
+    in_addr address{};
+    if (!value || inet_pton(AF_INET, value->c_str(), &address) != 1) {
+      text.fail(*sender, "lidar.sender", "must be an IPv4 address such as \"192.168.1.201\"");
+    }
+    lidar.sender = *value;
   }
   lidar.mount = text.mount(*table, "lidar");
   return lidar;
@@ -243,8 +252,9 @@ void write_manifest(const std::filesystem::path& folder, const Manifest& manifes
   out << "version = 1\ndescription = " << quoted_toml(manifest.description) << "\n";
   if (manifest.lidar) {
     out << "\n[lidar]\nmodel   = " << quoted_toml(manifest.lidar->model)
-        << "\nfile    = " << quoted_toml(manifest.lidar->file) << "\nport    = " << manifest.lidar->port
-        << "\nxyz_m   = " << triple_text(manifest.lidar->mount.xyz_m)
+        << "\nfile    = " << quoted_toml(manifest.lidar->file) << "\nport    = " << manifest.lidar->port;
+    if (!manifest.lidar->sender.empty()) out << "\nsender  = " << quoted_toml(manifest.lidar->sender);
+    out << "\nxyz_m   = " << triple_text(manifest.lidar->mount.xyz_m)
         << "\nrpy_deg = " << triple_text(manifest.lidar->mount.rpy_deg) << "\n";
   }
   out << sensor_text("imu", manifest.imu, true, true);

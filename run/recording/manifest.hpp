@@ -20,6 +20,7 @@ struct LidarEntry {
   std::string model = "VLP-16";
   std::string file = "lidar.pcap";
   std::uint16_t port = 2368;  ///< UDP destination port of the data packets
+  std::string sender;         ///< IPv4 address of the lidar; empty: the first sender in the file
   Mount mount;
 };
 

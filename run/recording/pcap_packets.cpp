@@ -95,6 +95,7 @@ bool PcapPackets::read(StampedPacket& packet) {
         break;
     }
     packet.stamp_ns = static_cast<std::int64_t>(header->ts.tv_sec) * 1'000'000'000 + header->ts.tv_usec;
+    packet.sender_ipv4 = extractor_.sender_ipv4();
     packet.payload.assign(payload.begin(), payload.end());
     return true;
   }

@@ -111,6 +111,7 @@ class LidarStream : public Stream {
     event.kind = EventKind::kLidarPacket;
     event.stamp_ns = given_.stamp_ns;
     event.packet = given_.payload;
+    event.sender_ipv4 = given_.sender_ipv4;
   }
   void count(std::vector<Count>& counts) const override {
     const PcapPackets::Tallies& tallies = packets_.tallies();

@@ -20,6 +20,7 @@ struct Event {
   EventKind kind = EventKind::kImu;
   std::int64_t stamp_ns = 0;             ///< host time, robot clock; equals the sample's own stamp
   std::span<const std::uint8_t> packet;  ///< UDP payload, valid until the next call of next()
+  std::uint32_t sender_ipv4 = 0;         ///< of a packet, host byte order
   ImuSample imu;
   PressureSample pressure;  ///< of kPressure and kBasePressure, both on the robot clock
   WheelSample wheel;

@@ -89,6 +89,7 @@ FrameKind UdpExtractor::extract_ip(std::span<const std::uint8_t> ip, std::span<c
   if (ip[9] != kProtocolUdp) {
     return FrameKind::kOtherProtocol;
   }
+  sender_ipv4_ = static_cast<std::uint32_t>(read_be16(ip, 12)) << 16U | read_be16(ip, 14);
   const std::size_t total = read_be16(ip, 2);
   if (total < header) {
     return FrameKind::kMalformed;

@@ -38,10 +38,12 @@ class UdpExtractor {
  public:
   explicit UdpExtractor(std::uint16_t port) : port_(port) {}
 
-  /// @param payload valid until the next call
+  /// @param payload valid until the next call; sender_ipv4() is the address that sent it
   FrameKind extract(LinkType link, std::span<const std::uint8_t> frame,
                     std::span<const std::uint8_t>& payload);
 
+  /// IPv4 source of the last frame with an IP packet, host byte order.
+  [[nodiscard]] std::uint32_t sender_ipv4() const { return sender_ipv4_; }
   /// Incomplete datagrams that were dropped because kSlots newer ones needed the memory.
   [[nodiscard]] std::uint64_t incomplete() const { return incomplete_; }
   [[nodiscard]] std::uint64_t reassembled() const { return reassembled_; }
@@ -68,6 +70,7 @@ class UdpExtractor {
   Slot& slot_for(std::span<const std::uint8_t> ip);
 
   std::uint16_t port_;
+  std::uint32_t sender_ipv4_ = 0;
   std::uint64_t clock_ = 0;
   std::uint64_t incomplete_ = 0;
   std::uint64_t reassembled_ = 0;

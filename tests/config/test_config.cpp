@@ -37,9 +37,10 @@ struct Change {
   }
   void operator()(bool* v) const { *v = !*v; }
   void operator()(std::string* v) const {
-    *v = !setting.choices.empty()               ? setting.choices.back()
-         : setting.text_rule == TextRule::kIpv4 ? "127.0.0.1"
-                                                : "other";
+    const bool is_address = setting.text_rule == TextRule::kIpv4 ||
+                            setting.text_rule == TextRule::kIpv4OrEmpty ||
+                            setting.text_rule == TextRule::kIpv4List;
+    *v = !setting.choices.empty() ? setting.choices.back() : is_address ? "192.0.2.1" : "other";
   }
   void operator()(Eigen::Vector3d* v) const { *v += Eigen::Vector3d(1.0 / 3.0, -2.5, 1e-7); }
   void operator()(std::vector<int>* v) const { *v = {1, 0}; }
@@ -94,6 +95,15 @@ TEST_CASE("The shown text loads as the same settings, with defaults and with cha
     CHECK(show_config(loaded) == show_config(config));
     CHECK(show_config(loaded) != defaults);
   }
+}
+
+TEST_CASE("Addresses of senders: one or none for the lidar, a list for the sample datagrams") {
+  fails("[lidar]\nsender = \"192.168.1\"", "lidar.sender: must be empty, or an IPv4 address");
+  fails("[input]\nsenders = \"192.168.1.50,\"", "input.senders: must be empty, or up to 16 IPv4 addresses");
+  fails("[input]\nsenders = \"192.168.1.50 192.168.1.51\"", "input.senders");
+  CHECK(parse_config("[input]\nsenders = \"192.168.1.50, 192.168.1.51\"", "c.toml").input.senders ==
+        "192.168.1.50, 192.168.1.51");
+  CHECK(parse_config("[lidar]\nsender = \"192.168.1.201\"", "c.toml").lidar.sender == "192.168.1.201");
 }
 
 TEST_CASE("Every key is unique and documented, and its default is within its own rule") {
