@@ -19,7 +19,7 @@ BaseStationGraph::BaseStationGraph(const Config& config)
       station_(config.prior.altimeter, config.prior.compensation, scheduling_.station),
       barometer_(make_barometer_thread(config.barometer, scheduling_.barometer)),
       input_(config.input.address, config.input.port, {.barometer = barometer_ == nullptr, .others = false},
-             scheduling_.input) {
+             config.input.senders, scheduling_.input) {
   // Start order: consumers first.
   workers_.add(station_.worker());
   workers_.add(input_.worker());
@@ -28,7 +28,7 @@ BaseStationGraph::BaseStationGraph(const Config& config)
 
 StationSnapshot BaseStationGraph::status(std::int64_t now_ns) const {
   return {now_ns, input_.status(), barometer_ ? barometer_->status() : BarometerThreadStatus{},
-          station_.status()};
+          station_.status(), input_.waiting_for()};
 }
 
 std::string BaseStationGraph::inputs() const {

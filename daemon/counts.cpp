@@ -93,6 +93,7 @@ std::vector<files::RunCount> counts_of(const BaseStationStatus& base) {
       {"base lines of a new sender", base.count(V::kUnconfirmed), ""},
       {"base station outages", base.outages, ""},
       {"base station restarts", base.restarts, ""},
+      {"base station returns", base.returns, ""},
       {"base station clock steps", base.clock_steps, ""},
   };
 }

@@ -5,10 +5,12 @@
 
 #include "daemon/health_entries.hpp"
 #include "daemon/health_reporter.hpp"
+#include "daemon/input_health.hpp"
 #include "daemon/level_changes.hpp"
 #include "daemon/logging.hpp"
 #include "daemon/realtime.hpp"
 #include "daemon/report_schedule.hpp"
+#include "daemon/waiting_log.hpp"
 #include "drivers/clock/robot_clock.hpp"
 #include "ipc/shared_memory.hpp"
 
@@ -27,13 +29,22 @@ std::vector<std::string> refusals_of(const WorkerGroup& workers, const RealtimeS
 /// hangs.
 void supervise(Graph& graph, Service& service, Configuration& configuration,
                std::vector<std::string> realtime_refusals) {
+  SystemClockWatch system_clock(RobotClock::offset_ns());
+  graph.add_health([&system_clock](std::int64_t now_ns, ipc::HealthReport& report) {
+    report.system_clock_ahead_ns = system_clock.ahead_ns();
+    add_system_clock(report, system_clock, now_ns);
+  });
   HealthReporter reporter(graph, std::move(realtime_refusals));
   ReportSchedule schedule;
   LevelChanges known;
+  WaitingLog waiting;
   ipc::Publisher<ipc::HealthReport> publisher(ipc::topics::kHealth);
   service.ready();
   service.supervise([&] {
     const std::int64_t now_ns = RobotClock::now_ns();
+    if (const std::int64_t step_ns = system_clock.note(read_clocks()); step_ns != 0) {
+      spdlog::warn("{}", step_text(step_ns));
+    }
     configuration.poll(graph, service);
     graph.collect();
     if (!schedule.due(now_ns, graph.barometer_state())) return false;
@@ -41,6 +52,7 @@ void supervise(Graph& graph, Service& service, Configuration& configuration,
     const bool alive = reporter.fill(now_ns, report);
     publisher.send(report);
     for (const LevelChange& change : level_changes(report, known)) log_change(change);
+    for (const std::string& line : waiting.due(graph.waiting_for(), now_ns)) spdlog::warn("{}", line);
     return alive;
   });
 }

@@ -41,6 +41,8 @@ class Graph {
   /// State of the barometer attached to this machine, whose changes are reported at once; kStarting if
   /// there is none.
   [[nodiscard]] virtual BarometerState barometer_state() const = 0;
+  /// What the inputs wait for, a sentence each; empty texts: nothing.
+  [[nodiscard]] virtual std::vector<std::string> waiting_for() const { return {}; }
   /// Adds the health entries of all stages. Rates and growth of counters refer to the time since the last
   /// call.
   /// @param now_ns robot clock

@@ -11,6 +11,8 @@
 #include "daemon/base_station_health.hpp"
 #include "daemon/health_entries.hpp"
 #include "daemon/health_entry.hpp"
+#include "daemon/input_health.hpp"
+#include "daemon/lidar_sender.hpp"
 #include "daemon/status_figures.hpp"
 
 namespace isobar {
@@ -67,6 +69,9 @@ void HealthMonitor::fill(const StatusSnapshot& now, HealthReport& report) {
   const double elapsed_s = last_.now_ns == 0 ? 1.0 : seconds_between(last_.now_ns, now.now_ns);
   fill_lidar(now, elapsed_s, report);
   fill_samples(now, elapsed_s, report);
+  static_cast<void>(
+      start_over_.check({now.lidar.clock_step_ns, now.lidar.clock_stepped_ns, now.prior.imu_resumed_ns}));
+  add_starts_over(report, start_over_, now.now_ns);
   fill_faults(now, report);
   fill_prior(now, report);
   fill_registration(now, report);
@@ -79,9 +84,20 @@ void HealthMonitor::fill(const StatusSnapshot& now, HealthReport& report) {
 void HealthMonitor::fill_lidar(const StatusSnapshot& now, double elapsed_s, HealthReport& report) const {
   const auto& counters = now.lidar.counters;
   const auto& before = last_.lidar.counters;
-  add_stream(report, "lidar", now.lidar.last_packet_ns, now.now_ns, kSensorSilenceNs,
-             per_second(counters.scans, before.scans, elapsed_s),
-             "UDP port " + std::to_string(config_.lidar.port));
+  const double rate_hz = per_second(counters.scans, before.scans, elapsed_s);
+  const std::string where = "UDP port " + std::to_string(config_.lidar.port);
+  if (!now.lidar_waits_for.empty()) {
+    add_entry(report, "lidar", HealthLevel::kError, "waiting: " + now.lidar_waits_for, 0.0);
+  } else if (rate_hz > kFastestScanHz) {
+    add_entry(
+        report, "lidar", HealthLevel::kError,
+        fmt::format("{:.0f} scans per second on {}: no lidar turns that fast; do two send from one address?",
+                    rate_hz, where),
+        rate_hz);
+  } else {
+    add_stream(report, "lidar", now.lidar.last_packet_ns, now.now_ns, kSensorSilenceNs, rate_hz, where);
+  }
+  add_senders(report, "lidar", now.lidar.sender, now.now_ns, "lidar.sender chooses");
   if (counters.wrong_model > before.wrong_model) {
     add_entry(report, "lidar/model", HealthLevel::kError, now.lidar.wrong_model_message.data(),
               static_cast<double>(counters.wrong_model));
@@ -118,7 +134,11 @@ void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, He
     add_count(report, (std::string(kNames[kind]) + "/lost").c_str(), counters.lost[kind], before.lost[kind],
               "samples lost, by the gaps in their numbers");
   }
+  if (!now.samples_wait_for.empty()) {
+    add_entry(report, "input", HealthLevel::kError, "waiting: " + now.samples_wait_for, 0.0);
+  }
   add_input(report, now.samples, last_.samples);
+  add_sample_senders(report, now.samples, last_.samples, now.now_ns);
   add_count(report, "input/dropped", now.prior.dropped_samples, last_.prior.dropped_samples,
             "samples dropped: they arrived faster than they were used");
 }
@@ -133,6 +153,7 @@ void HealthMonitor::fill_base_stations(const StatusSnapshot& now, HealthReport& 
     // A second base station is named in the configuration, hence expected.
     add_stream(report, kNames[i], cadence.last_ns(), now.now_ns, cadence.limit_ns(), rate_hz,
                input_of(config_, datagram::Kind::kBasePressure), i > 0 || config_.input.expect_base_station);
+    add_base_paths(report, kNames[i], now.prior.base_paths[i], now.now_ns);
   }
   add_base_station_counts("base_station", now.samples.base, last_.samples.base,
                           [&report](const std::string& name, HealthLevel level, const std::string& message,

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "config/config.hpp"
 #include "daemon/barometer_thread.hpp"
@@ -12,6 +13,7 @@
 #include "daemon/prior_thread.hpp"
 #include "daemon/registration_thread.hpp"
 #include "daemon/sample_thread.hpp"
+#include "daemon/start_over.hpp"
 #include "ipc/topics.hpp"
 
 namespace isobar {
@@ -25,6 +27,8 @@ struct StatusSnapshot {
   PriorStatus prior;
   RegistrationStatus registration;
   MapStatus map;
+  std::string lidar_waits_for{};  ///< see UdpReceiver::waiting_for()
+  std::string samples_wait_for{};
 };
 
 class StageTimes;
@@ -42,6 +46,8 @@ class HealthMonitor {
   void configure(const Config& config) { config_ = config; }
 
   void fill(const StatusSnapshot& now, ipc::HealthReport& report);
+  /// Starts of the input found by fill(), see StartOver.
+  [[nodiscard]] std::uint64_t starts_over() const noexcept { return start_over_.count(); }
 
  private:
   void fill_lidar(const StatusSnapshot& now, double elapsed_s, ipc::HealthReport& report) const;
@@ -54,6 +60,7 @@ class HealthMonitor {
   void fill_deadlines(const StatusSnapshot& now, ipc::HealthReport& report) const;
 
   Config config_;
+  StartOver start_over_;
   StatusSnapshot last_;
   std::unique_ptr<StageTimes> times_;
 };

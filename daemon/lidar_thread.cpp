@@ -6,9 +6,10 @@
 
 namespace isobar {
 
-LidarThread::LidarThread(const velodyne::VelodyneConfig& config, const std::string& address,
-                         std::uint16_t port, ThreadSettings settings)
-    : receiver_(address, port),
+LidarThread::LidarThread(const velodyne::VelodyneConfig& config, const LidarSettings& lidar,
+                         ThreadSettings settings)
+    : receiver_(lidar.address, lidar.port),
+      sender_(config.model, lidar.sender),
       decoder_(config),
       publisher_(ipc::topics::kLidarScan),
       deadline_(settings.deadline_ms),
@@ -34,6 +35,7 @@ void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
     decoder_.set_limits(change.config);
     deadline_.set_limit(change.deadline_ms);
   });
+  if (!sender_.admits(datagram.payload, datagram.sender.ipv4, datagram.stamp_ns)) return;
   draft_status_.last_packet_ns = datagram.stamp_ns;
   Scan& scan = loaned_ != nullptr ? *loaned_ : spare_scan_;
   if (decoder_.add_packet(datagram.payload, datagram.stamp_ns, scan).scan_complete) publish_scan();
@@ -69,6 +71,9 @@ void LidarThread::report() noexcept {
     decoder_.wrong_model_message().copy(message.data(), message.size() - 1);
   }
   draft_status_.counters = decoder_.counters();
+  draft_status_.sender = sender_.status();
+  draft_status_.clock_step_ns = decoder_.last_step_ns();
+  draft_status_.clock_stepped_ns = decoder_.stepped_ns();
   draft_status_.punctuality = deadline_.status();
   draft_status_.dropped_by_kernel = receiver_.dropped_by_kernel();
   status_.put(draft_status_);

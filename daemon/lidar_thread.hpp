@@ -5,9 +5,11 @@
 #include <memory>
 #include <string>
 
+#include "config/config.hpp"
 #include "core/time/stream_pace.hpp"
 #include "daemon/deadline.hpp"
 #include "daemon/handover.hpp"
+#include "daemon/lidar_sender.hpp"
 #include "daemon/packet_pacing.hpp"
 #include "daemon/seq_lock.hpp"
 #include "daemon/worker.hpp"
@@ -24,6 +26,9 @@ struct LidarStatus {
   std::uint64_t scans_without_memory = 0;  ///< complete scans dropped for want of a chunk in shared memory
   std::int64_t last_packet_ns = 0;         ///< robot clock; 0: none yet
   StreamPace pace;                         ///< of the scans' ends
+  SenderStatus sender;                     ///< port 0
+  std::int64_t clock_step_ns = 0;          ///< last step of the lidar's clock against the robot clock
+  std::int64_t clock_stepped_ns = 0;       ///< when it came, robot clock; 0: never
   DeadlineStatus punctuality;              ///< from the end of a scan to its publication
   /// Names the configured and the received model; empty while all packets are of the configured one.
   std::array<char, 120> wrong_model_message{};
@@ -32,9 +37,8 @@ struct LidarStatus {
 /// Decodes the lidar's UDP packets and publishes scans.
 class LidarThread {
  public:
-  /// @throws ServiceError when the port cannot be bound
-  LidarThread(const velodyne::VelodyneConfig& config, const std::string& address, std::uint16_t port,
-              ThreadSettings settings);
+  /// @throws ServiceError when the port may not be used; an address or port that is not there yet is waited for
+  LidarThread(const velodyne::VelodyneConfig& config, const LidarSettings& lidar, ThreadSettings settings);
   ~LidarThread();
   LidarThread(const LidarThread&) = delete;
   LidarThread& operator=(const LidarThread&) = delete;
@@ -49,6 +53,8 @@ class LidarThread {
 
   [[nodiscard]] LidarStatus status() const noexcept { return status_.get(); }
   [[nodiscard]] std::uint16_t port() const noexcept { return receiver_.port(); }
+  /// See UdpReceiver::waiting_for().
+  [[nodiscard]] std::string waiting_for() const { return receiver_.waiting_for(); }
 
  private:
   struct Change {
@@ -62,6 +68,7 @@ class LidarThread {
   void pause() noexcept;
 
   UdpReceiver receiver_;
+  LidarSender sender_;
   velodyne::VelodyneDecoder decoder_;
   ipc::Publisher<Scan> publisher_;
   Scan* loaned_ = nullptr;

@@ -11,7 +11,8 @@ constexpr ScanQueueConfig kLockStepQueue{.reach_ns = 0, .wait_ns = 1, .admission
 }  // namespace
 
 LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileStorage* storage)
-    : decoder_(settings.lidar),
+    : sender_(settings.lidar.model, settings.lidar_sender),
+      decoder_(settings.lidar),
       prior_estimator_(settings.prior),
       registration_(settings.registration, settings.method, settings.T_base_lidar, sink),
       map_(settings.map, settings.T_base_lidar, storage),
@@ -46,6 +47,7 @@ void LockStep::finish() {
 }
 
 void LockStep::take_packet(const recording::Event& event) {
+  if (!sender_.admits(event.packet, event.sender_ipv4, event.stamp_ns)) return;
   if (decoder_.add_packet(event.packet, event.stamp_ns, *filling_).scan_complete) {
     queue_scan();
     register_admissible();

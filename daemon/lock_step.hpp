@@ -13,6 +13,7 @@
 #include "core/estimates.hpp"
 #include "core/map/local_map.hpp"
 #include "core/prior/prior_estimator.hpp"
+#include "daemon/lidar_sender.hpp"
 #include "daemon/registration_stage.hpp"
 #include "daemon/scan_queue.hpp"
 #include "daemon/stage_settings.hpp"
@@ -33,6 +34,7 @@ class LockStep {
   void finish();
 
   [[nodiscard]] const velodyne::VelodyneDecoder& decoder() const { return decoder_; }
+  [[nodiscard]] const SenderStatus& lidar_sender() const { return sender_.status(); }
   [[nodiscard]] const PriorEstimator& prior_estimator() const { return prior_estimator_; }
   [[nodiscard]] const LocalMap& map() const { return map_; }
   [[nodiscard]] std::uint64_t scans() const { return scans_; }
@@ -43,6 +45,7 @@ class LockStep {
   void queue_scan();
   void register_admissible();
 
+  LidarSender sender_;
   velodyne::VelodyneDecoder decoder_;
   PriorEstimator prior_estimator_;
   RegistrationStage registration_;

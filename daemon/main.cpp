@@ -54,8 +54,8 @@ class RobotGraph final : public Graph {
         prior_(stages_.prior, scheduling_.prior),
         barometer_(make_barometer_thread(config.barometer, scheduling_.barometer)),
         samples_(config.input.address, config.input.port, {.barometer = barometer_ == nullptr},
-                 scheduling_.inertial),
-        lidar_(stages_.lidar, config.lidar.address, config.lidar.port, scheduling_.lidar),
+                 config.input.senders, scheduling_.inertial),
+        lidar_(stages_.lidar, config.lidar, scheduling_.lidar),
         output_(files_.output() ? std::make_unique<OutputThread>(*files_.output(), scheduling_.output)
                                 : nullptr),
         monitor_(config) {
@@ -83,7 +83,9 @@ class RobotGraph final : public Graph {
             barometer_ ? barometer_->status() : BarometerThreadStatus{},
             prior_.status(),
             registration_.status(),
-            map_.status()};
+            map_.status(),
+            lidar_.waiting_for(),
+            samples_.waiting_for()};
   }
 
   [[nodiscard]] WorkerGroup& workers() override { return workers_; }
@@ -93,6 +95,9 @@ class RobotGraph final : public Graph {
   }
   [[nodiscard]] BarometerState barometer_state() const override {
     return barometer_ ? barometer_->status().device.state : BarometerState{};
+  }
+  [[nodiscard]] std::vector<std::string> waiting_for() const override {
+    return {lidar_.waiting_for(), samples_.waiting_for()};
   }
   void fill_health(std::int64_t now_ns, ipc::HealthReport& report) override {
     monitor_.fill(status(now_ns), report);

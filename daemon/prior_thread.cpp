@@ -2,9 +2,11 @@
 #include "daemon/prior_thread.hpp"
 
 #include <chrono>
+#include <cstdlib>
 #include <numeric>
 
 #include "daemon/message_loop.hpp"
+#include "daemon/start_over.hpp"
 #include "drivers/clock/robot_clock.hpp"
 
 namespace isobar {
@@ -53,15 +55,24 @@ void PriorThread::drain() noexcept {
   });
   using datagram::Kind;
   while (const auto sample = take(base_barometer_, Kind::kBasePressure)) {
-    if (sample->station < draft_status_.base_stations.size()) {
-      draft_status_.base_stations[sample->station].add(sample->stamp_ns);
-    }
+    const std::size_t station = sample->station;
+    if (station >= base_paths_.size()) continue;  // of another build
+    const bool is_used = base_paths_[station].check(*sample);
+    draft_status_.base_paths[station] = base_paths_[station].status();
+    if (!is_used) continue;
+    draft_status_.base_stations[station].add(sample->stamp_ns);
     estimator_.add_base_pressure(*sample);
   }
   while (const auto sample = take(barometer_, Kind::kPressure)) estimator_.add_pressure(*sample);
   while (const auto sample = take(wheel_, Kind::kWheel)) estimator_.add_wheel(*sample);
   Prior prior;
+  constexpr auto kImuIndex = static_cast<std::size_t>(Kind::kImu);
+  std::int64_t before_ns = draft_status_.last_sample_ns[kImuIndex];
   while (const auto sample = take(imu_, Kind::kImu)) {
+    if (before_ns != 0 && std::abs(sample->stamp_ns - before_ns) > StartOver::kSilenceNs) {
+      draft_status_.imu_resumed_ns = sample->stamp_ns;
+    }
+    before_ns = sample->stamp_ns;
     if (!estimator_.add_imu(*sample, prior)) continue;
     publisher_.send(prior);
     deadline_.note(prior.stamp_ns, RobotClock::now_ns());

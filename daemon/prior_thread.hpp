@@ -8,6 +8,7 @@
 #include "core/prior/prior_estimator.hpp"
 #include "core/time/cadence.hpp"
 #include "core/time/stream_pace.hpp"
+#include "daemon/base_path_choice.hpp"
 #include "daemon/deadline.hpp"
 #include "daemon/handover.hpp"
 #include "daemon/seq_lock.hpp"
@@ -23,10 +24,12 @@ struct PriorStatus {
   std::array<std::uint64_t, datagram::kKinds> samples{};        ///< by Kind, from UDP and DDS
   std::array<std::int64_t, datagram::kKinds> last_sample_ns{};  ///< robot clock, by Kind; 0: none yet
   std::array<Cadence, 2> base_stations;                         ///< by PressureSample::station, robot clock
-  std::array<StreamPace, datagram::kKinds> pace;                ///< of the stamps, by Kind
-  std::array<std::uint64_t, datagram::kKinds> dropped{};        ///< lost to a full queue, by Kind
-  std::uint64_t dropped_samples = 0;                            ///< their sum
-  std::int64_t stamp_ns = 0;                                    ///< of the newest prior; 0: none yet
+  std::array<BasePathStatus, 2> base_paths;                     ///< by PressureSample::station
+  std::int64_t imu_resumed_ns = 0;                        ///< end of its last silence, robot clock; 0: never
+  std::array<StreamPace, datagram::kKinds> pace;          ///< of the stamps, by Kind
+  std::array<std::uint64_t, datagram::kKinds> dropped{};  ///< lost to a full queue, by Kind
+  std::uint64_t dropped_samples = 0;                      ///< their sum
+  std::int64_t stamp_ns = 0;                              ///< of the newest prior; 0: none yet
   double height_m = 0.0;
   double height_variance_m2 = 0.0;
   HeightSource height_source = HeightSource::kNone;
@@ -62,6 +65,7 @@ class PriorThread {
   void describe(const Prior& prior) noexcept;
 
   PriorEstimator estimator_;
+  std::array<BasePathChoice, 2> base_paths_;  ///< by PressureSample::station
   ipc::Subscriber<ImuSample> imu_;
   ipc::Subscriber<PressureSample> barometer_;
   ipc::Subscriber<PressureSample> base_barometer_;

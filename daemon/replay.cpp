@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 
 #include "config/config_io.hpp"
@@ -16,6 +17,9 @@
 namespace isobar {
 
 namespace {
+
+/// Scans from which on their rate is judged.
+constexpr std::uint64_t kMinScansForRate = 20;
 
 /// Writes the poses; counts the scans whose registration fell back to a method with fewer inputs than the
 /// configured one.
@@ -58,6 +62,7 @@ std::vector<files::RunCount> collect_counts(const recording::RecordingReader& re
   }
   run_counts::append(counts,
                      counts_of(pipeline.decoder().counters(), pipeline.decoder().wrong_model_message()));
+  counts.push_back({"lidar packets of another sender", pipeline.lidar_sender().refused, ""});
   run_counts::append(counts, counts_of(pipeline.prior_estimator().counters()));
   counts.push_back({"map cells seen through", pipeline.map().seen_through_count(), ""});
   return counts;
@@ -79,6 +84,24 @@ void warn_of_unusable_sensors(const recording::Manifest& manifest, const LockSte
        "the [wheel] gave no usable sample: constant velocity between scans");
   if (summary.registered == 0) {
     summary.warnings.emplace_back("no scan could be registered: all poses are the prior's");
+  }
+}
+
+/// Warns of packets of a second lidar, and of a rate of scans that no lidar has.
+void warn_of_two_lidars(const LockStep& pipeline, std::uint16_t port, ReplaySummary& summary) {
+  const SenderStatus& senders = pipeline.lidar_sender();
+  if (senders.refused > 0) {
+    summary.warnings.emplace_back("packets of " + ipv4_text(senders.in_use.ipv4) + " and of " +
+                                  ipv4_text(senders.other.ipv4) + " on UDP port " + std::to_string(port) +
+                                  ": those of " + ipv4_text(senders.in_use.ipv4) + " are used, " +
+                                  std::to_string(senders.refused) + " others are not; lidar.sender chooses");
+  }
+  const double rate_hz =
+      summary.recorded_s > 0.0 ? static_cast<double>(summary.scans) / summary.recorded_s : 0.0;
+  if (summary.scans >= kMinScansForRate && rate_hz > kFastestScanHz) {
+    summary.warnings.emplace_back(std::to_string(std::lround(rate_hz)) +
+                                  " scans per second: no lidar turns that fast; do two of them send from one "
+                                  "address?");
   }
 }
 
@@ -151,6 +174,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
     summary.warnings.emplace_back("the IMU was silent for " + std::to_string(sink.without_imu()) +
                                   " scans: they were registered as 6-DOF");
   }
+  warn_of_two_lidars(pipeline, used.lidar.port, summary);
   warn_of_unusable_sensors(reader.manifest(), pipeline, summary);
   output.close(summary.counts);
   refuse_empty_run(summary, pipeline, recording);

@@ -3,6 +3,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <array>
+
 #include "config/config_io.hpp"
 #include "daemon/counts.hpp"
 #include "daemon/stage_settings.hpp"
@@ -35,8 +37,15 @@ RunFiles::RunFiles(const Config& config) : directory_(config.output.directory) {
 void RunFiles::close(const StatusSnapshot& last) {
   if (!output_) return;
   std::vector<files::RunCount> counts = counts_of(last.lidar.counters, last.lidar.wrong_model_message.data());
+  counts.push_back({"lidar packets of another sender", last.lidar.sender.refused, ""});
   run_counts::append(counts, counts_of(last.samples.counters));
   run_counts::append(counts, counts_of(last.samples.base));
+  constexpr std::array<const char*, datagram::kKinds> kNames = {"imu", "baro", "base", "wheel"};
+  for (std::size_t kind = 0; kind < datagram::kKinds; ++kind) {
+    counts.push_back(
+        {std::string(kNames[kind]) + " lines of another sender", last.samples.senders[kind].refused, ""});
+  }
+  counts.push_back({"sample datagrams of senders not allowed", last.samples.not_allowed, ""});
   if (last.barometer.present) run_counts::append(counts, counts_of(last.barometer.device.counters));
   counts.push_back({"baro lines refused", last.samples.refused_pressure, ""});
   run_counts::append(counts, counts_of(last.prior.counters));

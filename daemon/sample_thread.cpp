@@ -5,10 +5,10 @@
 
 namespace isobar {
 
-SampleThread::SampleThread(const std::string& address, std::uint16_t port, Takes takes,
-                           ThreadSettings settings)
-    : takes_(takes),
-      receiver_(address, port),
+SampleThread::SampleThread(const std::string& address, std::uint16_t port, SampleInput::Takes takes,
+                           const std::string& senders, ThreadSettings settings)
+    : receiver_(address, port),
+      input_(takes, addresses_of(senders)),
       imu_(ipc::topics::kImu),
       barometer_(ipc::topics::kBarometer),
       base_barometer_(ipc::topics::kBaseBarometer),
@@ -22,30 +22,11 @@ void SampleThread::loop() noexcept {
 }
 
 void SampleThread::take_datagram(const ReceivedDatagram& received) noexcept {
-  parser_.begin(received.payload);
+  input_.begin(received, receiver_.clock().system());
   datagram::Sample sample;
-  while (parser_.next(sample)) {
-    const bool is_barometer = sample.kind == datagram::Kind::kPressure;
-    if (!(is_barometer ? takes_.barometer : takes_.others)) {
-      ++(is_barometer ? draft_status_.refused_pressure : draft_status_.not_of_this_role);
-      continue;
-    }
-    if (to_robot_clock(sample, received) && !publish(sample)) ++draft_status_.samples_without_memory;
+  while (input_.next(sample)) {
+    if (!publish(sample)) ++draft_status_.samples_without_memory;
   }
-}
-
-// False for a base-station sample that BaseStationStream refuses (old, repeated, another sender).
-bool SampleThread::to_robot_clock(datagram::Sample& sample, const ReceivedDatagram& received) noexcept {
-  const bool stamped = sample.stamp_ns() != 0;
-  if (!stamped) sample.set_stamp_ns(received.stamp_ns);
-  if (sample.kind == datagram::Kind::kBasePressure) {
-    return base_.check(received.sender_ipv4, sample.pressure, received.stamp_ns) == BaseVerdict::kAccepted;
-  }
-  if (!stamped) return true;
-  ClockAnchor& anchor = anchors_[static_cast<std::size_t>(sample.kind)];
-  (void)anchor.add(sample.stamp_ns(), received.stamp_ns);
-  sample.set_stamp_ns(anchor.to_host_ns(anchor.device_unwrapped_ns()));
-  return true;
 }
 
 bool SampleThread::publish(const datagram::Sample& sample) noexcept {
@@ -63,11 +44,8 @@ bool SampleThread::publish(const datagram::Sample& sample) noexcept {
 }
 
 void SampleThread::report() noexcept {
-  draft_status_.counters = parser_.counters();
+  static_cast<SampleInputStatus&>(draft_status_) = input_.status();
   draft_status_.dropped_by_kernel = receiver_.dropped_by_kernel();
-  draft_status_.clock_steps = 0;
-  for (const ClockAnchor& anchor : anchors_) draft_status_.clock_steps += anchor.steps();
-  draft_status_.base = base_.status();
   status_.put(draft_status_);
 }
 

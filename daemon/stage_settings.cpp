@@ -19,6 +19,7 @@ velodyne::Model model_of(const LidarSettings& lidar) {
 StageSettings stage_settings(const Config& config) {
   StageSettings settings;
   settings.lidar.model = model_of(config.lidar);
+  settings.lidar_sender = config.lidar.sender;
   settings.lidar.min_range_m = config.lidar.min_range_m;
   settings.lidar.max_range_m = config.lidar.max_range_m;
   settings.lidar.mask_start_deg = config.lidar.mask_start_deg;
@@ -50,6 +51,7 @@ Config with_sensors_of(const recording::Manifest& manifest, Config config) {
   }
   config.lidar.model = manifest.lidar->model;
   config.lidar.port = manifest.lidar->port;
+  if (config.lidar.sender.empty()) config.lidar.sender = manifest.lidar->sender;
   config.lidar.mount = manifest.lidar->mount;
   config.imu.mount = manifest.imu->mount;
   if (manifest.barometer) config.barometer.mount = manifest.barometer->mount;

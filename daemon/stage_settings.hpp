@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <string>
 
 #include "config/config.hpp"
 #include "core/map/local_map.hpp"
@@ -17,6 +18,7 @@ namespace isobar {
 /// Settings of all stages.
 struct StageSettings {
   velodyne::VelodyneConfig lidar;
+  std::string lidar_sender;  ///< see LidarSender
   PriorConfig prior;
   RegistrationConfig registration;
   MapConfig map;

@@ -8,6 +8,7 @@
 #include "core/stamp.hpp"
 #include "daemon/health_entries.hpp"
 #include "daemon/health_entry.hpp"
+#include "daemon/input_health.hpp"
 
 namespace isobar {
 namespace {
@@ -59,7 +60,11 @@ void fill_station_health(const StationSnapshot& now, const StationSnapshot& befo
             before.station.samples_without_memory, "samples dropped: no free chunk of shared memory");
   add_calibration(report, "barometer", now.station.outside_calibration, before.station.outside_calibration,
                   now.station.without_temperature, before.station.without_temperature);
+  if (!now.input_waits_for.empty()) {
+    add_entry(report, "input", HealthLevel::kError, "waiting: " + now.input_waits_for, 0.0);
+  }
   add_input(report, now.input, before.input);
+  add_sample_senders(report, now.input, before.input, now.now_ns);
 }
 
 }  // namespace isobar

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "config/config.hpp"
 #include "daemon/barometer_thread.hpp"
@@ -17,6 +18,7 @@ struct StationSnapshot {
   SampleThreadStatus input;
   BarometerThreadStatus barometer;
   StationStatus station;
+  std::string input_waits_for{};  ///< see UdpReceiver::waiting_for()
 };
 
 /// Adds the entries of a base station to a health report; rates and growth from `before` to `now`.

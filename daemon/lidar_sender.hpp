@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drivers/udp/sender_lock.hpp"
+#include "drivers/velodyne/data_packet.hpp"
+
+namespace isobar {
+
+/// Fastest rotation of the supported lidars is 20 Hz; more scans than this are those of two lidars [Hz].
+inline constexpr double kFastestScanHz = 25.0;
+
+/// Admits the packets of one lidar: two on one port give scans of two rooms on top of each other. Live runs and
+/// replay use this same object. One thread.
+class LidarSender {
+ public:
+  /// @param sender configured IPv4 address; empty: the first sender of a data packet of this model
+  LidarSender(velodyne::Model model, const std::string& sender)
+      : model_(model), lock_(sender.empty() ? std::vector<std::uint32_t>{} : std::vector{ipv4_of(sender)}) {}
+
+  /// @param stamp_ns time of arrival, robot clock
+  /// @return false for a data packet of another lidar. Anything that is no data packet of this model passes,
+  ///         for the decoder to count; it makes no sender known.
+  bool admits(std::span<const std::uint8_t> payload, std::uint32_t ipv4, std::int64_t stamp_ns) noexcept {
+    velodyne::DataPacket packet;
+    if (velodyne::read_packet(payload, model_, packet) != velodyne::DecodeStatus::kOk) return true;
+    return lock_.admits({ipv4, 0}, stamp_ns);
+  }
+  [[nodiscard]] const SenderStatus& status() const noexcept { return lock_.status(); }
+
+ private:
+  velodyne::Model model_;
+  SenderLock lock_;
+};
+
+}  // namespace isobar

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <doctest/doctest.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "daemon/base_path_choice.hpp"
+#include "daemon/health.hpp"
+#include "daemon/input_health.hpp"
+#include "daemon/start_over.hpp"
+#include "daemon/waiting_log.hpp"
+
+namespace isobar::test::test_input_health {
+namespace {
+
+using ipc::HealthLevel;
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr std::int64_t kNow = 1'700'000'000 * kSecond;
+
+std::optional<ipc::HealthEntry> entry(const ipc::HealthReport& report, const std::string& name) {
+  for (std::uint32_t i = 0; i < report.entry_count; ++i) {
+    if (report.entries[i].name == name) return report.entries[i];
+  }
+  return std::nullopt;
+}
+
+PressureSample base_sample(SamplePath path, std::int64_t stamp_ns) {
+  PressureSample sample{stamp_ns, 98'000.0, 20.0};
+  sample.path = path;
+  return sample;
+}
+
+}  // namespace
+
+TEST_CASE("Of a base station on two paths one is used; the other takes over late and gives way at once") {
+  BasePathChoice choice;
+  std::int64_t now_ns = kNow;
+  for (int i = 0; i < 100; ++i) {
+    now_ns += kSecond;
+    CHECK(choice.check(base_sample(SamplePath::kDds, now_ns)));
+    CHECK_FALSE(choice.check(base_sample(SamplePath::kDatagram, now_ns)));
+  }
+  CHECK(choice.status().refused == 100);
+  const std::int64_t last_ns = now_ns;
+  while (!choice.check(base_sample(SamplePath::kDatagram, now_ns))) now_ns += kSecond / 10;
+  CHECK(now_ns - last_ns > BasePathChoice::kTakeoverNs);
+  CHECK(now_ns - last_ns < BasePathChoice::kTakeoverNs + kSecond);
+  CHECK(choice.check(base_sample(SamplePath::kDds, now_ns)));
+  CHECK_FALSE(choice.check(base_sample(SamplePath::kDatagram, now_ns)));
+  CHECK(choice.status().takeovers == 1);
+}
+
+TEST_CASE("A rate of scans that no lidar has, and a second lidar, are errors and warnings that name them") {
+  Config config;
+  HealthMonitor monitor(config);
+  const auto now = std::make_unique<StatusSnapshot>();
+  now->now_ns = kNow;
+  ipc::HealthReport first;
+  monitor.fill(*now, first);
+  now->now_ns += kSecond;
+  now->lidar.counters.scans = 494;
+  now->lidar.last_packet_ns = now->now_ns;
+  now->lidar.sender.in_use = {0xC0A801C9, 0};
+  now->lidar.sender.other = {0xC0A801CA, 0};
+  now->lidar.sender.other_ns = now->now_ns;
+  now->lidar.sender.refused = 750;
+  ipc::HealthReport report;
+  monitor.fill(*now, report);
+  REQUIRE(entry(report, "lidar").has_value());
+  CHECK(entry(report, "lidar")->level == HealthLevel::kError);
+  REQUIRE(entry(report, "lidar/senders").has_value());
+  CHECK(entry(report, "lidar/senders")->level == HealthLevel::kWarning);
+  const std::string text = entry(report, "lidar/senders")->message;
+  CHECK(text == "192.168.1.201 is used, 192.168.1.202 sends, too: refused; lidar.sender chooses");
+}
+
+TEST_CASE("An input that waits for its address is an error with the reason, though nothing was received") {
+  Config config;
+  HealthMonitor monitor(config);
+  const auto now = std::make_unique<StatusSnapshot>();
+  now->now_ns = kNow;
+  now->lidar_waits_for = "UDP 192.168.1.77:2368: no network interface of this machine has that address";
+  now->samples_wait_for = "UDP 127.0.0.1:7373: the port is in use by another program";
+  ipc::HealthReport report;
+  monitor.fill(*now, report);
+  CHECK(entry(report, "lidar")->level == HealthLevel::kError);
+  CHECK(std::string(entry(report, "lidar")->message) == "waiting: " + now->lidar_waits_for);
+  CHECK(std::string(entry(report, "input")->message) == "waiting: " + now->samples_wait_for);
+}
+
+TEST_CASE("The input starts over when the lidar's clock jumps and the IMU resumes, together; once") {
+  StartOver start;
+  CHECK_FALSE(start.check({}));
+  CHECK_FALSE(start.check({-30 * kSecond, kNow, 0}));                    // a lidar that starts again alone
+  CHECK_FALSE(start.check({-30 * kSecond, kNow, kNow - 60 * kSecond}));  // an earlier silence of the IMU
+  CHECK_FALSE(start.check({kSecond / 20, kNow, kNow}));                  // a lidar whose clock is corrected
+  CHECK(start.check({-30 * kSecond, kNow, kNow + kSecond}));
+  CHECK_FALSE(start.check({-30 * kSecond, kNow, kNow + kSecond}));
+  CHECK(start.check({40 * kSecond, kNow + 90 * kSecond, kNow + 89 * kSecond}));
+  CHECK(start.count() == 2);
+}
+
+TEST_CASE("A wait is logged once, then every minute, and its end once") {
+  WaitingLog log;
+  std::size_t lines = 0;
+  for (int second = 0; second < 150; ++second) {
+    lines += log.due({"UDP 1.2.3.4:5: is not there", ""}, kNow + second * kSecond).size();
+  }
+  CHECK(lines == 3);
+  CHECK(log.due({"", ""}, kNow + 150 * kSecond).size() == 1);
+  CHECK(log.due({"", ""}, kNow + 151 * kSecond).empty());
+}
+
+TEST_CASE("A step of the system clock is a warning for ten seconds, and stays counted") {
+  SystemClockWatch system(0);
+  const auto read = [&](std::int64_t monotonic_ns, std::int64_t set_by_ns) {
+    system.note({monotonic_ns, monotonic_ns + set_by_ns, 100});
+  };
+  read(kNow, 0);
+  read(kNow + kSecond, 3 * 86'400 * kSecond + 3'723 * kSecond);
+  ipc::HealthReport report;
+  add_system_clock(report, system, kNow + 2 * kSecond);
+  CHECK(report.entries[0].level == HealthLevel::kWarning);
+  CHECK(std::string(report.entries[0].message).find("set 1 times since the start, by +3 days 01:02:03") == 0);
+  add_system_clock(report, system, kNow + 20 * kSecond);
+  CHECK(report.entries[1].level == HealthLevel::kOk);
+  CHECK(report.entries[1].value == 1.0);
+}
+
+}  // namespace isobar::test::test_input_health
