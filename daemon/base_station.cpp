@@ -9,6 +9,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "daemon/barometer_source.hpp"
+#include "daemon/input_health.hpp"
 #include "daemon/status_figures.hpp"
 
 namespace isobar {
@@ -33,6 +34,10 @@ StationSnapshot BaseStationGraph::status(std::int64_t now_ns) const {
 
 std::string BaseStationGraph::inputs() const {
   return fmt::format("base station \"{}\", samples on UDP port {}", config_.dds.base_station, input_.port());
+}
+
+std::vector<std::string> BaseStationGraph::waiting_for() const {
+  return {input_.waiting_for(), barometer_ ? isobar::waiting_for(barometer_->status()) : std::string{}};
 }
 
 BarometerState BaseStationGraph::barometer_state() const {

@@ -29,7 +29,7 @@ class BaseStationGraph final : public Graph {
   [[nodiscard]] WorkerGroup& workers() override { return workers_; }
   [[nodiscard]] std::string inputs() const override;
   [[nodiscard]] BarometerState barometer_state() const override;
-  [[nodiscard]] std::vector<std::string> waiting_for() const override { return {input_.waiting_for()}; }
+  [[nodiscard]] std::vector<std::string> waiting_for() const override;
   void fill_health(std::int64_t now_ns, ipc::HealthReport& report) override;
   /// A base station starts in a second and has no state to lose.
   [[nodiscard]] Apply apply_of(const Setting& /*setting*/) const override { return Apply::kRestart; }

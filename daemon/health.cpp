@@ -69,8 +69,6 @@ void HealthMonitor::fill(const StatusSnapshot& now, HealthReport& report) {
   const double elapsed_s = last_.now_ns == 0 ? 1.0 : seconds_between(last_.now_ns, now.now_ns);
   fill_lidar(now, elapsed_s, report);
   fill_samples(now, elapsed_s, report);
-  static_cast<void>(
-      start_over_.check({now.lidar.clock_step_ns, now.lidar.clock_stepped_ns, now.prior.imu_resumed_ns}));
   add_starts_over(report, start_over_, now.now_ns);
   fill_faults(now, report);
   fill_prior(now, report);

@@ -46,8 +46,10 @@ class HealthMonitor {
   void configure(const Config& config) { config_ = config; }
 
   void fill(const StatusSnapshot& now, ipc::HealthReport& report);
-  /// Starts of the input found by fill(), see StartOver.
-  [[nodiscard]] std::uint64_t starts_over() const noexcept { return start_over_.count(); }
+  /// True once for each time that the input starts over, see StartOver; fill() reports them.
+  [[nodiscard]] bool input_starts_over(const LidarStatus& lidar, const PriorStatus& prior) noexcept {
+    return start_over_.check({lidar.clock_step_ns, lidar.clock_stepped_ns, prior.imu_resumed_ns});
+  }
 
  private:
   void fill_lidar(const StatusSnapshot& now, double elapsed_s, ipc::HealthReport& report) const;

@@ -108,6 +108,13 @@ void add_system_clock(ipc::HealthReport& report, const SystemClockWatch& system,
             static_cast<double>(system.steps()));
 }
 
+std::string waiting_for(const BarometerThreadStatus& barometer) {
+  const BarometerState state = barometer.device.state;
+  const bool waits = state == BarometerState::kNoAnswer || state == BarometerState::kWrongDevice;
+  if (!barometer.present || !waits) return {};
+  return std::string(barometer.place.data()) + ": " + barometer.device.fault.data();
+}
+
 void add_starts_over(ipc::HealthReport& report, const StartOver& start_over, std::int64_t now_ns) {
   if (start_over.count() == 0) return;
   add_entry(report, "input/starts_over",

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/time/system_clock_watch.hpp"
+#include "daemon/barometer_thread.hpp"
 #include "daemon/base_path_choice.hpp"
 #include "daemon/sample_input.hpp"
 #include "daemon/start_over.hpp"
@@ -34,6 +35,9 @@ void add_base_paths(ipc::HealthReport& report, const std::string& name, const Ba
 /// Adds the entry "system_clock": how often it was set since the start, and by how much the last time; a
 /// warning for kSenderMemoryNs after a step.
 void add_system_clock(ipc::HealthReport& report, const SystemClockWatch& system, std::int64_t now_ns);
+
+/// What a barometer of this machine waits for, see Graph::waiting_for(); empty: nothing.
+[[nodiscard]] std::string waiting_for(const BarometerThreadStatus& barometer);
 
 /// Adds the entry "input/starts_over": absent before the first one; a warning for kSenderMemoryNs.
 void add_starts_over(ipc::HealthReport& report, const StartOver& start_over, std::int64_t now_ns);

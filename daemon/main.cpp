@@ -21,6 +21,7 @@
 #include "daemon/configuration.hpp"
 #include "daemon/graph.hpp"
 #include "daemon/health.hpp"
+#include "daemon/input_health.hpp"
 #include "daemon/lidar_thread.hpp"
 #include "daemon/logging.hpp"
 #include "daemon/map_thread.hpp"
@@ -97,7 +98,8 @@ class RobotGraph final : public Graph {
     return barometer_ ? barometer_->status().device.state : BarometerState{};
   }
   [[nodiscard]] std::vector<std::string> waiting_for() const override {
-    return {lidar_.waiting_for(), samples_.waiting_for()};
+    return {lidar_.waiting_for(), samples_.waiting_for(),
+            barometer_ ? isobar::waiting_for(barometer_->status()) : std::string{}};
   }
   void fill_health(std::int64_t now_ns, ipc::HealthReport& report) override {
     monitor_.fill(status(now_ns), report);
@@ -117,6 +119,7 @@ class RobotGraph final : public Graph {
     monitor_.configure(config_);
   }
   void collect() override {
+    static_cast<void>(monitor_.input_starts_over(lidar_.status(), prior_.status()));
     lidar_.collect();
     prior_.collect();
     registration_.collect();

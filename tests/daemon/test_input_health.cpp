@@ -103,6 +103,37 @@ TEST_CASE("The input starts over when the lidar's clock jumps and the IMU resume
   CHECK(start.count() == 2);
 }
 
+TEST_CASE("An input that starts over is a warning in the report, counted") {
+  Config config;
+  HealthMonitor monitor(config);
+  const auto now = std::make_unique<StatusSnapshot>();
+  now->now_ns = kNow;
+  CHECK_FALSE(monitor.input_starts_over(now->lidar, now->prior));
+  ipc::HealthReport before;
+  monitor.fill(*now, before);
+  CHECK_FALSE(entry(before, "input/starts_over").has_value());
+  now->lidar.clock_step_ns = -20 * kSecond;
+  now->lidar.clock_stepped_ns = kNow;
+  now->prior.imu_resumed_ns = kNow;
+  CHECK(monitor.input_starts_over(now->lidar, now->prior));
+  CHECK_FALSE(monitor.input_starts_over(now->lidar, now->prior));
+  ipc::HealthReport report;
+  monitor.fill(*now, report);
+  CHECK(entry(report, "input/starts_over")->level == HealthLevel::kWarning);
+  CHECK(entry(report, "input/starts_over")->value == 1.0);
+}
+
+TEST_CASE("A barometer of this machine whose device file is missing is waited for, and said so") {
+  BarometerThreadStatus barometer;
+  CHECK(waiting_for(barometer).empty());
+  barometer.present = true;
+  std::string("DPS310 on /dev/i2c-1 at 0x77").copy(barometer.place.data(), barometer.place.size() - 1);
+  CHECK(waiting_for(barometer).empty());
+  barometer.device.state = BarometerState::kNoAnswer;
+  std::string("no such device file").copy(barometer.device.fault.data(), barometer.device.fault.size() - 1);
+  CHECK(waiting_for(barometer) == "DPS310 on /dev/i2c-1 at 0x77: no such device file");
+}
+
 TEST_CASE("A wait is logged once, then every minute, and its end once") {
   WaitingLog log;
   std::size_t lines = 0;
