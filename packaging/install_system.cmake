@@ -12,7 +12,7 @@ endif()
 set(systemd ${isobar_source}/systemd)
 set(rights OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
 
-foreach(unit isobard.service isobar-dds.service run-isobar.mount)
+foreach(unit isobard.service isobar-dds.service isobar-metrics.service run-isobar.mount)
   file(READ ${systemd}/${unit} text)
   string(REPLACE "/etc/isobar/" "${etc}/isobar/" text "${text}")
   string(REPLACE "/usr/" "${CMAKE_INSTALL_PREFIX}/" text "${text}")

@@ -13,6 +13,7 @@
 #include "core/errors.hpp"
 #include "daemon/logging.hpp"
 #include "daemon/service.hpp"
+#include "ipc/service_view.hpp"
 #include "tools/commands.hpp"
 #include "tools/status/health_reader.hpp"
 #include "tools/status/metrics.hpp"
@@ -75,6 +76,7 @@ std::unique_ptr<HealthReader> attach(bool& said) {
 
 void run_metrics(const std::string& address) {
   set_up_logging("isobar-metrics");
+  ipc::enter_service_view();
   Service service;  // first, so that every thread inherits the blocked signals
   const auto source = std::make_shared<MetricsSource>();
   std::optional<Endpoint> endpoint(std::in_place, address, source);

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/errors.hpp"
+#include "ipc/service_view.hpp"
 #include "tools/commands.hpp"
 #include "tools/status/health_reader.hpp"
 #include "tools/status/view.hpp"
@@ -71,6 +72,7 @@ void run_status(const StatusOptions& options) {
   const auto wait = options.watch ? std::chrono::hours(24 * 365)
                                   : std::chrono::duration_cast<std::chrono::milliseconds>(
                                         std::chrono::duration<double>(options.wait_s));
+  ipc::enter_service_view();
   HealthReader reader("isobar-status", wait);
   ipc::HealthReport report;
   if (!reader.next(report, kReportTimeout)) {
