@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "config/setting_rules.hpp"
@@ -52,6 +53,37 @@ void check_sensors(const Config& config, const Requirements& rules) {
   }
 }
 
+using NamedText = std::pair<const char*, const std::string*>;
+
+/// Each text must differ from all others; the key of the later one is reported.
+template <std::size_t N>
+void require_different(const std::array<NamedText, N>& texts, const Requirements& rules) {
+  for (std::size_t i = 0; i < N; ++i) {
+    for (std::size_t before = 0; before < i; ++before) {
+      rules.require(*texts[i].second != *texts[before].second, texts[i].first,
+                    std::string("must differ from ") + texts[before].first);
+    }
+  }
+}
+
+void check_topic_names(const dds::TopicNames& names, const Requirements& rules) {
+  require_different(std::array<NamedText, 10>{{
+                        {"dds.topics.odom", &names.odom},
+                        {"dds.topics.pose", &names.pose},
+                        {"dds.topics.altitude", &names.altitude},
+                        {"dds.topics.tf", &names.tf},
+                        {"dds.topics.tf_static", &names.tf_static},
+                        {"dds.topics.registered_scan", &names.registered_scan},
+                        {"dds.topics.map_cloud", &names.map_cloud},
+                        {"dds.topics.diagnostics", &names.diagnostics},
+                        {"dds.topics.imu", &names.imu},
+                        {"dds.topics.wheel", &names.wheel},
+                    }},
+                    rules);
+  rules.require(names.base_temperature != names.base_pressure, "dds.topics.base_temperature",
+                "must differ from dds.topics.base_pressure");
+}
+
 void check_estimator(const Config& config, const Requirements& rules) {
   const AltimeterConfig& altimeter = config.prior.altimeter;
   rules.require(config.registration.min_range_m < config.registration.max_range_m, "registration.min_range_m",
@@ -68,20 +100,15 @@ void check_estimator(const Config& config, const Requirements& rules) {
 
 /// tf2 joins frames by their names: two frames of one name are a loop.
 void check_frames(const dds::DdsConfig& dds, const Requirements& rules) {
-  const std::array<std::pair<const char*, const std::string*>, 6> frames{{
-      {"dds.map_frame", &dds.map_frame},
-      {"dds.odom_frame", &dds.odom_frame},
-      {"dds.base_frame", &dds.base_frame},
-      {"dds.lidar_frame", &dds.lidar_frame},
-      {"dds.imu_frame", &dds.imu_frame},
-      {"dds.barometer_frame", &dds.barometer_frame},
-  }};
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    for (std::size_t before = 0; before < i; ++before) {
-      rules.require(*frames[i].second != *frames[before].second, frames[i].first,
-                    std::string("must differ from ") + frames[before].first);
-    }
-  }
+  require_different(std::array<NamedText, 6>{{
+                        {"dds.map_frame", &dds.map_frame},
+                        {"dds.odom_frame", &dds.odom_frame},
+                        {"dds.base_frame", &dds.base_frame},
+                        {"dds.lidar_frame", &dds.lidar_frame},
+                        {"dds.imu_frame", &dds.imu_frame},
+                        {"dds.barometer_frame", &dds.barometer_frame},
+                    }},
+                    rules);
 }
 
 }  // namespace
@@ -97,6 +124,7 @@ void check_together(const Config& config, const PlaceOfKey& place_of, Problems& 
   const Requirements rules(place_of, problems);
   check_sensors(config, rules);
   check_estimator(config, rules);
+  check_topic_names(config.dds.topics, rules);
   rules.require(config.dds.second_base_station != config.dds.base_station, "dds.second_base_station",
                 "must differ from dds.base_station");
   if (config.role == Role::kRobot) check_frames(config.dds, rules);

@@ -5,13 +5,16 @@ namespace isobar {
 namespace {
 
 void add_network(dds::DdsConfig& dds, SectionBuilder& s) {
-  s.number("domain_id", &dds.domain_id, "", 0, 232,
-           "DDS domain; must equal ROS_DOMAIN_ID of the ROS 2 nodes that listen. 0 is their default; "
-           "domains beyond 232 have no UDP ports.")
+  s.number("domain_id", &dds.domain_id, "", -1, 232,
+           "DDS domain; must equal ROS_DOMAIN_ID of the ROS 2 nodes that listen. -1: ROS_DOMAIN_ID of "
+           "isobar-dds's own environment, else 0, which is theirs; domains beyond 232 have no UDP ports.")
       .basic();
-  s.text("network_interface", dds.network_interface, TextRule::kInterface,
-         "Network interface of DDS, by name or address. Empty: the best one, or loopback if there is no "
-         "other.");
+  s.text("network_interface", dds.network_interface, TextRule::kInterfaces,
+         "Network interfaces of DDS beside loopback, by name or address, separated by commas. They may come "
+         "later and change. Empty: all, up to three; \"lo\": this machine only.");
+  s.text("peers", dds.peers, TextRule::kIpv4List,
+         "Machines that multicast does not reach, which are then found by unicast. Empty: none; within one "
+         "network multicast finds all.");
   s.number("max_message_bytes", &dds.max_message_bytes, "bytes", 1'472, 65'500,
            "Largest datagram. 14720 is Cyclone's default; 65500 halves the load of clouds where IP fragments "
            "do no harm, as on loopback.");
@@ -27,7 +30,32 @@ void add_names(dds::DdsConfig& dds, SectionBuilder& s) {
            "Bytes of an endpoint's id in ros_discovery_info: 16 from ROS 2 Iron on, 24 up to Humble.");
 }
 
+void add_topics(dds::TopicNames& names, std::vector<Setting>& settings) {
+  SectionBuilder s("dds.topics", UsedBy::kEveryRole, settings);
+  const auto name = [&s](const char* key, std::string& target, const char* doc) {
+    s.text(key, target, TextRule::kName, doc);
+  };
+  name("diagnostics", names.diagnostics,
+       "Name of diagnostics, without ros_namespace as all robots share it.");
+  name("base_pressure", names.base_pressure, "Name of a base station's pressure, below the station's name.");
+  name("base_temperature", names.base_temperature, "Name of its temperature, below the station's name.");
+  s.used_by(UsedBy::kRobot);
+  name("odom", names.odom, "Name of the odometry, below ros_namespace like all that follow but tf.");
+  name("pose", names.pose, "Name of the registered pose, one a scan.");
+  name("altitude", names.altitude, "Name of the height from air pressure.");
+  name("tf", names.tf,
+       "Name of the transforms, without ros_namespace; \"robot1/tf\" is one robot's own tree.");
+  name("tf_static", names.tf_static, "Name of the fixed transforms, without ros_namespace.");
+  name("registered_scan", names.registered_scan, "Name of the registered scan, a cloud in base_link.");
+  name("map_cloud", names.map_cloud, "Name of the map's points. Not \"map\", where Nav2 expects a grid.");
+  name("imu", names.imu, "Name of the IMU's samples, with dds.receive_sensors.");
+  name("wheel", names.wheel, "Name of the wheels' odometry, with dds.receive_sensors.");
+}
+
 void add_frames(dds::DdsConfig& dds, SectionBuilder& s) {
+  s.text("frame_prefix", dds.frame_prefix, TextRule::kPrefix,
+         "In front of every frame name, such as \"robot1/\", so that several robots share one /tf. Empty: "
+         "none.");
   s.text("map_frame", dds.map_frame, TextRule::kName, "Frame of the map, named as in REP-105.");
   s.text("odom_frame", dds.odom_frame, TextRule::kName,
          "Frame in which the pose has no jumps, named as in REP-105.");
@@ -47,6 +75,12 @@ void add_outputs(dds::DdsConfig& dds, SectionBuilder& s) {
            "Publishing rate of altitude. 10: air pressure is filtered to a few hertz anyway.");
   s.flag("publish_clouds", dds.publish_clouds,
          "Publish the registered scans and the map as clouds. false saves most of the load of isobar-dds.");
+  s.flag("publish_tf_map_odom", dds.publish_tf_map_odom,
+         "Publish map to odom in /tf. false where another localisation owns it.");
+  s.flag("publish_tf_odom_base", dds.publish_tf_odom_base,
+         "Publish odom to base_link in /tf. false where another odometry or a filter owns it.");
+  s.flag("publish_tf_static", dds.publish_tf_static,
+         "Publish the mounts of the sensors in /tf_static. false where a robot description does.");
 }
 
 void add_inputs(dds::DdsConfig& dds, SectionBuilder& s) {
@@ -89,6 +123,7 @@ void add_dds_settings(dds::DdsConfig& dds, std::vector<Setting>& settings) {
   add_frames(dds, s);
   add_outputs(dds, s);
   add_inputs(dds, s);
+  add_topics(dds.topics, settings);
   add_propagator(dds.propagator, settings);
 }
 

@@ -23,7 +23,8 @@ enum class TextRule : std::uint8_t {
   kIpv4List,     ///< up to 16 of kIpv4, separated by commas, or empty
   kName,         ///< 1 to 100 letters, digits, '_' or '/', no '/' at the ends
   kNameOrEmpty,  ///< kName, or empty
-  kInterface,    ///< name or address of a network interface, or empty
+  kPrefix,       ///< up to 100 letters, digits, '_' or '/', no '/' at the front, or empty
+  kInterfaces,   ///< names or addresses of network interfaces, separated by commas, or empty
 };
 
 /// Who needs a setting.

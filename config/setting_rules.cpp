@@ -7,7 +7,6 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <sstream>
 #include <string>
 #include <type_traits>
 
@@ -15,6 +14,7 @@
 #include "config/value_text.hpp"
 #include "core/errors.hpp"
 #include "core/printable_text.hpp"
+#include "core/text_list.hpp"
 
 namespace isobar {
 namespace {
@@ -40,14 +40,8 @@ bool is_ipv4(const std::string& text) {
 
 bool is_ipv4_list(const std::string& text) {
   constexpr std::size_t kMaxAddresses = 16;
-  std::istringstream stream(text);
-  std::size_t count = 0;
-  for (std::string word; std::getline(stream, word, ',');) {
-    word.erase(0, word.find_first_not_of(' '));
-    word.erase(word.find_last_not_of(' ') + 1);
-    if (!is_ipv4(word) || ++count > kMaxAddresses) return false;
-  }
-  return text.empty() || text.back() != ',';
+  const std::vector<std::string> addresses = split_list(text);
+  return addresses.size() <= kMaxAddresses && std::all_of(addresses.begin(), addresses.end(), is_ipv4);
 }
 
 bool is_name(const std::string& text) {
@@ -63,7 +57,8 @@ constexpr std::array kTextRules = {
     "must be empty, or up to 16 IPv4 addresses separated by commas",
     "must be 1 to 100 letters, digits, '_' or '/', with no '/' at the ends",
     "must be empty, or up to 100 letters, digits, '_' or '/', with no '/' at the ends",
-    "must be the name or the address of a network interface",
+    "must be empty, or up to 100 letters, digits, '_' or '/', with no '/' at the front",
+    "must be empty, or names or addresses of network interfaces, separated by commas",
 };
 
 struct RuleText {
@@ -156,8 +151,10 @@ bool keeps_rule(TextRule rule, const std::string& text) {
       return is_name(text);
     case TextRule::kNameOrEmpty:
       return text.empty() || is_name(text);
-    case TextRule::kInterface:
-      return text.size() <= 64 && consists_of(text, "_.-:@");
+    case TextRule::kPrefix:
+      return text.size() <= 100 && consists_of(text, "_/") && !text.starts_with('/');
+    case TextRule::kInterfaces:
+      return text.size() <= 200 && consists_of(text, "_.-:@, ");
   }
   return false;
 }

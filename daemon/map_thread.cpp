@@ -81,23 +81,28 @@ void MapThread::log_tile_losses() noexcept {
 }
 
 void MapThread::publish_cloud(std::int64_t stamp_ns) noexcept {
-  if (stamp_ns - last_cloud_ns_ < cloud_interval_ns_ || !clouds_.has_subscribers()) return;
-  ipc::MapCloud* cloud = clouds_.loan();
-  if (cloud == nullptr) return;
-  last_cloud_ns_ = stamp_ns;
-  points_.clear();
-  map_.append_points(points_);
-  const std::size_t stride = points_.size() / ipc::MapCloud::kMaxPoints + 1;
-  std::uint32_t count = 0;
-  for (std::size_t i = 0; i < points_.size(); i += stride) {
-    const MapPoint& point = points_[i];
-    const Eigen::Vector3f p_map = point.p_map.cast<float>();
-    cloud->points[count++] = {p_map.x(), p_map.y(), p_map.z(), 0, 0, point.intensity};
+  if (cloud_points_sent_ >= points_.size()) {  // no map is on its way
+    if (stamp_ns - last_cloud_ns_ < cloud_interval_ns_ || !clouds_.has_subscribers()) return;
+    points_.clear();
+    map_.append_points(points_);
+    last_cloud_ns_ = stamp_ns;
+    cloud_points_sent_ = 0;
+    ++cloud_sequence_;
   }
-  cloud->stamp_ns = stamp_ns;
-  cloud->sequence = cloud_sequence_++;
-  cloud->point_count = count;
-  clouds_.publish(cloud);
+  // One piece a scan: a large map fills neither the shared memory nor the time of one update.
+  ipc::MapCloud* piece = points_.empty() ? nullptr : clouds_.loan();
+  if (piece == nullptr) return;
+  piece->stamp_ns = last_cloud_ns_;
+  piece->sequence = cloud_sequence_;
+  piece->first_point = static_cast<std::uint32_t>(cloud_points_sent_);
+  piece->total_points = static_cast<std::uint32_t>(points_.size());
+  piece->point_count = std::min(ipc::MapCloud::kMaxPoints, piece->total_points - piece->first_point);
+  for (std::uint32_t i = 0; i < piece->point_count; ++i) {
+    const MapPoint& point = points_[cloud_points_sent_++];
+    const Eigen::Vector3f p_map = point.p_map.cast<float>();
+    piece->points[i] = {p_map.x(), p_map.y(), p_map.z(), 0, 0, point.intensity};
+  }
+  clouds_.publish(piece);
 }
 
 }  // namespace isobar

@@ -76,8 +76,9 @@ class MapThread {
   std::int64_t cloud_interval_ns_;
   std::int64_t last_cloud_ns_ = 0;
   std::uint32_t cloud_sequence_ = 0;
-  std::vector<MapPoint> points_;  ///< scratch
-  std::uint64_t superseded_ = 0;  ///< scans dropped for a newer one
+  std::vector<MapPoint> points_;       ///< of the map cloud
+  std::size_t cloud_points_sent_ = 0;  ///< of points_
+  std::uint64_t superseded_ = 0;       ///< scans dropped for a newer one
   Deadline deadline_;
   Handover<Change> changes_;
   MapStatus draft_status_;

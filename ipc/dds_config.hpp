@@ -9,13 +9,33 @@
 
 namespace isobar::dds {
 
+/// ROS names of the topics, without leading slash and namespace: section [dds.topics]. Those of a base station
+/// follow its name.
+struct TopicNames {
+  std::string odom = "odom";
+  std::string pose = "pose";
+  std::string altitude = "altitude";
+  std::string tf = "tf";
+  std::string tf_static = "tf_static";
+  std::string registered_scan = "registered_scan";
+  std::string map_cloud = "map_cloud";
+  std::string diagnostics = "diagnostics";
+  std::string imu = "imu/data";
+  std::string wheel = "wheel/odom";
+  std::string base_pressure = "fluid_pressure";
+  std::string base_temperature = "temperature";
+};
+
 /// DDS network, topics and frames of isobar-dds: section [dds] of the configuration. Ranges and reasons stand
 /// in the settings table (config/dds_settings.cpp).
 struct DdsConfig {
-  /// DDS domain: ROS_DOMAIN_ID of the nodes that listen.
-  int domain_id = 0;
-  /// Network interface, by name or address; empty: the best one, or loopback if there is no other.
+  /// DDS domain: ROS_DOMAIN_ID of the nodes that listen. -1: that of the environment, or 0.
+  int domain_id = -1;
+  /// Network interfaces beside loopback, by name or address, separated by commas; empty: all; "lo": loopback
+  /// alone.
   std::string network_interface;
+  /// IPv4 addresses of machines that multicast does not reach, separated by commas.
+  std::string peers;
   /// Largest datagram [bytes]. The default is Cyclone's.
   int max_message_bytes = 14720;
 
@@ -27,6 +47,10 @@ struct DdsConfig {
   /// Bytes of an endpoint's id in ros_discovery_info: 16 from ROS 2 Iron on, 24 up to Humble.
   int ros_gid_bytes = 16;
 
+  TopicNames topics;
+
+  /// In front of every frame name, such as "robot1/"; empty: none.
+  std::string frame_prefix;
   std::string map_frame = "map";
   std::string odom_frame = "odom";
   std::string base_frame = "base_link";
@@ -40,6 +64,9 @@ struct DdsConfig {
   double altitude_rate_hz = 10.0;
   /// Publish the registered scans and the map as clouds.
   bool publish_clouds = true;
+  bool publish_tf_map_odom = true;   ///< in /tf
+  bool publish_tf_odom_base = true;  ///< in /tf
+  bool publish_tf_static = true;     ///< the mounts of the sensors
 
   /// Name of the base station, whose topics are NAME/fluid_pressure and NAME/temperature: the one a robot
   /// listens to, or a base station's own.

@@ -14,14 +14,16 @@
 
 namespace isobar::ipc {
 
-/// The local map, downsampled for viewers. About 1 MiB.
+/// A piece of the local map. All pieces together, one after the other, are every point of it. About 1 MiB.
 struct MapCloud {
   static constexpr std::uint32_t kMaxPoints = 65'536;
 
-  std::int64_t stamp_ns = 0;      ///< stamp of the newest scan in the map, robot clock
-  std::uint32_t sequence = 0;     ///< number of maps published before this one
-  std::uint32_t point_count = 0;  ///< points[0 … point_count-1] are valid
-  ScanPoint points[kMaxPoints];   // NOLINT(modernize-avoid-c-arrays): p_map; time and ring are 0
+  std::int64_t stamp_ns = 0;       ///< stamp of the newest scan in the map, robot clock
+  std::uint32_t sequence = 0;      ///< number of maps published before this one; equal in all its pieces
+  std::uint32_t first_point = 0;   ///< points of the map in the pieces before this one
+  std::uint32_t total_points = 0;  ///< of the map
+  std::uint32_t point_count = 0;   ///< points[0 … point_count-1] are valid
+  ScanPoint points[kMaxPoints];    // NOLINT(modernize-avoid-c-arrays): p_map; time and ring are 0
 
   MapCloud() {}  // NOLINT: user-provided, so that a loan does not zero 1 MiB
 };
@@ -126,7 +128,7 @@ inline constexpr Topic<WheelSample> kWheel{"wheel", 256, 0};
 inline constexpr Topic<Prior> kPrior{"prior", 256, 0};
 inline constexpr Topic<PoseEstimate> kPose{"pose", 64, 0};
 inline constexpr Topic<RegisteredScan> kRegisteredScan{"registered_scan", 4, 0};
-inline constexpr Topic<MapCloud> kMapCloud{"map_cloud", 1, 1};
+inline constexpr Topic<MapCloud> kMapCloud{"map_cloud", 4, 1};
 inline constexpr Topic<HealthReport> kHealth{"health", 4, 1};
 
 }  // namespace topics

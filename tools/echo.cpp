@@ -3,17 +3,20 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/errors.hpp"
 #include "core/geometry.hpp"
 #include "ipc/dds/endpoints.hpp"
+#include "ipc/dds/library_log.hpp"
 #include "ipc/dds/messages.hpp"
 #include "tools/commands.hpp"
 
@@ -41,6 +44,14 @@ double seconds(const dds::HeaderMessage& header) {
 /// Rotation about z of a gravity-aligned frame [degrees].
 double yaw_deg(const geometry_msgs_msg_dds__Quaternion_& q) {
   return std::atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z)) / kRadPerDeg;
+}
+
+/// Prints the first lines of Cyclone DDS's log: when an address is lost it writes one for each message.
+void print_library_line(bool /*is_error*/, std::string_view line) noexcept {
+  constexpr int kMostLines = 5;
+  static std::atomic<int> lines{0};
+  if (lines++ >= kMostLines) return;
+  std::fprintf(stderr, "isobar: Cyclone DDS: %.*s\n", static_cast<int>(line.size()), line.data());
 }
 
 /// A text of a received message; empty when the sender left it null.
@@ -163,7 +174,14 @@ std::vector<std::unique_ptr<Echo>> make_echoes(dds_entity_t participant, const E
 }
 
 void run(const EchoOptions& options) {
-  const dds::Participant participant({options.domain, options.network_interface});
+  dds::set_library_log(&print_library_line);
+  dds::ParticipantSettings settings;
+  settings.domain_id = options.domain;
+  settings.network_interface = options.network_interface;
+  const dds::Participant participant(settings);
+  if (const auto& missing = participant.interfaces().missing; !missing.empty()) {
+    throw ServiceError("no network interface that is up has the name or address " + missing.front());
+  }
   const std::vector<std::unique_ptr<Echo>> echoes = make_echoes(participant.get(), options);
   const dds::Entity waitset = dds::checked(dds_create_waitset(participant.get()), "wait set");
   for (const std::unique_ptr<Echo>& echo : echoes) {
@@ -199,13 +217,15 @@ void add_echo_command(CLI::App& app) {
       ->add_option("TOPIC", options->topics, "pose, odom, altitude, tf, tf_static, diagnostics; one or more")
       ->check(CLI::IsMember({"pose", "odom", "altitude", "tf", "tf_static", "diagnostics"}))
       ->capture_default_str();
-  command->add_option("--domain", options->domain, "DDS domain, as ROS_DOMAIN_ID")
+  command->add_option("--domain", options->domain, "DDS domain")
+      ->envname("ROS_DOMAIN_ID")
       ->check(CLI::Range(0, 232))
       ->capture_default_str();
   command
-      ->add_option("--interface", options->network_interface,
-                   "network interface, by name or address; default: chosen automatically")
-      ->type_name("NAME");
+      ->add_option(
+          "--interface", options->network_interface,
+          "network interfaces beside loopback, by name or address, separated by commas; default: all")
+      ->type_name("NAMES");
   command
       ->add_option("--namespace", options->ros_namespace,
                    "namespace of the robot, dds.ros_namespace of its configuration")

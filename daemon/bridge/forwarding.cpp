@@ -43,7 +43,7 @@ void report_absence(Outputs& outputs, dds::DiagnosticsBuilder& builder) {
   builder.start(wall_ns());
   builder.add(ipc::HealthReport::kSummaryName.data(), HealthLevel::kError, "isobard is not running", 1.0);
   builder.add("bridge/isobard", HealthLevel::kError, "isobard is not running", 0.0);
-  outputs.diagnostics.write(builder.message());
+  if (outputs.diagnostics) outputs.diagnostics->write(builder.message());
 }
 
 Forwarding::CloudsIn::CloudsIn()
@@ -51,8 +51,11 @@ Forwarding::CloudsIn::CloudsIn()
 
 Forwarding::Forwarding(Outputs& outputs, const dds::DdsConfig& config)
     : outputs_(outputs),
-      station_topics_{dds::dds_name(dds::topics::kBasePressure, config.base_station).substr(3),
-                      dds::dds_name(dds::topics::kBasePressure, config.second_base_station).substr(3)},
+      station_topics_{
+          dds::dds_name(dds::topics::kBasePressure, config.base_station, config.topics.base_pressure)
+              .substr(3),
+          dds::dds_name(dds::topics::kBasePressure, config.second_base_station, config.topics.base_pressure)
+              .substr(3)},
       prior_in_(ipc::topics::kPrior),
       pose_in_(ipc::topics::kPose),
       station_in_(ipc::topics::kBaseBarometer),
@@ -97,22 +100,33 @@ void Forwarding::follow_system_clock() noexcept {
 void Forwarding::forward_poses() noexcept {
   while (pose_waiter_.wait_for(kMaxWait) != ipc::Waiter::Event::kStopped) {
     rounds_.fetch_add(1, std::memory_order_relaxed);
-    forward_health();  // first: it tells isobard's clock, on which all stamps are
-    follow_system_clock();
-    // Priors first: a pose needs the altimeter's height at its stamp.
-    while (const auto prior = prior_in_.take()) {
-      note_data();
-      if (outputs_.poses) outputs_.poses->on_prior(*prior);
-    }
-    while (const auto pose = pose_in_.take()) {
-      note_data();
-      if (outputs_.poses) outputs_.poses->on_pose(*pose);
-    }
-    while (const auto sample = station_in_.take()) {
-      if (outputs_.station)
-        outputs_.station->on_pressure(*sample, stamp_shift_ns_.load(std::memory_order_relaxed));
+    const std::lock_guard lock(pose_mutex_);
+    forward_round();
+  }
+}
+
+void Forwarding::forward_round() {
+  forward_health();  // first: it tells isobard's clock, on which all stamps are
+  follow_system_clock();
+  // Priors first: a pose needs the altimeter's height at its stamp.
+  while (const auto prior = prior_in_.take()) {
+    note_data();
+    if (outputs_.poses) outputs_.poses->on_prior(*prior);
+  }
+  while (const auto pose = pose_in_.take()) {
+    note_data();
+    if (outputs_.poses) outputs_.poses->on_pose(*pose);
+  }
+  while (const auto sample = station_in_.take()) {
+    if (outputs_.station) {
+      outputs_.station->on_pressure(*sample, stamp_shift_ns_.load(std::memory_order_relaxed));
     }
   }
+}
+
+void Forwarding::put_network(NetworkState state) {
+  const std::lock_guard lock(pose_mutex_);
+  network_ = std::move(state);
 }
 
 void Forwarding::put_received(const ReceivedCounts& counts) noexcept { received_.put(counts); }
@@ -134,21 +148,28 @@ void Forwarding::forward_health() {
         report->entry_count > 0 && ipc::HealthReport::kSummaryName == report->entries[0].name;
     if (!has_summary) reserve_summary(all_);
     append(*report, all_);
+    last_entries_.assign(all_.entries + 1, all_.entries + all_.entry_count);  // without the summary
   } else {
     diagnostics_.start(wall_ns());
     reserve_summary(all_);
     static_cast<void>(all_.add("bridge/isobard", HealthLevel::kStale, "isobard sends no health report", 0.0));
+    // What was said last is no longer known: a name that only vanished would stay green in many a display.
+    for (const ipc::HealthEntry& entry : last_entries_) {
+      static_cast<void>(all_.add(entry.name, HealthLevel::kStale, entry.message, entry.value));
+    }
   }
   add_own_health();
   hold_.apply(last_report_ns_, own_);
   log_own_health();
   append(own_, all_);
+  // Not among the own entries: the network has its own log lines.
+  static_cast<void>(all_.add("bridge/network", network_.level, network_.message, 0.0));
   fill_summary(all_);
   for (std::uint32_t i = 0; i < all_.entry_count; ++i) {
     const ipc::HealthEntry& entry = all_.entries[i];
     diagnostics_.add(entry.name, entry.level, entry.message, entry.value);
   }
-  outputs_.diagnostics.write(diagnostics_.message());
+  if (outputs_.diagnostics) outputs_.diagnostics->write(diagnostics_.message());
 }
 
 void Forwarding::add(const std::string& name, HealthLevel level, const std::string& message, double value) {
@@ -172,7 +193,7 @@ void Forwarding::add_own_health() {
   const auto value = [](const std::atomic<std::uint64_t>& count) {
     return count.load(std::memory_order_relaxed);
   };
-  const std::uint64_t unsent = outputs_.diagnostics.failures() +
+  const std::uint64_t unsent = (outputs_.diagnostics ? outputs_.diagnostics->failures() : 0) +
                                (outputs_.poses ? outputs_.poses->failures() : 0) +
                                (outputs_.station ? outputs_.station->failures() : 0);
   const ReceivedCounts received = received_.get();
@@ -206,12 +227,11 @@ void Forwarding::add_station_health(const ReceivedCounts& received) {
 
 void Forwarding::forward_clouds() noexcept {
   while (clouds_in_->waiter.wait_for(kMaxWait) != ipc::Waiter::Event::kStopped) {
+    const std::lock_guard lock(cloud_mutex_);
     if (const auto scan = clouds_in_->scan.take_latest()) {
       outputs_.clouds->on_scan(*scan, stamp_shift_ns_.load(std::memory_order_relaxed));
     }
-    if (const auto map = clouds_in_->map.take_latest()) {
-      outputs_.clouds->on_map(*map, stamp_shift_ns_.load(std::memory_order_relaxed));
-    }
+    while (const auto piece = clouds_in_->map.take()) outputs_.clouds->on_map(*piece, stamp_shift_ns_.load(std::memory_order_relaxed));
     clouds_dropped_.store(clouds_in_->scan.dropped(), std::memory_order_relaxed);
     cloud_failures_.store(outputs_.clouds->failures(), std::memory_order_relaxed);
   }

@@ -7,11 +7,14 @@
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "core/time/system_clock_watch.hpp"
+#include "daemon/bridge/network.hpp"
 #include "daemon/bridge/outputs.hpp"
 #include "daemon/bridge/receiving.hpp"
 #include "daemon/health_summary.hpp"
@@ -25,7 +28,7 @@ namespace isobar::bridge {
 void report_absence(Outputs& outputs, dds::DiagnosticsBuilder& builder);
 
 /// Forwards poses and clouds in two threads, so that a cloud of 1 MiB never delays odometry. Requires an
-/// Attachment to isobard and exclusive use of the outputs during its lifetime.
+/// Attachment to isobard and, except during a pause(), exclusive use of the outputs during its lifetime.
 class Forwarding {
  public:
   /// @throws ServiceError when shared memory cannot be used
@@ -34,6 +37,14 @@ class Forwarding {
   Forwarding(const Forwarding&) = delete;
   Forwarding& operator=(const Forwarding&) = delete;
 
+  /// Keeps both threads from the outputs as long as the result exists. Messages of isobard wait meanwhile.
+  struct Pause {
+    std::unique_lock<std::mutex> poses;
+    std::unique_lock<std::mutex> clouds;
+  };
+  [[nodiscard]] Pause pause() { return {std::unique_lock(pose_mutex_), std::unique_lock(cloud_mutex_)}; }
+  /// Passes on the state of the network, for the diagnostics.
+  void put_network(NetworkState state);
   /// Passes on the counts of the opposite direction, for the diagnostics. One thread.
   void put_received(const ReceivedCounts& counts) noexcept;
   [[nodiscard]] const IsobardClock& clock() const noexcept { return clock_; }
@@ -54,6 +65,7 @@ class Forwarding {
   void follow_system_clock() noexcept;
   void forward_poses() noexcept;
   void forward_clouds() noexcept;
+  void forward_round();
   void forward_health();
   void add_own_health();
   void add_station_health(const ReceivedCounts& received);
@@ -70,7 +82,11 @@ class Forwarding {
   ipc::Subscriber<ipc::HealthReport> health_in_;
   ipc::Waiter pose_waiter_;
   std::optional<CloudsIn> clouds_in_;
+  std::mutex pose_mutex_;   ///< held by the pose thread while it uses the outputs
+  std::mutex cloud_mutex_;  ///< likewise
+  NetworkState network_;    ///< guarded by pose_mutex_
   dds::DiagnosticsBuilder diagnostics_;
+  std::vector<ipc::HealthEntry> last_entries_;  ///< of isobard; pose thread
   std::atomic<std::uint64_t> rounds_{0};
   std::atomic<std::int64_t> last_data_ns_{0};  ///< steady clock, 0: never
   std::atomic<std::uint64_t> clouds_dropped_{0};

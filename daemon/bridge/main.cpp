@@ -1,27 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // isobar-dds: the bridge between isobard's shared memory and DDS.
 //
-// A process of its own, so that a fault in a network parser cannot reach the estimator. Waits for isobard
-// without limit. Restarts itself in place when isobard ends, because a process can attach to shared memory
+// A process of its own, so that a fault in a network parser cannot reach the estimator. Waits for isobard and
+// for the network without limit. Restarts itself in place when isobard ends, because a process can attach to shared memory
 // only once.
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include "core/errors.hpp"
 #include "daemon/bridge/forwarding.hpp"
+#include "daemon/bridge/network.hpp"
 #include "daemon/bridge/outputs.hpp"
 #include "daemon/bridge/process.hpp"
 #include "daemon/bridge/receiving.hpp"
+#include "daemon/bridge/repeated_lines.hpp"
 #include "daemon/bridge/settings.hpp"
 #include "daemon/logging.hpp"
 #include "daemon/service.hpp"
-#include "ipc/dds/discovery.hpp"
-#include "ipc/dds/participant.hpp"
+#include "ipc/dds/library_log.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar::bridge {
@@ -35,52 +38,52 @@ constexpr auto kAttachTimeout = 400ms;
 /// second. After a longer one this process is no longer connected, for instance because iceoryx
 /// unregistered it while it was stopped.
 constexpr auto kMaxSilence = 5s;
+/// Time between two log lines about something that is still waited for.
+constexpr auto kReminder = 60s;
 /// Time limit for attaching: milliseconds, but it blocks for ever when isobard ends in the middle of it.
 constexpr auto kAttachLimit = 10s;
 /// Time limit for detaching: less than a second, but it blocks for ever when isobard hangs.
 constexpr auto kDetachLimit = 4s;
 
-/// The DDS side.
-struct Network {
-  dds::Participant participant;
-  Outputs outputs;
-  dds::NodeAnnouncement announcement;
+/// The log of Cyclone DDS, thinned: a lost address or a stranger's datagrams would give a line each.
+RepeatedLines g_library_lines;
 
-  explicit Network(const Settings& settings)
-      : participant({settings.dds.domain_id, settings.dds.network_interface, settings.dds.max_message_bytes}),
-        outputs(participant.get(), settings),
-        announcement(participant.get(), settings.dds.ros_gid_bytes) {
-    announce(settings, {});
-  }
+std::int64_t library_clock_ns() {
+  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+}
 
-  /// Publishes which writers and readers belong to this ROS 2 node.
-  void announce(const Settings& settings, const std::vector<dds_entity_t>& readers) {
-    announcement.announce(settings.dds.ros_namespace, settings.dds.node_name, outputs.writers(), readers);
+void log_library_line(bool is_error, std::string_view line) noexcept {
+  const auto text = g_library_lines.note(line, library_clock_ns());
+  if (text) spdlog::log(is_error ? spdlog::level::err : spdlog::level::warn, "Cyclone DDS: {}", *text);
+}
+
+void log_library_counts() {
+  for (const std::string& line : g_library_lines.due(library_clock_ns())) {
+    spdlog::warn("Cyclone DDS: {}", line);
   }
-};
+}
 
 /// The shared-memory side and both directions of forwarding, from attaching to isobard until the end.
 class Connection {
  public:
-  Connection(std::unique_ptr<ipc::Attachment> attachment, Network& network, const Settings& settings)
+  Connection(std::unique_ptr<ipc::Attachment> attachment, Network& network, Outputs& outputs,
+             const Settings& settings)
       : attachment_(std::move(attachment)),
         network_(network),
-        forwarding_(network.outputs, settings.dds),
-        receiving_(network.participant.get(), settings, forwarding_.clock()),
-        watches_for_network_(settings.dds.network_interface.empty() &&
-                             !network.participant.network_interface().empty()) {
-    network.announce(settings, receiving_.readers());
+        settings_(settings),
+        forwarding_(outputs, settings.dds) {
+    receive();
   }
 
   /// One round of the supervise loop. Restarts the process when the connection has become useless.
   /// @return true when the pose thread has completed a round since the last call
   bool check() {
-    forwarding_.put_received(receiving_.counts());
+    if (receiving_) forwarding_.put_received(receiving_->counts());
     if (const auto reason = reason_to_restart()) {
       spdlog::warn("{}; restarting", *reason);
-      // dds_delete tells remote readers that this participant ends. No detaching from shared memory: that
-      // blocks without isobard, and the restarted program does not need it.
-      dds_delete(network_.participant.get());
+      // No detaching from shared memory: that blocks without isobard, and the restarted program does not need
+      // it.
+      network_.leave();
       replace_process();
     }
     const std::uint64_t rounds_before = rounds_;
@@ -88,21 +91,39 @@ class Connection {
     return rounds_ != rounds_before;
   }
 
+  /// Makes the DDS side anew. Messages of isobard wait meanwhile and are then forwarded: none is lost.
+  void renew_network() {
+    {
+      const auto pause = forwarding_.pause();
+      receiving_.reset();
+      network_.renew();
+      network_.wait_for_readers();
+    }
+    receive();
+  }
+
  private:
+  /// Makes the readers, while there is a network.
+  void receive() {
+    forwarding_.put_network(network_.state());
+    if (!network_.is_up()) return;
+    receiving_.emplace(network_.participant(), settings_, forwarding_.clock());
+    network_.announce(receiving_->readers());
+  }
+
   [[nodiscard]] std::optional<std::string> reason_to_restart() const {
     if (!attachment_->broker_alive()) return "isobard has ended";
     if (forwarding_.silence() > kMaxSilence) {
       return "no message from isobard for " + std::to_string(kMaxSilence.count()) + " s";
     }
-    if (watches_for_network_ && dds::loopback_if_alone().empty()) return "a network interface is up";
     return std::nullopt;
   }
 
   std::unique_ptr<ipc::Attachment> attachment_;
   Network& network_;
+  const Settings& settings_;
   Forwarding forwarding_;
-  const Receiving receiving_;
-  bool watches_for_network_;  ///< loopback was chosen, as no other interface was up
+  std::optional<Receiving> receiving_;  ///< while there is a network
   std::uint64_t rounds_ = 0;
 };
 
@@ -111,16 +132,17 @@ class Connector {
  public:
   Connector(Outputs& outputs, const std::string& node_name) : outputs_(outputs), builder_(node_name) {}
 
-  /// Waits kAttachTimeout for isobard.
+  /// Waits kAttachTimeout for isobard. Logs what it waits for, at once and then every minute.
   /// @return null while isobard does not run
   std::unique_ptr<ipc::Attachment> attach(Service& service) {
     try {
       return std::make_unique<ipc::Attachment>("isobar-dds", kAttachTimeout);
     } catch (const ServiceError& error) {
-      if (!logged_) {
-        spdlog::info("{}; waiting for it", error.what());
+      const std::int64_t now_ns = library_clock_ns();
+      if (now_ns >= next_line_ns_) {
+        spdlog::info("{}; waiting for it (systemctl status isobard)", error.what());
         service.set_status("waiting for isobard");
-        logged_ = true;
+        next_line_ns_ = now_ns + kReminder / std::chrono::nanoseconds(1);
       }
       report_absence(outputs_, builder_);
       return nullptr;
@@ -130,31 +152,68 @@ class Connector {
  private:
   Outputs& outputs_;
   dds::DiagnosticsBuilder builder_;
-  bool logged_ = false;
+  std::int64_t next_line_ns_ = 0;
+};
+
+/// The supervise loop's work.
+class Bridge {
+ public:
+  Bridge(Service& service, const Settings& settings)
+      : service_(service),
+        settings_(settings),
+        outputs_(settings),
+        network_(settings, outputs_),
+        connector_(outputs_, settings.dds.node_name) {
+    network_.renew();
+  }
+
+  /// @return true when no thread hangs
+  bool tick() {
+    log_library_counts();
+    if (network_.is_due()) renew_network();
+    if (connection_) return connection_->check();
+    const TimeLimit limit(kAttachLimit, &replace_process);
+    if (auto attachment = connector_.attach(service_)) {
+      connection_.emplace(std::move(attachment), network_, outputs_, settings_);
+      spdlog::info("attached to isobard");
+      tell_status();
+    }
+    return true;
+  }
+
+  /// Ends the forwarding. The library detaches only after main() has returned.
+  void stop() {
+    if (connection_) end_process_after(kDetachLimit);
+    connection_.reset();
+  }
+
+ private:
+  void renew_network() {
+    if (connection_) {
+      connection_->renew_network();
+      tell_status();
+    } else {
+      network_.renew();
+    }
+  }
+  void tell_status() { service_.set_status("forwarding; " + network_.state().message); }
+
+  Service& service_;
+  const Settings& settings_;
+  Outputs outputs_;
+  Network network_;
+  Connector connector_;
+  std::optional<Connection> connection_;
 };
 
 int run(const Settings& settings) {
   Service service;  // first, so that every thread inherits the blocked signals
   ipc::set_fatal_action(&replace_process_later);
-  Network network(settings);
-  const std::string& interface = network.participant.network_interface();
-  spdlog::info("DDS domain {} on {}", settings.dds.domain_id, interface.empty() ? "the network" : interface);
-  service.ready("DDS is up");
-  Connector connector(network.outputs, settings.dds.node_name);
-  std::optional<Connection> connection;
-  service.supervise([&] {
-    if (connection) return connection->check();
-    const TimeLimit limit(kAttachLimit, &replace_process);
-    if (auto attachment = connector.attach(service)) {
-      connection.emplace(std::move(attachment), network, settings);
-      service.set_status("forwarding");
-      spdlog::info("attached to isobard");
-    }
-    return true;
-  });
-  // The library detaches only after main() has returned.
-  if (connection) end_process_after(kDetachLimit);
-  connection.reset();
+  dds::set_library_log(&log_library_line);
+  Bridge bridge(service, settings);
+  service.ready("started");
+  service.supervise([&] { return bridge.tick(); });
+  bridge.stop();
   spdlog::info("stopped");
   return 0;
 }

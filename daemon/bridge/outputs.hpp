@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "daemon/bridge/settings.hpp"
@@ -9,27 +10,40 @@
 
 namespace isobar::bridge {
 
-/// All DDS writers of this machine: pose and clouds on a robot, pressure on a base station, diagnostics on
+/// All DDS outputs of this machine: pose and clouds on a robot, pressure on a base station, diagnostics on
 /// both.
 struct Outputs {
-  dds::Writer<dds::DiagnosticsMessage> diagnostics;
-  std::optional<dds::PoseOutputs> poses;       ///< robot only
-  std::optional<dds::CloudOutputs> clouds;     ///< robot only, with dds.publish_clouds
-  std::optional<dds::StationOutputs> station;  ///< base station only
+  std::optional<dds::Writer<dds::DiagnosticsMessage>> diagnostics;  ///< while open
+  std::optional<dds::PoseOutputs> poses;                            ///< robot only
+  std::optional<dds::CloudOutputs> clouds;                          ///< robot only, with dds.publish_clouds
+  std::optional<dds::StationOutputs> station;                       ///< base station only
 
-  /// @throws ServiceError when a DDS entity cannot be created
-  Outputs(dds_entity_t participant, const Settings& settings)
-      : diagnostics(participant, dds::topics::kDiagnostics) {
+  explicit Outputs(const Settings& settings) : diagnostics_name_(settings.dds.topics.diagnostics) {
     if (settings.is_base_station) {
-      station.emplace(participant, settings.dds.base_station);
+      station.emplace(settings.dds);
       return;
     }
-    poses.emplace(participant, settings.dds, settings.mounts);
-    if (settings.dds.publish_clouds) clouds.emplace(participant, settings.dds);
+    poses.emplace(settings.dds, settings.mounts);
+    if (settings.dds.publish_clouds) clouds.emplace(settings.dds);
+  }
+
+  /// @throws ServiceError when a DDS entity cannot be created
+  void open(dds_entity_t participant) {
+    diagnostics.emplace(participant, dds::topics::kDiagnostics, "", diagnostics_name_);
+    if (poses) poses->open(participant);
+    if (clouds) clouds->open(participant);
+    if (station) station->open(participant);
+  }
+  void close() noexcept {
+    diagnostics.reset();
+    if (poses) poses->close();
+    if (clouds) clouds->close();
+    if (station) station->close();
   }
 
   [[nodiscard]] std::vector<dds_entity_t> writers() const {
-    std::vector<dds_entity_t> writers{diagnostics.get()};
+    std::vector<dds_entity_t> writers;
+    if (diagnostics) writers.push_back(diagnostics->get());
     const auto append = [&writers](const auto& outputs) {
       if (!outputs) return;
       for (const dds_entity_t writer : outputs->writers()) writers.push_back(writer);
@@ -39,6 +53,9 @@ struct Outputs {
     append(station);
     return writers;
   }
+
+ private:
+  std::string diagnostics_name_;
 };
 
 }  // namespace isobar::bridge

@@ -72,8 +72,8 @@ class Receiving {
     bool anchored = false;
 
     Stream(dds_entity_t participant, const dds::DdsTopic<Message>& from, const std::string& ros_namespace,
-           const ipc::Topic<Sample>& to)
-        : reader(participant, from, ros_namespace), publisher(to) {}
+           const std::string& ros_name, const ipc::Topic<Sample>& to)
+        : reader(participant, from, ros_namespace, ros_name), publisher(to) {}
   };
 
   template <class Message, class Sample>

@@ -19,10 +19,12 @@ void add_options(CLI::App& app, Options& options) {
          "--config", options.config_file,
          "configuration file of isobard, of which the bridge uses section [dds], role and sensor mounts")
       ->type_name("FILE");
-  app.add_option("--domain", options.domain, "DDS domain, the ROS_DOMAIN_ID of the ROS 2 nodes (0 to 232)")
+  app.add_option("--domain", options.domain,
+                 "DDS domain, the ROS_DOMAIN_ID of the ROS 2 nodes (0 to 232; default: ROS_DOMAIN_ID here)")
       ->type_name("N");
-  app.add_option("--interface", options.network_interface, "network interface, by name or address")
-      ->type_name("NAME");
+  app.add_option("--interface", options.network_interface,
+                 "network interfaces beside loopback, by name or address, separated by commas; lo: none")
+      ->type_name("NAMES");
 }
 
 Settings load_settings(const Options& options) {
@@ -41,6 +43,12 @@ Settings load_settings(const Options& options) {
     settings.dds.node_name += "_" + config.dds.base_station;
     std::replace(settings.dds.node_name.begin(), settings.dds.node_name.end(), '/', '_');
   }
+  for (std::string* frame :
+       {&settings.dds.map_frame, &settings.dds.odom_frame, &settings.dds.base_frame,
+        &settings.dds.lidar_frame, &settings.dds.imu_frame, &settings.dds.barometer_frame}) {
+    *frame = config.dds.frame_prefix + *frame;
+  }
+  settings.environment = apply_environment(settings.dds, &read_environment);
   settings.mounts = {config.lidar.mount, config.imu.mount, config.barometer.mount};
   return settings;
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Settings of the bridge: the configuration file, overridden by the command line.
+// Settings of the bridge: the configuration file, overridden by the command line, completed by the
+// environment.
 #pragma once
 
 #include <optional>
 #include <string>
 
+#include "daemon/bridge/environment.hpp"
 #include "ipc/dds_config.hpp"
 
 namespace CLI {
@@ -20,17 +22,18 @@ struct Options {
   std::optional<std::string> network_interface;
 };
 
-/// Settings of the bridge, from the configuration and the command line.
+/// Settings of the bridge, from the configuration, the command line and the environment.
 struct Settings {
   bool is_base_station = false;
-  dds::DdsConfig dds;
+  dds::DdsConfig dds;  ///< frames with their prefix, domain_id >= 0
   dds::SensorMounts mounts;
+  Environment environment;
 };
 
 /// Adds description, version and options of the bridge to its command line; parsing fills `options`.
 void add_options(CLI::App& app, Options& options);
 
-/// @throws ConfigError when the file or an option on the command line breaks a rule
+/// @throws ConfigError when the file, an option on the command line or the environment breaks a rule
 [[nodiscard]] Settings load_settings(const Options& options);
 
 }  // namespace isobar::bridge

@@ -9,6 +9,7 @@
 #include "core/time/base_station_stream.hpp"
 #include "ipc/dds/endpoints.hpp"
 #include "ipc/dds/samples.hpp"
+#include "ipc/dds_config.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar::bridge {
@@ -36,7 +37,8 @@ class StationInput {
  public:
   /// @param station index: 0 first, 1 second base station
   /// @throws ServiceError when a DDS entity cannot be created
-  StationInput(dds_entity_t participant, const std::string& name, std::uint8_t station);
+  StationInput(dds_entity_t participant, const dds::DdsConfig& config, const std::string& name,
+               std::uint8_t station);
 
   /// Takes all waiting messages.
   /// @param now_ns robot clock

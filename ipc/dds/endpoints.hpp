@@ -21,13 +21,21 @@ template <class Message>
                  "topic " + name);
 }
 
+/// Number of readers that are matched with a writer.
+[[nodiscard]] inline std::uint32_t readers_of(dds_entity_t writer) noexcept {
+  dds_publication_matched_status_t status{};
+  return dds_get_publication_matched_status(writer, &status) == DDS_RETCODE_OK ? status.current_count : 0;
+}
+
 /// Writes a topic. One thread at a time.
 template <class Message>
 class Writer {
  public:
   /// @throws ServiceError when the topic or the writer cannot be created
-  Writer(dds_entity_t participant, const DdsTopic<Message>& topic, const std::string& ros_namespace = {}) {
-    const std::string name = dds_name(topic, ros_namespace);
+  /// @param ros_name see dds_name()
+  Writer(dds_entity_t participant, const DdsTopic<Message>& topic, const std::string& ros_namespace = {},
+         const std::string& ros_name = {}) {
+    const std::string name = dds_name(topic, ros_namespace, ros_name);
     const QosPointer qos = endpoint_qos(topic.delivery, topic.depth);
     topic_ = make_topic(participant, topic, name);
     writer_ = checked(dds_create_writer(participant, topic_.get(), qos.get(), nullptr), "writer of " + name);
@@ -45,11 +53,7 @@ class Writer {
   [[nodiscard]] dds_entity_t get() const noexcept { return writer_.get(); }
 
   /// Whether a reader is matched. Latched topics must be written even without one: readers may come later.
-  [[nodiscard]] bool has_readers() const noexcept {
-    dds_publication_matched_status_t status{};
-    return dds_get_publication_matched_status(writer_.get(), &status) == DDS_RETCODE_OK &&
-           status.current_count > 0;
-  }
+  [[nodiscard]] bool has_readers() const noexcept { return readers_of(writer_.get()) > 0; }
 
  private:
   Entity topic_;
@@ -62,8 +66,10 @@ template <class Message>
 class Reader {
  public:
   /// @throws ServiceError when the topic or the reader cannot be created
-  Reader(dds_entity_t participant, const DdsTopic<Message>& topic, const std::string& ros_namespace = {}) {
-    const std::string name = dds_name(topic, ros_namespace);
+  /// @param ros_name see dds_name()
+  Reader(dds_entity_t participant, const DdsTopic<Message>& topic, const std::string& ros_namespace = {},
+         const std::string& ros_name = {}) {
+    const std::string name = dds_name(topic, ros_namespace, ros_name);
     const QosPointer qos = endpoint_qos(topic.delivery, topic.depth);
     topic_ = make_topic(participant, topic, name);
     reader_ = checked(dds_create_reader(participant, topic_.get(), qos.get(), nullptr), "reader of " + name);

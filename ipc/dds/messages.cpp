@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdio>
+#include <cstring>
 
 #include "core/names.hpp"
 
@@ -13,11 +14,22 @@ namespace {
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 
 // Type numbers of sensor_msgs/PointField
-constexpr std::uint8_t kUint8 = 2;
+constexpr std::uint8_t kUint16 = 4;
 constexpr std::uint8_t kFloat32 = 7;
 
 static_assert(std::endian::native == std::endian::little,
               "points are sent as their bytes in memory, declared little endian");
+
+/// A point on the wire. Without the ring only the 16 bytes before it are sent.
+struct CloudPoint {
+  float x_m;
+  float y_m;
+  float z_m;
+  float intensity;
+  std::uint16_t ring;
+  std::uint16_t padding;  // the next point's floats stay aligned
+};
+static_assert(sizeof(CloudPoint) == 20 && offsetof(CloudPoint, ring) == 16);
 
 void fill_vector(const Eigen::Vector3d& vector, geometry_msgs_msg_dds__Vector3_& message) noexcept {
   message.x = vector.x();
@@ -102,30 +114,57 @@ void fill_transform(std::int64_t stamp_ns, const std::string& parent, const std:
   fill_rotation(T_parent_child, message.transform.rotation);
 }
 
-CloudBuilder::CloudBuilder()
-    : fields_{{{text("x"), offsetof(ScanPoint, x_m), kFloat32, 1},
-               {text("y"), offsetof(ScanPoint, y_m), kFloat32, 1},
-               {text("z"), offsetof(ScanPoint, z_m), kFloat32, 1},
-               {text("intensity"), offsetof(ScanPoint, intensity), kUint8, 1},
-               {text("ring"), offsetof(ScanPoint, ring), kUint8, 1}}} {
+CloudBuilder::CloudBuilder(Fields fields)
+    : fields_{{{text("x"), offsetof(CloudPoint, x_m), kFloat32, 1},
+               {text("y"), offsetof(CloudPoint, y_m), kFloat32, 1},
+               {text("z"), offsetof(CloudPoint, z_m), kFloat32, 1},
+               {text("intensity"), offsetof(CloudPoint, intensity), kFloat32, 1},
+               {text("ring"), offsetof(CloudPoint, ring), kUint16, 1}}},
+      with_ring_(fields == Fields::kWithRing) {
+  const std::size_t field_count = with_ring_ ? fields_.size() : fields_.size() - 1;
   message_.fields._buffer = fields_.data();
+  message_.fields._length = message_.fields._maximum = static_cast<std::uint32_t>(field_count);
   message_.height = 1;
-  message_.point_step = sizeof(ScanPoint);
+  message_.point_step = with_ring_ ? sizeof(CloudPoint) : offsetof(CloudPoint, ring);
   message_.is_dense = true;
 }
 
-const CloudMessage& CloudBuilder::build(std::int64_t stamp_ns, const std::string& frame,
-                                        const ScanPoint* points, std::uint32_t count,
-                                        bool with_ring) noexcept {
+void CloudBuilder::append(std::span<const ScanPoint> points) {
+  const std::size_t begin = data_.size();
+  data_.resize(begin + points.size() * message_.point_step);
+  std::uint8_t* to = data_.data() + begin;
+  for (const ScanPoint& from : points) {
+    const CloudPoint point{from.x_m, from.y_m, from.z_m, static_cast<float>(from.intensity), from.ring, 0};
+    std::memcpy(to, &point, message_.point_step);
+    to += message_.point_step;
+  }
+}
+
+const CloudMessage& CloudBuilder::message(std::int64_t stamp_ns, const std::string& frame) noexcept {
   fill_header(stamp_ns, frame, message_.header);
-  const auto field_count = static_cast<std::uint32_t>(with_ring ? fields_.size() : fields_.size() - 1);
-  message_.fields._length = message_.fields._maximum = field_count;
-  message_.width = count;
-  message_.row_step = count * message_.point_step;
+  message_.width = static_cast<std::uint32_t>(size());
+  message_.row_step = message_.width * message_.point_step;
   message_.data._length = message_.data._maximum = message_.row_step;
-  // Cyclone DDS only reads the data of a message that it writes.
-  message_.data._buffer = const_cast<std::uint8_t*>(reinterpret_cast<const std::uint8_t*>(points));  // NOLINT
+  message_.data._buffer = data_.data();
   return message_;
+}
+
+bool MapAssembly::add(const ipc::MapCloud& piece, CloudBuilder& cloud) {
+  if (piece.first_point == 0) {
+    cloud.clear();
+    complete_ = false;
+    sequence_ = piece.sequence;
+    stamp_ns_ = piece.stamp_ns;
+    begun_ = piece.total_points <= kMaxPoints;
+  }
+  begun_ = begun_ && piece.sequence == sequence_ && piece.first_point == cloud.size() &&
+           piece.point_count <= ipc::MapCloud::kMaxPoints &&
+           piece.point_count <= piece.total_points - piece.first_point;
+  if (!begun_) return false;
+  cloud.append({piece.points, piece.point_count});
+  complete_ = cloud.size() == piece.total_points;
+  begun_ = !complete_;
+  return complete_;
 }
 
 DiagnosticsBuilder::DiagnosticsBuilder(const std::string& node) : node_(node) {
@@ -145,15 +184,23 @@ DiagnosticsBuilder::DiagnosticsBuilder(const std::string& node) : node_(node) {
 void DiagnosticsBuilder::start(std::int64_t stamp_ns) noexcept {
   message_.header.stamp = to_time(stamp_ns);
   message_.status._length = 0;
+  without_place_ = 0;
 }
 
 void DiagnosticsBuilder::add(const char* name, ipc::HealthLevel level, const char* message,
                              double value) noexcept {
-  const std::size_t index = message_.status._length;
-  if (index >= kMaxStatuses) {
+  if (message_.status._length < kMaxStatuses - 1) {
+    write(message_.status._length++, name, level, message, value);
     return;
   }
-  ++message_.status._length;
+  ++without_place_;
+  message_.status._length = kMaxStatuses;
+  write(kMaxStatuses - 1, "bridge/diagnostics_dropped", ipc::HealthLevel::kWarning,
+        "entries left out: this message is full", static_cast<double>(without_place_));
+}
+
+void DiagnosticsBuilder::write(std::size_t index, const char* name, ipc::HealthLevel level,
+                               const char* message, double value) noexcept {
   Texts& texts = texts_[index];
   std::snprintf(texts.name.data(), texts.name.size(), "%s: %s", node_.c_str(), name);
   std::snprintf(texts.message.data(), texts.message.size(), "%s", message);

@@ -4,8 +4,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "core/estimates.hpp"
 #include "core/registration/pose_propagator.hpp"
@@ -36,22 +39,49 @@ void fill_altitude(const Prior& prior, const DdsConfig& names, AltitudeMessage& 
 void fill_transform(std::int64_t stamp_ns, const std::string& parent, const std::string& child,
                     const Eigen::Isometry3d& T_parent_child, TransformStampedMessage& message) noexcept;
 
-/// Builds PointCloud2 messages without copying the points: each ScanPoint is sent as its 16 bytes in memory.
-/// Fields: x, y, z (float32, metres), intensity (uint8) and, for scans, ring (uint8).
+/// Builds PointCloud2 messages with the field types that PCL and RViz read: x, y, z (float32, metres),
+/// intensity (float32, 0 … 255) and, for scans, ring (uint16).
 class CloudBuilder {
  public:
-  CloudBuilder();
+  enum class Fields : std::uint8_t { kWithRing, kWithoutRing };
+
+  explicit CloudBuilder(Fields fields);
   CloudBuilder(const CloudBuilder&) = delete;
   CloudBuilder& operator=(const CloudBuilder&) = delete;
 
-  /// The message is valid until the next call and during the lifetimes of `points` and `frame`.
-  [[nodiscard]] const CloudMessage& build(std::int64_t stamp_ns, const std::string& frame,
-                                          const ScanPoint* points, std::uint32_t count,
-                                          bool with_ring) noexcept;
+  /// Removes all points. Their memory is kept for the next ones.
+  void clear() noexcept { data_.clear(); }
+  void append(std::span<const ScanPoint> points);
+  [[nodiscard]] std::size_t size() const noexcept { return data_.size() / message_.point_step; }
+  /// The message is valid until the next call of any function, and during the lifetime of `frame`.
+  [[nodiscard]] const CloudMessage& message(std::int64_t stamp_ns, const std::string& frame) noexcept;
 
  private:
   std::array<PointFieldMessage, 5> fields_{};
   CloudMessage message_{};
+  bool with_ring_;
+  std::vector<std::uint8_t> data_;
+};
+
+/// Puts the map together from its pieces, which come one by one.
+class MapAssembly {
+ public:
+  /// Most points of a map: 1 GiB of memory of the bridge.
+  static constexpr std::uint32_t kMaxPoints = 1U << 26U;
+
+  /// Appends a piece to the points of `cloud`. A first piece begins a new map; a piece without those before it
+  /// is ignored, and the map with it.
+  /// @return true when the map has become complete
+  bool add(const ipc::MapCloud& piece, CloudBuilder& cloud);
+  /// Whether the points are those of a whole map.
+  [[nodiscard]] bool complete() const noexcept { return complete_; }
+  [[nodiscard]] std::int64_t stamp_ns() const noexcept { return stamp_ns_; }
+
+ private:
+  std::uint32_t sequence_ = 0;
+  std::int64_t stamp_ns_ = 0;
+  bool begun_ = false;
+  bool complete_ = false;
 };
 
 /// Builds the diagnostics message from the health entries of isobard and of the bridge.
@@ -63,19 +93,24 @@ class DiagnosticsBuilder {
   DiagnosticsBuilder& operator=(const DiagnosticsBuilder&) = delete;
 
   void start(std::int64_t stamp_ns) noexcept;
-  /// Adds a health entry, with copies of its texts. Entries beyond kMaxStatuses are left out.
+  /// Adds a health entry, with copies of its texts. In a full message the last status counts the entries that
+  /// found no place.
   void add(const char* name, ipc::HealthLevel level, const char* message, double value) noexcept;
   [[nodiscard]] const DiagnosticsMessage& message() const noexcept { return message_; }
 
   static constexpr std::size_t kMaxStatuses = ipc::HealthReport::kMaxEntries + 32;
 
  private:
+  void write(std::size_t index, const char* name, ipc::HealthLevel level, const char* message,
+             double value) noexcept;
+
   struct Texts {
     std::array<char, ipc::HealthEntry::kNameBytes + 110> name{};
     std::array<char, ipc::HealthEntry::kMessageBytes> message{};
     std::array<char, 32> value{};
   };
   std::string node_;
+  std::size_t without_place_ = 0;
   std::array<Texts, kMaxStatuses> texts_{};
   std::array<diagnostic_msgs_msg_dds__KeyValue_, kMaxStatuses> values_{};
   std::array<diagnostic_msgs_msg_dds__DiagnosticStatus_, kMaxStatuses> statuses_{};

@@ -9,120 +9,173 @@
 namespace isobar::dds {
 namespace {
 
-template <std::size_t N>
-TfMessage message_over(std::array<TransformStampedMessage, N>& transforms) {
+TfMessage message_over(TransformStampedMessage* transforms, std::size_t count) {
   TfMessage message{};
-  message.transforms._buffer = transforms.data();
-  message.transforms._length = message.transforms._maximum = N;
+  message.transforms._buffer = transforms;
+  message.transforms._length = message.transforms._maximum = static_cast<std::uint32_t>(count);
   return message;
 }
 
 }  // namespace
 
-PoseOutputs::PoseOutputs(dds_entity_t participant, const DdsConfig& config, const SensorMounts& mounts)
-    : config_(config),
-      propagator_(config.propagator),
-      odom_rate_(config.odom_rate_hz),
-      altitude_rate_(config.altitude_rate_hz),
-      odom_(participant, topics::kOdom, config.ros_namespace),
-      pose_(participant, topics::kPose, config.ros_namespace),
-      tf_(participant, topics::kTf),
-      tf_static_(participant, topics::kTfStatic),
-      altitude_(participant, topics::kAltitude, config.ros_namespace) {
-  write_static_transforms(mounts);
+PoseOutputs::Writers::Writers(dds_entity_t participant, const DdsConfig& config)
+    : odom(participant, topics::kOdom, config.ros_namespace, config.topics.odom),
+      pose(participant, topics::kPose, config.ros_namespace, config.topics.pose),
+      altitude(participant, topics::kAltitude, config.ros_namespace, config.topics.altitude) {
+  if (config.publish_tf_map_odom || config.publish_tf_odom_base) {
+    tf.emplace(participant, topics::kTf, "", config.topics.tf);
+  }
+  if (config.publish_tf_static)
+    tf_static.emplace(participant, topics::kTfStatic, "", config.topics.tf_static);
 }
 
+PoseOutputs::PoseOutputs(const DdsConfig& config, const SensorMounts& mounts)
+    : config_(config),
+      mounts_(mounts),
+      propagator_(config.propagator),
+      odom_rate_(config.odom_rate_hz),
+      altitude_rate_(config.altitude_rate_hz) {}
+
+void PoseOutputs::open(dds_entity_t participant) {
+  to_.emplace(participant, config_);
+  if (to_->tf_static) write_static_transforms();
+}
+
+void PoseOutputs::close() noexcept { to_.reset(); }
+
 void PoseOutputs::on_prior(const Prior& prior) {
-  if (altitude_rate_.due(prior.stamp_ns)) {
+  // Without a source the height is a zero that nobody measured.
+  if (to_ && prior.height_source != HeightSource::kNone && altitude_rate_.due(prior.stamp_ns)) {
     AltitudeMessage message{};
     Prior published = prior;
     published.stamp_ns += shift_ns_;
     fill_altitude(published, config_, message);
-    altitude_.write(message);
+    to_->altitude.write(message);
   }
   Odometry odometry;
-  if (!propagator_.propagate(prior, odometry) || !odom_rate_.due(prior.stamp_ns)) {
+  if (!propagator_.propagate(prior, odometry) || !odom_rate_.due(prior.stamp_ns) || !to_) {
     return;
   }
   odometry.stamp_ns += shift_ns_;
   OdometryMessage message{};
   fill_odometry(odometry, config_, message);
-  odom_.write(message);
-  write_transforms(odometry);
+  to_->odom.write(message);
+  if (to_->tf) write_transforms(odometry);
 }
 
 void PoseOutputs::on_pose(const PoseEstimate& pose) {
+  if (pose.mode == PoseMode::kInitializing) return;
   propagator_.add_pose(pose);
+  if (!to_) return;
   PoseEstimate published = pose;
   published.stamp_ns += shift_ns_;
   PoseMessage message{};
   fill_pose(published, config_, message);
-  pose_.write(message);
+  to_->pose.write(message);
 }
 
-StationOutputs::StationOutputs(dds_entity_t participant, const std::string& name)
-    : frame_(name),
-      pressure_(participant, topics::kBasePressure, name),
-      temperature_(participant, topics::kBaseTemperature, name) {}
+void PoseOutputs::write_transforms(const Odometry& odometry) {
+  std::array<TransformStampedMessage, 2> transforms{};
+  std::size_t count = 0;
+  if (config_.publish_tf_map_odom) {
+    fill_transform(odometry.stamp_ns, config_.map_frame, config_.odom_frame, odometry.T_map_odom,
+                   transforms[count++]);
+  }
+  if (config_.publish_tf_odom_base) {
+    fill_transform(odometry.stamp_ns, config_.odom_frame, config_.base_frame, odometry.T_odom_base,
+                   transforms[count++]);
+  }
+  to_->tf->write(message_over(transforms.data(), count));
+}
+
+void PoseOutputs::write_static_transforms() {
+  std::array<TransformStampedMessage, 3> transforms{};
+  const auto fill = [this](const std::string& child, const Mount& mount, TransformStampedMessage& message) {
+    fill_transform(0, config_.base_frame, child, mount.T_base_sensor(), message);
+  };
+  fill(config_.lidar_frame, mounts_.lidar, transforms[0]);
+  fill(config_.imu_frame, mounts_.imu, transforms[1]);
+  fill(config_.barometer_frame, mounts_.barometer, transforms[2]);
+  to_->tf_static->write(message_over(transforms.data(), transforms.size()));
+}
+
+std::vector<dds_entity_t> PoseOutputs::writers() const {
+  if (!to_) return {};
+  std::vector<dds_entity_t> writers{to_->odom.get(), to_->pose.get(), to_->altitude.get()};
+  if (to_->tf) writers.push_back(to_->tf->get());
+  if (to_->tf_static) writers.push_back(to_->tf_static->get());
+  return writers;
+}
+
+std::uint64_t PoseOutputs::failures() const noexcept {
+  if (!to_) return 0;
+  return to_->odom.failures() + to_->pose.failures() + to_->altitude.failures() +
+         (to_->tf ? to_->tf->failures() : 0) + (to_->tf_static ? to_->tf_static->failures() : 0);
+}
+
+StationOutputs::StationOutputs(const DdsConfig& config) : config_(config) {}
+
+void StationOutputs::open(dds_entity_t participant) {
+  const std::string& station = config_.base_station;
+  to_.emplace(Writers{{participant, topics::kBasePressure, station, config_.topics.base_pressure},
+                      {participant, topics::kBaseTemperature, station, config_.topics.base_temperature}});
+}
 
 void StationOutputs::on_pressure(const PressureSample& measured, std::int64_t shift_ns) {
+  if (!to_) return;
   PressureSample sample = measured;
   sample.stamp_ns += shift_ns;
   // Temperature first: a robot matches it on receiving the pressure.
   if (!std::isnan(sample.temperature_c)) {
     TemperatureMessage message{};
-    fill_temperature(sample, frame_, message);
-    temperature_.write(message);
+    fill_temperature(sample, config_.base_station, message);
+    to_->temperature.write(message);
   }
   PressureMessage message{};
-  fill_pressure(sample, frame_, message);
-  pressure_.write(message);
+  fill_pressure(sample, config_.base_station, message);
+  to_->pressure.write(message);
 }
 
-void PoseOutputs::write_transforms(const Odometry& odometry) {
-  std::array<TransformStampedMessage, 2> transforms{};
-  fill_transform(odometry.stamp_ns, config_.map_frame, config_.odom_frame, odometry.T_map_odom,
-                 transforms[0]);
-  fill_transform(odometry.stamp_ns, config_.odom_frame, config_.base_frame, odometry.T_odom_base,
-                 transforms[1]);
-  tf_.write(message_over(transforms));
+std::vector<dds_entity_t> StationOutputs::writers() const {
+  if (!to_) return {};
+  return {to_->pressure.get(), to_->temperature.get()};
 }
 
-void PoseOutputs::write_static_transforms(const SensorMounts& mounts) {
-  std::array<TransformStampedMessage, 3> transforms{};
-  const auto fill = [this](const std::string& child, const Mount& mount, TransformStampedMessage& message) {
-    fill_transform(0, config_.base_frame, child, mount.T_base_sensor(), message);
-  };
-  fill(config_.lidar_frame, mounts.lidar, transforms[0]);
-  fill(config_.imu_frame, mounts.imu, transforms[1]);
-  fill(config_.barometer_frame, mounts.barometer, transforms[2]);
-  tf_static_.write(message_over(transforms));
+std::uint64_t StationOutputs::failures() const noexcept {
+  return to_ ? to_->pressure.failures() + to_->temperature.failures() : 0;
 }
 
-std::vector<dds_entity_t> PoseOutputs::writers() const {
-  return {odom_.get(), pose_.get(), tf_.get(), tf_static_.get(), altitude_.get()};
-}
+CloudOutputs::CloudOutputs(const DdsConfig& config) : config_(config) {}
 
-std::uint64_t PoseOutputs::failures() const noexcept {
-  return odom_.failures() + pose_.failures() + tf_.failures() + tf_static_.failures() + altitude_.failures();
+void CloudOutputs::open(dds_entity_t participant) {
+  to_.emplace(
+      Writers{{participant, topics::kRegisteredScan, config_.ros_namespace, config_.topics.registered_scan},
+              {participant, topics::kMapCloud, config_.ros_namespace, config_.topics.map_cloud}});
+  if (map_.complete()) write_map();
 }
-
-CloudOutputs::CloudOutputs(dds_entity_t participant, const DdsConfig& config)
-    : config_(config),
-      scan_(participant, topics::kRegisteredScan, config.ros_namespace),
-      map_(participant, topics::kMap, config.ros_namespace) {}
 
 void CloudOutputs::on_scan(const RegisteredScan& scan, std::int64_t shift_ns) {
-  if (!scan_.has_readers()) {
-    return;
-  }
+  if (!to_ || !to_->scan.has_readers()) return;
   const std::uint32_t count = std::min(scan.point_count, RegisteredScan::kMaxPoints);
-  scan_.write(builder_.build(scan.pose.stamp_ns + shift_ns, config_.base_frame, scan.points, count, true));
+  scan_builder_.clear();
+  scan_builder_.append({scan.points, count});
+  to_->scan.write(scan_builder_.message(scan.pose.stamp_ns + shift_ns, config_.base_frame));
 }
 
-void CloudOutputs::on_map(const ipc::MapCloud& map, std::int64_t shift_ns) {
-  const std::uint32_t count = std::min(map.point_count, ipc::MapCloud::kMaxPoints);
-  map_.write(builder_.build(map.stamp_ns + shift_ns, config_.map_frame, map.points, count, false));
+void CloudOutputs::on_map(const ipc::MapCloud& piece, std::int64_t shift_ns) {
+  map_shift_ns_ = shift_ns;
+  if (map_.add(piece, map_builder_) && to_) write_map();
+}
+
+void CloudOutputs::write_map() { to_->map.write(map_builder_.message(map_.stamp_ns() + map_shift_ns_, config_.map_frame)); }
+
+std::vector<dds_entity_t> CloudOutputs::writers() const {
+  if (!to_) return {};
+  return {to_->scan.get(), to_->map.get()};
+}
+
+std::uint64_t CloudOutputs::failures() const noexcept {
+  return to_ ? to_->scan.failures() + to_->map.failures() : 0;
 }
 
 }  // namespace isobar::dds

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// DDS outputs: the published topics and their rates.
+// DDS outputs: the published topics and their rates. An output outlives its DDS writers, which are made anew
+// when the network changes: what it has gathered from earlier messages is kept. Without writers it takes
+// messages and publishes none.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,87 +43,116 @@ class RateLimit {
   std::int64_t next_ns_ = INT64_MIN / 2;
 };
 
-/// odom, pose, tf, tf_static, altitude. One thread.
+/// odom, pose, tf, tf_static, altitude. One thread at a time.
 class PoseOutputs {
  public:
-  /// @throws ServiceError when a DDS entity cannot be created
-  PoseOutputs(dds_entity_t participant, const DdsConfig& config, const SensorMounts& mounts);
+  PoseOutputs(const DdsConfig& config, const SensorMounts& mounts);
   PoseOutputs(const PoseOutputs&) = delete;
   PoseOutputs& operator=(const PoseOutputs&) = delete;
+
+  /// Makes the writers and publishes tf_static.
+  /// @throws ServiceError when a DDS entity cannot be created
+  void open(dds_entity_t participant);
+  void close() noexcept;
 
   /// Time of day minus robot clock, added to the stamps of all later messages [ns]. The values of on_prior() and
   /// on_pose() stay on the robot clock, which never jumps.
   void set_stamp_shift_ns(std::int64_t shift_ns) noexcept { shift_ns_ = shift_ns; }
-  /// Publishes altitude, odom and tf at their rates.
+  /// Publishes odom and tf, and altitude while it has a source, at their rates. Nothing before the first pose.
   void on_prior(const Prior& prior);
-  /// Publishes the pose and passes it to the propagator of odom and tf.
+  /// Publishes the pose and passes it to the propagator of odom and tf. Ignores poses of the bootstrap: until
+  /// the first registration there is no pose.
   void on_pose(const PoseEstimate& pose);
 
   [[nodiscard]] std::vector<dds_entity_t> writers() const;
+  /// Messages that were not sent since open().
   [[nodiscard]] std::uint64_t failures() const noexcept;
 
  private:
-  void write_static_transforms(const SensorMounts& mounts);
+  struct Writers {
+    Writers(dds_entity_t participant, const DdsConfig& config);
+    Writer<OdometryMessage> odom;
+    Writer<PoseMessage> pose;
+    Writer<AltitudeMessage> altitude;
+    std::optional<Writer<TfMessage>> tf;         ///< null: neither transform is published
+    std::optional<Writer<TfMessage>> tf_static;  ///< null: not published
+  };
+
+  void write_static_transforms();
   void write_transforms(const Odometry& odometry);
 
   DdsConfig config_;
+  SensorMounts mounts_;
   std::int64_t shift_ns_ = 0;
   PosePropagator propagator_;
   RateLimit odom_rate_;
   RateLimit altitude_rate_;
-  Writer<OdometryMessage> odom_;
-  Writer<PoseMessage> pose_;
-  Writer<TfMessage> tf_;
-  Writer<TfMessage> tf_static_;
-  Writer<AltitudeMessage> altitude_;
+  std::optional<Writers> to_;
 };
 
-/// Outputs of a base station: NAME/fluid_pressure and NAME/temperature, with equal stamps. One thread.
+/// Outputs of a base station: NAME/fluid_pressure and NAME/temperature, with equal stamps. One thread at a
+/// time.
 class StationOutputs {
  public:
-  /// @param name name of the base station and of its frame
-  /// @throws ServiceError when a DDS entity cannot be created
-  StationOutputs(dds_entity_t participant, const std::string& name);
+  /// base_station of the configuration is the name of the base station and of its frame.
+  explicit StationOutputs(const DdsConfig& config);
   StationOutputs(const StationOutputs&) = delete;
   StationOutputs& operator=(const StationOutputs&) = delete;
+
+  /// @throws ServiceError when a DDS entity cannot be created
+  void open(dds_entity_t participant);
+  void close() noexcept { to_.reset(); }
 
   /// A sample whose temperature is NaN gives a pressure message only.
   /// @param shift_ns see PoseOutputs::set_stamp_shift_ns()
   void on_pressure(const PressureSample& measured, std::int64_t shift_ns);
 
-  [[nodiscard]] std::vector<dds_entity_t> writers() const { return {pressure_.get(), temperature_.get()}; }
-  [[nodiscard]] std::uint64_t failures() const noexcept {
-    return pressure_.failures() + temperature_.failures();
-  }
+  [[nodiscard]] std::vector<dds_entity_t> writers() const;
+  [[nodiscard]] std::uint64_t failures() const noexcept;
 
  private:
-  std::string frame_;
-  Writer<PressureMessage> pressure_;
-  Writer<TemperatureMessage> temperature_;
+  struct Writers {
+    Writer<PressureMessage> pressure;
+    Writer<TemperatureMessage> temperature;
+  };
+  DdsConfig config_;
+  std::optional<Writers> to_;
 };
 
-/// registered_scan and map. One thread; it may differ from the thread of PoseOutputs.
+/// registered_scan and map_cloud. One thread at a time; it may differ from the thread of PoseOutputs.
 class CloudOutputs {
  public:
-  /// @throws ServiceError when a DDS entity cannot be created
-  CloudOutputs(dds_entity_t participant, const DdsConfig& config);
+  explicit CloudOutputs(const DdsConfig& config);
   CloudOutputs(const CloudOutputs&) = delete;
   CloudOutputs& operator=(const CloudOutputs&) = delete;
+
+  /// Makes the writers; publishes the last complete map.
+  /// @throws ServiceError when a DDS entity cannot be created
+  void open(dds_entity_t participant);
+  void close() noexcept { to_.reset(); }
 
   /// Publishes the deskewed scan in base_link at the scan's end, which is its stamp. Skipped without readers.
   /// @param shift_ns see PoseOutputs::set_stamp_shift_ns()
   void on_scan(const RegisteredScan& scan, std::int64_t shift_ns);
-  /// Publishes the local map, in the map frame.
-  void on_map(const ipc::MapCloud& map, std::int64_t shift_ns);
+  /// Takes a piece of the local map; publishes the map, in the map frame, with its last piece.
+  void on_map(const ipc::MapCloud& piece, std::int64_t shift_ns);
 
-  [[nodiscard]] std::vector<dds_entity_t> writers() const { return {scan_.get(), map_.get()}; }
-  [[nodiscard]] std::uint64_t failures() const noexcept { return scan_.failures() + map_.failures(); }
+  [[nodiscard]] std::vector<dds_entity_t> writers() const;
+  [[nodiscard]] std::uint64_t failures() const noexcept;
 
  private:
+  struct Writers {
+    Writer<CloudMessage> scan;
+    Writer<CloudMessage> map;
+  };
+  void write_map();
+
   DdsConfig config_;
-  CloudBuilder builder_;
-  Writer<CloudMessage> scan_;
-  Writer<CloudMessage> map_;
+  CloudBuilder scan_builder_{CloudBuilder::Fields::kWithRing};
+  CloudBuilder map_builder_{CloudBuilder::Fields::kWithoutRing};
+  MapAssembly map_;
+  std::int64_t map_shift_ns_ = 0;
+  std::optional<Writers> to_;
 };
 
 }  // namespace isobar::dds

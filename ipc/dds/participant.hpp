@@ -6,6 +6,9 @@
 
 #include <string>
 #include <utility>
+#include <vector>
+
+#include "ipc/dds/interfaces.hpp"
 
 namespace isobar::dds {
 
@@ -44,31 +47,35 @@ class Entity {
 /// Network settings of a participant, see DdsConfig.
 struct ParticipantSettings {
   int domain_id = 0;
-  std::string network_interface;  ///< name or address; empty: chosen automatically
+  std::string network_interface;  ///< names or addresses, separated by commas; empty: all
   int max_message_bytes = 14720;
+  std::string peers;  ///< IPv4 addresses, separated by commas
+  /// CYCLONEDDS_URI: configuration of Cyclone DDS, which goes before these settings. Empty: none.
+  std::string uri;
+  bool uri_names_interfaces = false;  ///< then `network_interface` is not used
 };
 
 /// A DDS domain and a participant in it that ROS 2 tools recognise. At most one per process and domain.
 class Participant {
  public:
-  /// @throws ServiceError when the network interface does not exist, when the domain has no free port, or
-  ///         when DDS fails otherwise
+  /// On the interfaces that are up now; an interface asked for that is not up is left out.
+  /// @throws ServiceError when no interface is up, when the domain has no free port, or when DDS fails
+  ///         otherwise
   explicit Participant(const ParticipantSettings& settings);
+  Participant(const ParticipantSettings& settings, const InterfaceChoice& choice);
 
   [[nodiscard]] dds_entity_t get() const noexcept { return participant_.get(); }
-  /// The configured interface, or "lo" where it was chosen; empty: chosen by Cyclone DDS.
-  [[nodiscard]] const std::string& network_interface() const noexcept { return network_interface_; }
+  /// Not those that CYCLONEDDS_URI names.
+  [[nodiscard]] const InterfaceChoice& interfaces() const noexcept { return interfaces_; }
 
  private:
-  std::string network_interface_;
+  InterfaceChoice interfaces_;
   Entity domain_;
   Entity participant_;
 };
 
-/// "lo" when loopback is the only IPv4 interface that is up, else empty.
-[[nodiscard]] std::string loopback_if_alone();
-
 /// XML configuration for Cyclone DDS.
-[[nodiscard]] std::string domain_configuration(const ParticipantSettings& settings);
+[[nodiscard]] std::string domain_configuration(const ParticipantSettings& settings,
+                                               const std::vector<Interface>& interfaces);
 
 }  // namespace isobar::dds

@@ -25,7 +25,7 @@ using ImuMessage = sensor_msgs_msg_dds__Imu_;
 /// One row of the table below.
 template <class Message>
 struct DdsTopic {
-  const char* name;  ///< ROS name, without the leading slash
+  const char* name;  ///< default ROS name, without the leading slash
   const dds_topic_descriptor_t* descriptor;
   Delivery delivery;
   int depth;
@@ -41,7 +41,7 @@ inline const DdsTopic<TfMessage> kTf{"tf", &tf2_msgs_msg_dds__TFMessage__desc, D
 inline const DdsTopic<TfMessage> kTfStatic{"tf_static", &tf2_msgs_msg_dds__TFMessage__desc, Delivery::kLatched, 1, true};
 inline const DdsTopic<AltitudeMessage> kAltitude{"altitude", &isobar_msgs_msg_dds__Altitude__desc, Delivery::kReliable, 10, false};
 inline const DdsTopic<CloudMessage> kRegisteredScan{"registered_scan", &sensor_msgs_msg_dds__PointCloud2__desc, Delivery::kReliable, 5, false};
-inline const DdsTopic<CloudMessage> kMap{"map", &sensor_msgs_msg_dds__PointCloud2__desc, Delivery::kLatched, 1, false};
+inline const DdsTopic<CloudMessage> kMapCloud{"map_cloud", &sensor_msgs_msg_dds__PointCloud2__desc, Delivery::kLatched, 1, false};
 inline const DdsTopic<DiagnosticsMessage> kDiagnostics{"diagnostics", &diagnostic_msgs_msg_dds__DiagnosticArray__desc, Delivery::kReliable, 10, true};
 
 // Topics of a base station, with its name as namespace, such as "base".
@@ -54,10 +54,13 @@ inline const DdsTopic<OdometryMessage> kWheel{"wheel/odom", &nav_msgs_msg_dds__O
 }  // namespace topics
 
 /// DDS name of a topic: "rt/odom"; in the namespace robot1, "rt/robot1/odom".
+/// @param name ROS name instead of that of the table; empty: that of the table
 template <class Message>
-[[nodiscard]] std::string dds_name(const DdsTopic<Message>& topic, const std::string& ros_namespace) {
+[[nodiscard]] std::string dds_name(const DdsTopic<Message>& topic, const std::string& ros_namespace,
+                                   const std::string& name = {}) {
+  const std::string last = name.empty() ? topic.name : name;
   const bool plain = topic.is_global || ros_namespace.empty();
-  return plain ? std::string("rt/") + topic.name : "rt/" + ros_namespace + "/" + topic.name;
+  return plain ? "rt/" + last : "rt/" + ros_namespace + "/" + last;
 }
 
 }  // namespace isobar::dds

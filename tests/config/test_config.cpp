@@ -248,7 +248,7 @@ TEST_CASE("Keys load alike in sections and spelled with dots, in any order") {
             .barometer.iio.rate_hz == 20);
   fails("lidar.port = 9\n[lidar]\nmodel = \"VLP-16\"\n", "c.toml:2:");
   fails("lidar.port = 9\ndds.domain_id = 233\n",
-        "c.toml:2:17: dds.domain_id: must be a whole number within 0 … 232 (got 233)");
+        "c.toml:2:17: dds.domain_id: must be a whole number within -1 … 232 (got 233)");
 }
 
 TEST_CASE("Numbers are printed as plain decimals that read back to the same bits") {
@@ -271,10 +271,16 @@ TEST_CASE("A configuration changed after loading is checked against the same tab
   };
   CHECK_NOTHROW(check_config(Config{}, "command line"));
   refused([](Config& c) { c.dds.domain_id = 233; },
-          "command line: dds.domain_id: must be a whole number within 0 … 232 (got 233)");
-  refused([](Config& c) { c.dds.domain_id = -1; }, "dds.domain_id");
+          "command line: dds.domain_id: must be a whole number within -1 … 232 (got 233)");
+  refused([](Config& c) { c.dds.domain_id = -2; }, "dds.domain_id");
   refused([](Config& c) { c.dds.network_interface = "eth0\"/><Bad"; },
-          "dds.network_interface: must be the name or the address of a network interface");
+          "dds.network_interface: must be empty, or names or addresses of network interfaces");
+  refused([](Config& c) { c.dds.peers = "192.168.1.7, base.local"; },
+          "dds.peers: must be empty, or up to 16");
+  refused([](Config& c) { c.dds.peers = "192.168.1.7,"; }, "dds.peers");
+  refused([](Config& c) { c.dds.frame_prefix = "/robot1/"; }, "dds.frame_prefix");
+  refused([](Config& c) { c.dds.topics.pose = "/pose"; }, "dds.topics.pose");
+  refused([](Config& c) { c.dds.topics.pose = "odom"; }, "dds.topics.pose: must differ from dds.topics.odom");
   refused([](Config& c) { c.dds.ros_namespace = "/robot"; }, "dds.ros_namespace");
   refused([](Config& c) { c.dds.map_frame = ""; }, "dds.map_frame");
   refused([](Config& c) { c.dds.base_station = ""; }, "dds.base_station");

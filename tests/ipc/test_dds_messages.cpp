@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "ipc/dds/outputs.hpp"
 
@@ -27,7 +28,7 @@ TEST_CASE("types have their ROS 2 names") {
   CHECK(std::string(topics::kTf.descriptor->m_typename) == "tf2_msgs::msg::dds_::TFMessage_");
   CHECK(std::string(topics::kTfStatic.descriptor->m_typename) == "tf2_msgs::msg::dds_::TFMessage_");
   CHECK(std::string(topics::kAltitude.descriptor->m_typename) == "isobar_msgs::msg::dds_::Altitude_");
-  CHECK(std::string(topics::kMap.descriptor->m_typename) == "sensor_msgs::msg::dds_::PointCloud2_");
+  CHECK(std::string(topics::kMapCloud.descriptor->m_typename) == "sensor_msgs::msg::dds_::PointCloud2_");
   CHECK(std::string(topics::kDiagnostics.descriptor->m_typename) ==
         "diagnostic_msgs::msg::dds_::DiagnosticArray_");
   CHECK(std::string(topics::kBasePressure.descriptor->m_typename) ==
@@ -40,7 +41,9 @@ TEST_CASE("types have their ROS 2 names") {
 TEST_CASE("topic names get ROS 2's prefix, and the namespace unless they are global") {
   CHECK(dds_name(topics::kOdom, "") == "rt/odom");
   CHECK(dds_name(topics::kOdom, "robot1") == "rt/robot1/odom");
+  CHECK(dds_name(topics::kOdom, "robot1", "local/odometry") == "rt/robot1/local/odometry");
   CHECK(dds_name(topics::kTf, "robot1") == "rt/tf");
+  CHECK(dds_name(topics::kTf, "robot1", "robot1/tf") == "rt/robot1/tf");
   CHECK(dds_name(topics::kTfStatic, "robot1") == "rt/tf_static");
   CHECK(dds_name(topics::kDiagnostics, "robot1") == "rt/diagnostics");
   CHECK(dds_name(topics::kBasePressure, "roof") == "rt/roof/fluid_pressure");
@@ -135,32 +138,78 @@ TEST_CASE("the altitude message names the height source") {
   CHECK(message.variance == 0.01);
 }
 
-TEST_CASE("a cloud refers to the points without a copy, and its fields give the offset of each value") {
+TEST_CASE("a cloud has the field types that PCL reads: intensity FLOAT32, ring UINT16") {
+  constexpr int kUint16 = 4;  // sensor_msgs/PointField
+  constexpr int kFloat32 = 7;
   std::array<ScanPoint, 3> points{};
   points[2].x_m = 1.5F;
   points[2].intensity = 200;
   points[2].ring = 15;
-  CloudBuilder builder;
+  CloudBuilder builder(CloudBuilder::Fields::kWithRing);
+  builder.append(points);
   const std::string frame = "base_link";
-  const CloudMessage& scan = builder.build(1, frame, points.data(), points.size(), true);
-  CHECK(scan.data._buffer == reinterpret_cast<const std::uint8_t*>(points.data()));
-  CHECK(scan.data._length == 48);
+  const CloudMessage& scan = builder.message(1, frame);
+  REQUIRE(scan.data._length == 3 * scan.point_step);
   CHECK(scan.width * scan.point_step == scan.row_step);
   REQUIRE(scan.fields._length == 5);
-  const auto value_at = [&](std::uint32_t field) {
-    return scan.data._buffer + 2 * scan.point_step + scan.fields._buffer[field].offset;
+  const auto last = [&]<class T>(std::uint32_t field, T value) {
+    std::memcpy(&value, scan.data._buffer + 2 * scan.point_step + scan.fields._buffer[field].offset,
+                sizeof(value));
+    return value;
   };
-  float x_m = 0.0F;
-  std::memcpy(&x_m, value_at(0), sizeof(x_m));
-  CHECK(x_m == 1.5F);
+  CHECK(last(0, 0.0F) == 1.5F);
   CHECK(std::string(scan.fields._buffer[3].name) == "intensity");
-  CHECK(*value_at(3) == 200);
+  CHECK(scan.fields._buffer[3].datatype == kFloat32);
+  CHECK(last(3, 0.0F) == 200.0F);
   CHECK(std::string(scan.fields._buffer[4].name) == "ring");
-  CHECK(*value_at(4) == 15);
-  CHECK(builder.build(1, frame, points.data(), 0, false).fields._length == 4);
+  CHECK(scan.fields._buffer[4].datatype == kUint16);
+  CHECK(last(4, std::uint16_t{}) == 15);
+  CloudBuilder map(CloudBuilder::Fields::kWithoutRing);
+  map.append(points);
+  CHECK(map.message(1, frame).fields._length == 4);
+  CHECK(map.message(1, frame).width == 3);
+  CHECK(map.message(1, frame).point_step == 16);
 }
 
-TEST_CASE("diagnostics copy texts, truncate long ones and leave out entries beyond the capacity") {
+/// Piece of a map of 7 points, each with its number as x.
+std::unique_ptr<ipc::MapCloud> map_piece(std::uint32_t sequence, std::uint32_t first, std::uint32_t count) {
+  auto piece = std::make_unique<ipc::MapCloud>();
+  piece->stamp_ns = 100 + sequence;
+  piece->sequence = sequence;
+  piece->first_point = first;
+  piece->total_points = 7;
+  piece->point_count = count;
+  for (std::uint32_t i = 0; i < count; ++i) piece->points[i].x_m = static_cast<float>(first + i);
+  return piece;
+}
+
+TEST_CASE("a map is published whole, when its last piece has come; one with a lost piece is not") {
+  CloudBuilder cloud(CloudBuilder::Fields::kWithoutRing);
+  MapAssembly map;
+  CHECK_FALSE(map.add(*map_piece(1, 4, 3), cloud));  // a late subscriber begins with the next map
+  CHECK_FALSE(map.add(*map_piece(2, 0, 4), cloud));
+  CHECK_FALSE(map.complete());
+  CHECK(map.add(*map_piece(2, 4, 3), cloud));
+  CHECK(map.complete());
+  CHECK(map.stamp_ns() == 102);
+  REQUIRE(cloud.size() == 7);
+  const std::string frame = "map";
+  const CloudMessage& message = cloud.message(1, frame);
+  for (std::uint32_t i = 0; i < 7; ++i) {
+    float x_m = 0.0F;
+    std::memcpy(&x_m, message.data._buffer + i * message.point_step, sizeof(x_m));
+    CHECK(x_m == static_cast<float>(i));
+  }
+  CHECK_FALSE(map.add(*map_piece(3, 0, 2), cloud));
+  CHECK_FALSE(map.add(*map_piece(3, 4, 3), cloud));  // points 2 and 3 were lost
+  CHECK_FALSE(map.add(*map_piece(4, 2, 2), cloud));
+  CHECK(map.add(*map_piece(5, 0, 7), cloud));
+  auto broken = map_piece(6, 0, 7);
+  broken->point_count = 8;
+  CHECK_FALSE(map.add(*broken, cloud));
+}
+
+TEST_CASE("diagnostics copy texts, truncate long ones and count entries beyond the capacity") {
   const auto builder = std::make_unique<DiagnosticsBuilder>();
   builder->start(3'000'000'000);
   {
@@ -175,24 +224,40 @@ TEST_CASE("diagnostics copy texts, truncate long ones and leave out entries beyo
   for (std::size_t i = 0; i < 2 * DiagnosticsBuilder::kMaxStatuses; ++i) {
     builder->add("x", ipc::HealthLevel::kOk, "", 0.0);
   }
-  CHECK(builder->message().status._length == DiagnosticsBuilder::kMaxStatuses);
+  REQUIRE(builder->message().status._length == DiagnosticsBuilder::kMaxStatuses);
+  const auto& last = builder->message().status._buffer[DiagnosticsBuilder::kMaxStatuses - 1];
+  CHECK(std::string(last.name) == "isobar: bridge/diagnostics_dropped");
+  CHECK(last.level == 1);
+  // One entry before, twice the capacity after it, of which one place is the counter's.
+  CHECK(std::string(last.values._buffer[0].value) == std::to_string(DiagnosticsBuilder::kMaxStatuses + 2));
   builder->start(0);
   CHECK(builder->message().status._length == 0);
 }
 
 TEST_CASE("the domain configuration enables multicast on loopback and never enables iceoryx") {
-  const std::string lo = domain_configuration({0, "lo", 14720});
-  CHECK(lo.find("name=\"lo\" multicast=\"true\"") != std::string::npos);
-  CHECK(lo.find("<Peer address=\"127.0.0.1\"/>") != std::string::npos);
-  const std::string address = domain_configuration({0, "192.0.2.2", 65500});
-  CHECK(address.find("address=\"192.0.2.2\"") != std::string::npos);
-  CHECK(address.find("<MaxMessageSize>65500B") != std::string::npos);
-  CHECK(address.find("Peer") == std::string::npos);
-  const std::string automatic = domain_configuration({0, "", 14720});
-  CHECK(automatic.find("autodetermine=\"true\"") != std::string::npos);
-  for (const std::string& xml : {lo, address, automatic}) {
-    CHECK(xml.find("<SharedMemory><Enable>false</Enable></SharedMemory>") != std::string::npos);
+  const std::vector<Interface> both{{.name = "lo", .address = "127.0.0.1", .is_loopback = true},
+                                    {.name = "wlan0", .address = "192.0.2.2"}};
+  ParticipantSettings settings;
+  settings.max_message_bytes = 65500;
+  settings.peers = "192.0.2.9, 192.0.2.10";
+  const std::string xml = domain_configuration(settings, both);
+  CHECK(xml.find("<NetworkInterface address=\"127.0.0.1\" multicast=\"true\"/>") != std::string::npos);
+  CHECK(xml.find("<NetworkInterface address=\"192.0.2.2\"/>") != std::string::npos);
+  CHECK(xml.find("<MaxMessageSize>65500B") != std::string::npos);
+  for (const char* peer : {"127.0.0.1", "192.0.2.9", "192.0.2.10"}) {
+    CHECK(xml.find(std::string("<Peer address=\"") + peer + "\"/>") != std::string::npos);
   }
+  CHECK(xml.find("<SharedMemory><Enable>false</Enable></SharedMemory>") != std::string::npos);
+}
+
+TEST_CASE("CYCLONEDDS_URI follows the own configuration, so that it wins, and replaces its interfaces") {
+  const std::vector<Interface> lo{{.name = "lo", .address = "127.0.0.1", .is_loopback = true}};
+  ParticipantSettings settings;
+  settings.uri = "file:///etc/cyclone.xml";
+  CHECK(domain_configuration(settings, lo).ends_with("</Domain>,file:///etc/cyclone.xml"));
+  CHECK(domain_configuration(settings, lo).find("NetworkInterface") != std::string::npos);
+  settings.uri_names_interfaces = true;
+  CHECK(domain_configuration(settings, lo).find("NetworkInterface") == std::string::npos);
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ constexpr std::array<Expected, 11> kExpected{{
     {"rt/tf_static", "tf2_msgs::msg::dds_::TFMessage_", true},
     {"rt/altitude", "isobar_msgs::msg::dds_::Altitude_", false},
     {"rt/registered_scan", "sensor_msgs::msg::dds_::PointCloud2_", false},
-    {"rt/map", "sensor_msgs::msg::dds_::PointCloud2_", true},
+    {"rt/map_cloud", "sensor_msgs::msg::dds_::PointCloud2_", true},
     {"rt/diagnostics", "diagnostic_msgs::msg::dds_::DiagnosticArray_", false},
     {"ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_", true},
     {"rt/roof/fluid_pressure", "sensor_msgs::msg::dds_::FluidPressure_", false, true},

@@ -3,11 +3,14 @@
 // Prints "ready", then once a second the number of priors published ("priors N"), and each base-station
 // pressure received, with its age on the stand-in's clock: "base PASCAL MILLISECONDS STATION VARIANCE
 // DEGREES".
+//   stand_in [--initializing]
+// --initializing: every pose is one of the bootstrap.
 #include <signal.h>  // NOLINT(modernize-deprecated-headers)
 
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <string_view>
 
 #include "core/errors.hpp"
 #include "ipc/shared_memory.hpp"
@@ -39,15 +42,20 @@ void publish_scan(ipc::Publisher<RegisteredScan>& scans, const PoseEstimate& pos
   scans.publish(scan);
 }
 
-void publish_map(ipc::Publisher<ipc::MapCloud>& maps, const PoseEstimate& pose) {
+/// Publishes the piece of the map that begins at `first_point`.
+void publish_map(ipc::Publisher<ipc::MapCloud>& maps, const PoseEstimate& pose, std::uint32_t sequence,
+                 std::uint32_t first_point) {
   ipc::MapCloud* map = maps.loan();
   if (map == nullptr) {
     return;
   }
   map->stamp_ns = pose.stamp_ns;
-  map->point_count = stand_in::kMapPoints;
+  map->sequence = sequence;
+  map->first_point = first_point;
+  map->total_points = stand_in::kMapPoints;
+  map->point_count = std::min(ipc::MapCloud::kMaxPoints, map->total_points - first_point);
   for (std::uint32_t i = 0; i < map->point_count; ++i) {
-    map->points[i] = stand_in::point_at(i);
+    map->points[i] = stand_in::point_at(first_point + i);
   }
   maps.publish(map);
 }
@@ -65,7 +73,7 @@ void publish_health(ipc::Publisher<ipc::HealthReport>& reports, std::int64_t sta
   reports.publish(report);
 }
 
-int run() {
+int run(bool is_initializing) {
   sigset_t stop;
   sigemptyset(&stop);
   sigaddset(&stop, SIGTERM);
@@ -85,7 +93,8 @@ int run() {
   for (std::uint64_t step = 0;; ++step) {
     priors.send(stand_in::prior_at(start_ns, step));
     if (step % stand_in::kPriorsPerScan == 0) {
-      const PoseEstimate pose = stand_in::pose_at(start_ns, step);
+      PoseEstimate pose = stand_in::pose_at(start_ns, step);
+      if (is_initializing) pose.mode = PoseMode::kInitializing;
       poses.send(pose);
       publish_scan(scans, pose);
     }
@@ -94,8 +103,10 @@ int run() {
       std::printf("priors %llu\n", static_cast<unsigned long long>(step));
       std::fflush(stdout);
     }
-    if (step % 400 == 0) {
-      publish_map(maps, stand_in::pose_at(start_ns, step));
+    // A map every 2 s, its pieces 0.1 s apart.
+    if (const std::uint64_t piece = step % 400 / 20; step % 20 == 0 && piece < stand_in::kMapPieces) {
+      publish_map(maps, stand_in::pose_at(start_ns, step), static_cast<std::uint32_t>(step / 400),
+                  static_cast<std::uint32_t>(piece) * ipc::MapCloud::kMaxPoints);
     }
     while (const auto sample = base_pressure.take()) {
       const std::int64_t age_ns = stand_in::prior_at(start_ns, step).stamp_ns - sample->stamp_ns;
@@ -113,9 +124,9 @@ int run() {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
   try {
-    return run();
+    return run(argc > 1 && std::string_view(argv[1]) == "--initializing");
   } catch (const Error& error) {
     std::puts(error.what());
     return error.exit_code();

@@ -16,7 +16,8 @@ inline constexpr double kSpeedMS = 0.5;
 inline constexpr double kYawRad = 0.3;
 inline constexpr double kClimbMS = 0.1;
 inline constexpr std::uint32_t kScanPoints = 2000;
-inline constexpr std::uint32_t kMapPoints = 65'536;
+inline constexpr std::uint32_t kMapPoints = 150'000;
+inline constexpr std::uint32_t kMapPieces = 3;  ///< of ipc::MapCloud::kMaxPoints each, but the last
 
 /// Pose on a straight, climbing drive along the map's x axis, `time_s` after the start.
 inline Eigen::Isometry3d T_map_base(double time_s) {  // NOLINT(readability-identifier-naming)

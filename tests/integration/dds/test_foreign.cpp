@@ -138,7 +138,7 @@ TEST_CASE("a late reader gets the latched topics") {
   const std::string& output = capture();
   CHECK(find_line(output, "rt/tf_static").count == 1);
   CHECK(find_line(output, "ros_discovery_info").count == 1);
-  CHECK(find_line(output, "rt/map").count >= 1);
+  CHECK(find_line(output, "rt/map_cloud").count >= 1);
 }
 
 TEST_CASE("odometry has the frames and values of the drive") {
@@ -194,11 +194,11 @@ TEST_CASE("tf has map to odom to base_link, with the pose as product; tf_static 
 
 TEST_CASE("clouds arrive complete") {
   capture();
-  Message map("rt.map");
+  Message map("rt.map_cloud");
   CHECK(map.read_header().second == "map");
   CHECK(map.read<std::uint32_t>() == 1);
   CHECK(map.read<std::uint32_t>() == stand_in::kMapPoints);
-  CHECK(find_line(capture(), "rt/map").bytes > 16L * stand_in::kMapPoints);
+  CHECK(find_line(capture(), "rt/map_cloud").bytes > 16L * stand_in::kMapPoints);
 }
 
 TEST_CASE("diagnostics have the entries of isobard and of the bridge") {

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -101,13 +102,14 @@ TEST_CASE("altitude, pressure and inertial samples") {
 TEST_CASE("a cloud of a megabyte") {
   std::vector<ScanPoint> points(65'536);
   points.back().x_m = 42.0F;
-  CloudBuilder builder;
+  CloudBuilder builder(CloudBuilder::Fields::kWithRing);
+  builder.append(points);
   const std::string frame = "map";
-  const CloudMessage& sent =
-      builder.build(9, frame, points.data(), static_cast<std::uint32_t>(points.size()), true);
-  round_trip(topics::kMap, sent, [&](const CloudMessage& got) {
-    REQUIRE(got.data._length == points.size() * sizeof(ScanPoint));
-    CHECK(reinterpret_cast<const ScanPoint*>(got.data._buffer)[points.size() - 1].x_m == 42.0F);
+  round_trip(topics::kMapCloud, builder.message(9, frame), [&](const CloudMessage& got) {
+    REQUIRE(got.data._length == points.size() * 20);
+    float x_m = 0.0F;
+    std::memcpy(&x_m, got.data._buffer + (points.size() - 1) * 20, sizeof(x_m));
+    CHECK(x_m == 42.0F);
     REQUIRE(got.fields._length == 5);
     CHECK(std::string(got.fields._buffer[4].name) == "ring");
   });

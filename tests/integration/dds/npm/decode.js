@@ -132,7 +132,7 @@ const checks = {
     assert.equal(message.source, "differential");
   },
   registered_scan() { checkCloud("rt.registered_scan", "base_link", 2000, ["x", "y", "z", "intensity", "ring"]); },
-  map() { checkCloud("rt.map", "map", 65536, ["x", "y", "z", "intensity"]); },
+  map_cloud() { checkCloud("rt.map_cloud", "map", 150000, ["x", "y", "z", "intensity"]); },
   diagnostics() {
     const { status } = read("rt.diagnostics", "diagnostic_msgs/DiagnosticArray");
     const byName = new Map(status.map((entry) => [entry.name, entry]));
@@ -161,10 +161,11 @@ function checkCloud(topic, frame, count, names) {
   const cloud = read(topic, "sensor_msgs/PointCloud2");
   checkStamp(cloud.header, topic);
   assert.equal(cloud.header.frame_id, frame);
-  assert.deepEqual([cloud.height, cloud.width, cloud.point_step, cloud.row_step], [1, count, 16, 16 * count]);
+  const step = names.includes("ring") ? 20 : 16;
+  assert.deepEqual([cloud.height, cloud.width, cloud.point_step, cloud.row_step], [1, count, step, step * count]);
   assert.deepEqual([cloud.is_bigendian, cloud.is_dense], [false, true]);
   assert.deepEqual(cloud.fields.map((field) => field.name), names);
-  assert.equal(cloud.data.length, 16 * count);
+  assert.equal(cloud.data.length, step * count);
   const field = Object.fromEntries(cloud.fields.map((f) => [f.name, f]));
   const view = new DataView(cloud.data.buffer, cloud.data.byteOffset, cloud.data.byteLength);
   for (const i of [0, 1, 17, 999, count - 1]) {
@@ -173,8 +174,10 @@ function checkCloud(topic, frame, count, names) {
     assert.equal(view.getFloat32(at("x"), true), Math.fround(0.25 * i));
     assert.equal(view.getFloat32(at("y"), true), -1.5);
     near(view.getFloat32(at("z"), true), 0.001 * (i % 1000), 1e-6, "z");
-    assert.equal(view.getUint8(at("intensity")), i % 256);
-    if (field.ring) assert.equal(view.getUint8(at("ring")), i % 16);
+    assert.equal(field.intensity.datatype, 7);
+    assert.equal(view.getFloat32(at("intensity"), true), i % 256);
+    if (field.ring) assert.equal(field.ring.datatype, 4);
+    if (field.ring) assert.equal(view.getUint16(at("ring"), true), i % 16);
   }
 }
 
