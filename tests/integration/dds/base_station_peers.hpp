@@ -118,7 +118,7 @@ struct Got {
 /// Robot with the stand-in as isobard, and a subscriber of its diagnostics.
 class Robot {
  public:
-  explicit Robot(const std::string& config = "")
+  explicit Robot(const std::string& config = "# defaults\n")
       : participant_(std::make_shared<dds::Participant>(dds::ParticipantSettings{})),
         diagnostics_(participant_, dds::topics::kDiagnostics),
         stand_in_({ISOBAR_STAND_IN}),
