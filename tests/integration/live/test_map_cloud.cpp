@@ -2,6 +2,7 @@
 // The map thread's cloud in shared memory. The test is registration and subscriber.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -52,6 +53,7 @@ TEST_CASE("the map cloud is every point of the local map, in pieces that follow 
   MapConfig config;
   config.see_through_limit = 0;
   MapThread map(config, Eigen::Isometry3d::Identity(), 8.0, nullptr, {.name = "map"});
+  map.worker().start();
   std::uint32_t complete_maps = 0;
   std::uint32_t expected_first = 0;
   std::uint32_t largest_total = 0;
@@ -74,7 +76,7 @@ TEST_CASE("the map cloud is every point of the local map, in pieces that follow 
     }
   }
   CHECK(complete_maps >= 2);
-  CHECK(largest_total > 2 * ipc::MapCloud::kMaxPoints);
+  CHECK(largest_total > ipc::MapCloud::kMaxPoints);
 }
 
 }  // namespace
