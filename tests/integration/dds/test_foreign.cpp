@@ -206,6 +206,14 @@ TEST_CASE("diagnostics have the entries of isobard and of the bridge") {
   Message message("rt.diagnostics");
   message.read_header();
   REQUIRE(message.read<std::uint32_t>() >= 3);
+  // The summary, with the level of isobard's worst entry, lidar/packets_lost.
+  CHECK(message.read<std::uint8_t>() == 1);
+  CHECK(message.read<std::string>() == "isobar: summary");
+  CHECK(message.read<std::string>().find("lidar/packets_lost") != std::string::npos);
+  CHECK(message.read<std::string>() == "isobar");
+  REQUIRE(message.read<std::uint32_t>() == 1);
+  CHECK(message.read<std::string>() == "value");
+  message.read<std::string>();
   CHECK(message.read<std::uint8_t>() == 0);
   CHECK(message.read<std::string>() == "isobar: lidar/packets");
 }
