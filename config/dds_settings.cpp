@@ -32,6 +32,7 @@ void add_names(dds::DdsConfig& dds, SectionBuilder& s) {
 
 void add_topics(dds::TopicNames& names, std::vector<Setting>& settings) {
   SectionBuilder s("dds.topics", UsedBy::kEveryRole, settings);
+  s.applies(Apply::kLive);
   const auto name = [&s](const char* key, std::string& target, const char* doc) {
     s.text(key, target, TextRule::kName, doc);
   };
@@ -95,6 +96,7 @@ void add_inputs(dds::DdsConfig& dds, SectionBuilder& s) {
 
 void add_propagator(PosePropagatorConfig& propagator, std::vector<Setting>& settings) {
   SectionBuilder s("dds.propagator", UsedBy::kRobot, settings);
+  s.applies(Apply::kLive);
   s.number("slew_time_s", &propagator.slew_time_s, "s", 0.01, 10.0,
            "Time constant with which a correction enters odom. 0.1: within two scans odom follows the "
            "registered pose, and one bad scan is smoothed.");
@@ -113,6 +115,7 @@ void add_propagator(PosePropagatorConfig& propagator, std::vector<Setting>& sett
 
 void add_dds_settings(dds::DdsConfig& dds, std::vector<Setting>& settings) {
   SectionBuilder s("dds", UsedBy::kEveryRole, settings);
+  s.applies(Apply::kLive);  // isobar-dds follows isobard's configuration
   add_network(dds, s);
   add_names(dds, s);
   s.text("base_station", dds.base_station, TextRule::kName,

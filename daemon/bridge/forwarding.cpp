@@ -2,6 +2,7 @@
 #include "daemon/bridge/forwarding.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "daemon/base_station_health.hpp"
 #include "daemon/logging.hpp"
@@ -129,6 +130,11 @@ void Forwarding::put_network(NetworkState state) {
   network_ = std::move(state);
 }
 
+std::string Forwarding::configuration() const {
+  const std::lock_guard lock(pose_mutex_);
+  return configuration_;
+}
+
 void Forwarding::put_received(const ReceivedCounts& counts) noexcept { received_.put(counts); }
 
 void Forwarding::forward_health() {
@@ -144,6 +150,9 @@ void Forwarding::forward_health() {
     if (!system_clock_) system_clock_.emplace(report->robot_clock_offset_ns);
     follow_system_clock();
     diagnostics_.start(report->stamp_ns + stamp_shift_ns_.load(std::memory_order_relaxed));
+    const char* hash = report->status.configuration;
+    configuration_.assign(hash, strnlen(hash, sizeof report->status.configuration));
+    diagnostics_.start(report->stamp_ns);
     const bool has_summary =
         report->entry_count > 0 && ipc::HealthReport::kSummaryName == report->entries[0].name;
     if (!has_summary) reserve_summary(all_);

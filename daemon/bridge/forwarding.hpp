@@ -45,6 +45,8 @@ class Forwarding {
   [[nodiscard]] Pause pause() { return {std::unique_lock(pose_mutex_), std::unique_lock(cloud_mutex_)}; }
   /// Passes on the state of the network, for the diagnostics.
   void put_network(NetworkState state);
+  /// Hash of the configuration that isobard has in force; empty before its first health report.
+  [[nodiscard]] std::string configuration() const;
   /// Passes on the counts of the opposite direction, for the diagnostics. One thread.
   void put_received(const ReceivedCounts& counts) noexcept;
   [[nodiscard]] const IsobardClock& clock() const noexcept { return clock_; }
@@ -82,9 +84,10 @@ class Forwarding {
   ipc::Subscriber<ipc::HealthReport> health_in_;
   ipc::Waiter pose_waiter_;
   std::optional<CloudsIn> clouds_in_;
-  std::mutex pose_mutex_;   ///< held by the pose thread while it uses the outputs
+  mutable std::mutex pose_mutex_;  ///< held by the pose thread while it uses the outputs
   std::mutex cloud_mutex_;  ///< likewise
-  NetworkState network_;    ///< guarded by pose_mutex_
+  NetworkState network_;      ///< guarded by pose_mutex_
+  std::string configuration_;  ///< likewise
   dds::DiagnosticsBuilder diagnostics_;
   std::vector<ipc::HealthEntry> last_entries_;  ///< of isobard; pose thread
   std::atomic<std::uint64_t> rounds_{0};

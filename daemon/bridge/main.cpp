@@ -75,6 +75,9 @@ class Connection {
     receive();
   }
 
+  /// Hash of the configuration that isobard has in force; empty: not known yet.
+  [[nodiscard]] std::string configuration() const { return forwarding_.configuration(); }
+
   /// One round of the supervise loop. Restarts the process when the connection has become useless.
   /// @return true when the pose thread has completed a round since the last call
   bool check() {
@@ -158,8 +161,9 @@ class Connector {
 /// The supervise loop's work.
 class Bridge {
  public:
-  Bridge(Service& service, const Settings& settings)
+  Bridge(Service& service, const Options& options, const Settings& settings)
       : service_(service),
+        options_(options),
         settings_(settings),
         outputs_(settings),
         network_(settings, outputs_),
@@ -170,6 +174,7 @@ class Bridge {
   /// @return true when no thread hangs
   bool tick() {
     log_library_counts();
+    follow_configuration();
     if (network_.is_due()) renew_network();
     if (connection_) return connection_->check();
     const TimeLimit limit(kAttachLimit, &replace_process);
@@ -196,21 +201,43 @@ class Bridge {
       network_.renew();
     }
   }
+  /// isobard decides which configuration is in force; the bridge follows when it changes, and after SIGHUP.
+  void follow_configuration() {
+    const bool asked = service_.take_reload_request();
+    const std::string configuration = connection_ ? connection_->configuration() : "";
+    const bool changed = !configuration.empty() && !configuration_.empty() && configuration != configuration_;
+    if (!configuration.empty()) configuration_ = configuration;
+    if (!asked && !changed) return;
+    service_.reloading();
+    try {
+      if (load_settings(options_).values != settings_.values) {
+        spdlog::info("the settings of DDS have changed; restarting");
+        network_.leave();
+        replace_process();
+      }
+    } catch (const Error& error) {
+      spdlog::error("configuration refused, the former one stays in force: {}", error.what());
+    }
+    service_.ready("forwarding; " + network_.state().message);
+  }
   void tell_status() { service_.set_status("forwarding; " + network_.state().message); }
 
   Service& service_;
+  const Options& options_;
   const Settings& settings_;
+  std::string configuration_;  ///< hash of isobard's configuration in force; empty: not known yet
   Outputs outputs_;
   Network network_;
   Connector connector_;
   std::optional<Connection> connection_;
 };
 
-int run(const Settings& settings) {
+int run(const Options& options) {
+  const Settings settings = load_settings(options);
   Service service;  // first, so that every thread inherits the blocked signals
   ipc::set_fatal_action(&replace_process_later);
   dds::set_library_log(&log_library_line);
-  Bridge bridge(service, settings);
+  Bridge bridge(service, options, settings);
   service.ready("started");
   service.supervise([&] { return bridge.tick(); });
   bridge.stop();
@@ -233,7 +260,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 64;
   }
   try {
-    return isobar::bridge::run(isobar::bridge::load_settings(options));
+    return isobar::bridge::run(options);
   } catch (const isobar::Error& error) {
     spdlog::error("{}", error.what());
     return error.exit_code();

@@ -5,9 +5,27 @@
 #include <algorithm>
 
 #include "config/config_io.hpp"
+#include "config/setting.hpp"
+#include "config/value_text.hpp"
 #include "core/version.hpp"
 
 namespace isobar::bridge {
+
+namespace {
+
+/// Keys and values of the settings that the bridge uses: [dds], the role and the sensors' mounts.
+std::string used_values(Config config) {
+  std::string text;
+  for (const Setting& setting : settings_of(config)) {
+    const std::string name = setting.name();
+    if (setting.key.starts_with("dds.") || name == "role" || name == "xyz_m" || name == "rpy_deg") {
+      text += setting.key + " = " + value_text(setting) + "\n";
+    }
+  }
+  return text;
+}
+
+}  // namespace
 
 void add_options(CLI::App& app, Options& options) {
   app.name("isobar-dds");
@@ -37,6 +55,7 @@ Settings load_settings(const Options& options) {
   }
   check_config(config, "command line");
   Settings settings;
+  settings.values = used_values(config);
   settings.is_base_station = config.role == Role::kBaseStation;
   settings.dds = config.dds;
   if (settings.is_base_station && config.dds.node_name == dds::DdsConfig{}.node_name) {

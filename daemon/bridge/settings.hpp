@@ -28,6 +28,7 @@ struct Settings {
   dds::DdsConfig dds;  ///< frames with their prefix, domain_id >= 0
   dds::SensorMounts mounts;
   Environment environment;
+  std::string values;  ///< all values that the bridge uses, as text: equal settings have equal texts
 };
 
 /// Adds description, version and options of the bridge to its command line; parsing fills `options`.
