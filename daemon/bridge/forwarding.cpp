@@ -152,7 +152,6 @@ void Forwarding::forward_health() {
     diagnostics_.start(report->stamp_ns + stamp_shift_ns_.load(std::memory_order_relaxed));
     const char* hash = report->status.configuration;
     configuration_.assign(hash, strnlen(hash, sizeof report->status.configuration));
-    diagnostics_.start(report->stamp_ns);
     const bool has_summary =
         report->entry_count > 0 && ipc::HealthReport::kSummaryName == report->entries[0].name;
     if (!has_summary) reserve_summary(all_);
@@ -240,7 +239,8 @@ void Forwarding::forward_clouds() noexcept {
     if (const auto scan = clouds_in_->scan.take_latest()) {
       outputs_.clouds->on_scan(*scan, stamp_shift_ns_.load(std::memory_order_relaxed));
     }
-    while (const auto piece = clouds_in_->map.take()) outputs_.clouds->on_map(*piece, stamp_shift_ns_.load(std::memory_order_relaxed));
+    while (const auto piece = clouds_in_->map.take())
+      outputs_.clouds->on_map(*piece, stamp_shift_ns_.load(std::memory_order_relaxed));
     clouds_dropped_.store(clouds_in_->scan.dropped(), std::memory_order_relaxed);
     cloud_failures_.store(outputs_.clouds->failures(), std::memory_order_relaxed);
   }

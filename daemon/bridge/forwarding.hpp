@@ -85,9 +85,9 @@ class Forwarding {
   ipc::Waiter pose_waiter_;
   std::optional<CloudsIn> clouds_in_;
   mutable std::mutex pose_mutex_;  ///< held by the pose thread while it uses the outputs
-  std::mutex cloud_mutex_;  ///< likewise
-  NetworkState network_;      ///< guarded by pose_mutex_
-  std::string configuration_;  ///< likewise
+  std::mutex cloud_mutex_;         ///< likewise
+  NetworkState network_;           ///< guarded by pose_mutex_
+  std::string configuration_;      ///< likewise
   dds::DiagnosticsBuilder diagnostics_;
   std::vector<ipc::HealthEntry> last_entries_;  ///< of isobard; pose thread
   std::atomic<std::uint64_t> rounds_{0};

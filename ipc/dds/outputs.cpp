@@ -167,7 +167,9 @@ void CloudOutputs::on_map(const ipc::MapCloud& piece, std::int64_t shift_ns) {
   if (map_.add(piece, map_builder_) && to_) write_map();
 }
 
-void CloudOutputs::write_map() { to_->map.write(map_builder_.message(map_.stamp_ns() + map_shift_ns_, config_.map_frame)); }
+void CloudOutputs::write_map() {
+  to_->map.write(map_builder_.message(map_.stamp_ns() + map_shift_ns_, config_.map_frame));
+}
 
 std::vector<dds_entity_t> CloudOutputs::writers() const {
   if (!to_) return {};
