@@ -89,6 +89,16 @@ struct MapFileSettings {
   double max_disk_gb = 4.0;  ///< beyond it the oldest tile file is deleted
 };
 
+/// [black_box]
+struct BlackBoxSettings {
+  double span_s = 60.0;         ///< time span of the inputs kept in memory; 0: off
+  double max_mb = 160.0;        ///< most memory for them
+  std::string directory;        ///< for saved recordings; empty: blackbox/ in output.directory
+  int keep = 10;                ///< newest recordings kept in it
+  double min_free_mb = 500.0;   ///< free space that a save leaves on the disk
+  std::string save_on = "any";  ///< health entries whose fault saves; "any", "none", or names
+};
+
 /// [realtime]; deadlines in ms
 struct RealtimeSettings {
   bool enabled = false;        ///< SCHED_FIFO, and all memory locked in RAM
@@ -115,6 +125,7 @@ struct Config {
   BaseBarometerSettings base_barometer;
   InputSettings input;
   OutputSettings output;
+  BlackBoxSettings black_box;
   dds::DdsConfig dds;  ///< [dds]
   RealtimeSettings realtime;
   /// Mounts in here (T_base_imu, p_base_port) are filled from [imu] and [barometer], or from the recording.

@@ -38,6 +38,9 @@ constexpr auto kDocs = std::to_array<Doc>({
      "Calibration of the first base station's barometer; keys as in barometer.compensation."},
     {"input", "UDP socket on which a live run receives samples of IMU, barometers and wheels."},
     {"output", "Files and clouds that a live run writes."},
+    {"black_box",
+     "The last minute of all inputs, kept in memory. Saved as a recording on `isobar blackbox save`, on "
+     "SIGUSR1, on a fault, and at the start after a crash."},
     {"realtime", "Scheduling of a live run's threads, and the deadline of each stage."},
     {"dds", "DDS network, topics and frames of isobar-dds."},
     {"dds.topics", "Names of the ROS topics, without leading slash."},

@@ -60,6 +60,7 @@ std::vector<Setting> settings_of(Config& config) {
        .apply = Apply::kStage});
   add_sensor_settings(config, settings);
   add_service_settings(config, settings);
+  add_black_box_settings(config.black_box, settings);
   add_dds_settings(config.dds, settings);
   add_altimeter_settings(config.prior.altimeter, settings);
   add_motion_settings(config.prior, settings);

@@ -89,6 +89,7 @@ void add_sensor_settings(Config& config, std::vector<Setting>& settings);
 void add_compensation_settings(const std::string& section, UsedBy used_by, CompensationConfig& compensation,
                                std::vector<Setting>& settings);
 void add_service_settings(Config& config, std::vector<Setting>& settings);
+void add_black_box_settings(BlackBoxSettings& black_box, std::vector<Setting>& settings);
 void add_dds_settings(dds::DdsConfig& dds, std::vector<Setting>& settings);
 void add_altimeter_settings(AltimeterConfig& altimeter, std::vector<Setting>& settings);
 void add_motion_settings(PriorConfig& prior, std::vector<Setting>& settings);

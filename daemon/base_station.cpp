@@ -17,6 +17,7 @@ namespace isobar {
 BaseStationGraph::BaseStationGraph(const Config& config)
     : config_(config),
       scheduling_(base_station_scheduling(config.realtime)),
+      description_(config),
       station_(config.prior.altimeter, config.prior.compensation, scheduling_.station),
       barometer_(make_barometer_thread(config.barometer, scheduling_.barometer)),
       input_(config.input.address, config.input.port, {.barometer = barometer_ == nullptr, .others = false},

@@ -8,6 +8,7 @@
 #include "config/config.hpp"
 #include "daemon/barometer_thread.hpp"
 #include "daemon/graph.hpp"
+#include "daemon/run_description.hpp"
 #include "daemon/sample_thread.hpp"
 #include "daemon/scheduling.hpp"
 #include "daemon/station_health.hpp"
@@ -39,6 +40,7 @@ class BaseStationGraph final : public Graph {
   Config config_;
   BaseStationScheduling scheduling_;
   ipc::Broker broker_;
+  RunDescriptionPublisher description_;  // for recorders
   StationThread station_;
   std::unique_ptr<BarometerThread> barometer_;
   SampleThread input_;

@@ -25,6 +25,7 @@ void LidarThread::loop() noexcept {
   receive_until_stopped(
       receiver_, worker_.heartbeat(), [this](const ReceivedDatagram& datagram) { take_packet(datagram); },
       [this] {
+        tap_.end_round();
         report();
         pause();
       });
@@ -37,6 +38,7 @@ void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
   });
   if (!sender_.admits(datagram.payload, datagram.sender.ipv4, datagram.stamp_ns)) return;
   draft_status_.last_packet_ns = datagram.stamp_ns;
+  tap_.add(datagram);
   Scan& scan = loaned_ != nullptr ? *loaned_ : spare_scan_;
   if (decoder_.add_packet(datagram.payload, datagram.stamp_ns, scan).scan_complete) publish_scan();
 }

@@ -11,6 +11,7 @@
 #include "daemon/handover.hpp"
 #include "daemon/lidar_sender.hpp"
 #include "daemon/packet_pacing.hpp"
+#include "daemon/packet_tap.hpp"
 #include "daemon/seq_lock.hpp"
 #include "daemon/worker.hpp"
 #include "drivers/udp/udp.hpp"
@@ -74,6 +75,7 @@ class LidarThread {
   Scan* loaned_ = nullptr;
   Scan
       spare_scan_;  ///< decoded into while no chunk is free, so that the next scan starts at the right packet
+  PacketTap tap_;
   PacketPacing pacing_;
   Deadline deadline_;
   Handover<Change> changes_;

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "ipc/shared_memory.hpp"
+#include "run/recording/input_log.hpp"
+
+namespace isobar {
+
+/// Subscriber of all inputs of isobard, for the black box inside of it and for `isobar record` outside.
+/// Belongs to one thread.
+class InputTap {
+ public:
+  /// Longest time between two calls of drain() that loses nothing [ns]: the queue of the lidar's packets holds
+  /// 0.4 s of a dual-return HDL-32E, that of the IMU 0.25 s at 1 kHz.
+  static constexpr std::int64_t kDrainEveryNs = 50'000'000;
+
+  /// Appends all waiting inputs to `log`.
+  void drain(recording::InputLog& log);
+
+  /// Inputs lost to full queues or for want of shared memory.
+  [[nodiscard]] std::uint64_t lost() const noexcept;
+
+ private:
+  void drain_packets(recording::InputLog& log);
+
+  ipc::Subscriber<ipc::LidarPackets> packets_{ipc::topics::kLidarPackets};
+  ipc::Subscriber<ImuSample> imu_{ipc::topics::kImu};
+  ipc::Subscriber<PressureSample> barometer_{ipc::topics::kBarometer};
+  ipc::Subscriber<PressureSample> base_barometer_{ipc::topics::kBaseBarometer};
+  ipc::Subscriber<WheelSample> wheel_{ipc::topics::kWheel};
+  std::optional<std::uint64_t> lost_before_;  ///< LidarPackets::lost of the first message
+  std::uint64_t lost_packets_ = 0;            ///< the growth of it since
+};
+
+}  // namespace isobar
