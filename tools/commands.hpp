@@ -18,10 +18,12 @@ void add_calibrate_command(CLI::App& app);           ///< sensor and reference l
 void add_config_command(CLI::App& app);              ///< check and show a configuration
 void add_play_command(CLI::App& app);                ///< recording -> UDP in real time
 void add_altitude_command(CLI::App& app);            ///< pressure logs -> heights
-void add_noise_command(CLI::App& app);    ///< pressure log -> sigma, Allan deviation, filter settings
-void add_map_command(CLI::App& app);      ///< info, check and export of a run's map
-void add_status_command(CLI::App& app);   ///< health and figures of the running isobard
-void add_metrics_command(CLI::App& app);  ///< the same for Prometheus
-void add_echo_command(CLI::App& app);     ///< prints what a DDS subscriber receives
+void add_noise_command(CLI::App& app);      ///< pressure log -> sigma, Allan deviation, filter settings
+void add_map_command(CLI::App& app);        ///< info, check and export of a run's map
+void add_status_command(CLI::App& app);     ///< health and figures of the running isobard
+void add_metrics_command(CLI::App& app);    ///< the same for Prometheus
+void add_record_command(CLI::App& app);     ///< running isobard -> recording
+void add_black_box_command(CLI::App& app);  ///< orders to the black box of the running isobard
+void add_echo_command(CLI::App& app);       ///< prints what a DDS subscriber receives
 
 }  // namespace isobar::tools

@@ -27,6 +27,8 @@ void add_all_commands(CLI::App& app) {
   add_map_command(app);
   add_status_command(app);
   add_metrics_command(app);
+  add_record_command(app);
+  add_black_box_command(app);
   add_config_command(app);
 #if ISOBAR_WITH_DDS
   add_echo_command(app);

@@ -9,10 +9,35 @@
 
 namespace isobar::recording {
 
+namespace {
+
+constexpr std::size_t kTextBufferBytes = std::size_t{1} << 16U;
+
+}  // namespace
+
 TextFile::TextFile(const std::filesystem::path& file)
-    : name_(file.string()), file_(std::fopen(file.c_str(), "wb")) {
+    : name_(file.string()),
+      buffer_(std::make_unique<char[]>(kTextBufferBytes)),  // NOLINT(modernize-avoid-c-arrays)
+      file_(std::fopen(file.c_str(), "wb")) {
   if (file_ == nullptr) {
     throw DataError(name_ + ": cannot be written: " + std::strerror(errno));
+  }
+  std::setvbuf(file_.get(), buffer_.get(), _IOFBF, kTextBufferBytes);
+}
+
+void TextFile::flush_buffer() {
+  if (std::fflush(file_.get()) != 0 && error_ == 0) {
+    error_ = errno;
+  }
+  pending_ = 0;
+}
+
+void TextFile::flush() {
+  if (file_ != nullptr) {
+    flush_buffer();
+  }
+  if (error_ != 0) {
+    throw DataError(name_ + ": could not be written completely: " + std::strerror(error_));
   }
 }
 
@@ -20,19 +45,19 @@ void TextFile::close() {
   if (file_ == nullptr) {
     return;
   }
-  if (std::fflush(file_.get()) != 0 && error_ == 0) {
-    error_ = errno;
-  }
+  flush_buffer();
   file_.reset();
-  if (error_ != 0) {
-    throw DataError(name_ + ": could not be written completely: " + std::strerror(error_));
-  }
+  flush();
 }
 
 void TextFile::write(std::string_view text) {
   if (file_ == nullptr) {
     throw DataError(name_ + ": cannot be written: it is closed");
   }
+  if (pending_ + text.size() > kTextBufferBytes) {
+    flush_buffer();
+  }
+  pending_ += text.size();
   if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size() && error_ == 0) {
     error_ = errno;
   }

@@ -11,7 +11,8 @@
 
 namespace isobar::recording {
 
-/// Buffered text file that reports write errors.
+/// Buffered text file that reports write errors. Hands whole texts to the kernel: what a killed process leaves
+/// ends where a write() ended.
 class TextFile {
  public:
   /// Creates or truncates the file.
@@ -20,6 +21,9 @@ class TextFile {
   /// A failure is kept for close().
   /// @throws DataError when the file is closed
   void write(std::string_view text);
+  /// Hands everything written so far to the kernel.
+  /// @throws DataError when any write failed
+  void flush();
   /// Flushes and closes.
   /// @throws DataError when any write failed
   void close();
@@ -28,9 +32,13 @@ class TextFile {
   struct Closer {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
+  void flush_buffer();
+
   std::string name_;
+  std::unique_ptr<char[]> buffer_;  // NOLINT(modernize-avoid-c-arrays): of file_, must outlive it
   std::unique_ptr<std::FILE, Closer> file_;
-  int error_ = 0;  // errno of the first failed write
+  std::size_t pending_ = 0;  // bytes in the buffer
+  int error_ = 0;            // errno of the first failed write
 };
 
 /// CSV row of numbers, each in the shortest text that reads back as the same bits.

@@ -153,8 +153,12 @@ std::optional<SensorEntry> read_sensor(const toml::table& root, const std::strin
   if (table == nullptr) {
     return std::nullopt;
   }
-  text.warn_unknown_keys(*table, name + ".", {"file", "xyz_m", "rpy_deg"});
-  return SensorEntry{text.file_name(*table, name), text.mount(*table, name)};
+  text.warn_unknown_keys(*table, name + ".", {"file", "xyz_m", "rpy_deg", "clock"});
+  const toml::node* clock = table->get("clock");
+  if (clock != nullptr && clock->value<std::string>() != "robot") {
+    text.fail(*clock, name + ".clock", "must be \"robot\", or left out: the sender's own clock");
+  }
+  return SensorEntry{text.file_name(*table, name), text.mount(*table, name), clock != nullptr};
 }
 
 std::string read_text(const std::filesystem::path& folder, const std::filesystem::path& file) {
@@ -186,6 +190,10 @@ std::string triple_text(const Eigen::Vector3d& v) {
          "]";
 }
 
+std::string sender_text(const LidarEntry& lidar) {
+  return lidar.sender.empty() ? std::string() : "\nsender  = " + quoted_toml(lidar.sender);
+}
+
 std::string sensor_text(const char* name, const std::optional<SensorEntry>& sensor, bool position,
                         bool rotation) {
   if (!sensor) {
@@ -197,6 +205,9 @@ std::string sensor_text(const char* name, const std::optional<SensorEntry>& sens
   }
   if (rotation) {
     text += "rpy_deg = " + triple_text(sensor->mount.rpy_deg) + "\n";
+  }
+  if (sensor->robot_clock) {
+    text += "clock   = \"robot\"\n";
   }
   return text;
 }
@@ -246,22 +257,27 @@ Manifest parse_manifest(std::string_view content, const std::string& file,
   return manifest;
 }
 
+std::string manifest_text(const Manifest& manifest) {
+  std::string out = "version = 1\ndescription = " + quoted_toml(manifest.description) + "\n";
+  if (manifest.lidar) {
+    out += "\n[lidar]\nmodel   = " + quoted_toml(manifest.lidar->model) +
+           "\nfile    = " + quoted_toml(manifest.lidar->file) +
+           "\nport    = " + std::to_string(manifest.lidar->port) + sender_text(*manifest.lidar) +
+           "\nxyz_m   = " + triple_text(manifest.lidar->mount.xyz_m) +
+           "\nrpy_deg = " + triple_text(manifest.lidar->mount.rpy_deg) + "\n";
+  }
+  out += sensor_text("imu", manifest.imu, true, true);
+  out += sensor_text("barometer", manifest.barometer, true, false);
+  out += sensor_text("base_barometer", manifest.base_barometer, false, false);
+  out += sensor_text("wheel", manifest.wheel, false, false);
+  out += sensor_text("reference", manifest.reference, false, false);
+  return out;
+}
+
 void write_manifest(const std::filesystem::path& folder, const Manifest& manifest) {
   const std::filesystem::path file = folder / kManifestFile;
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << "version = 1\ndescription = " << quoted_toml(manifest.description) << "\n";
-  if (manifest.lidar) {
-    out << "\n[lidar]\nmodel   = " << quoted_toml(manifest.lidar->model)
-        << "\nfile    = " << quoted_toml(manifest.lidar->file) << "\nport    = " << manifest.lidar->port;
-    if (!manifest.lidar->sender.empty()) out << "\nsender  = " << quoted_toml(manifest.lidar->sender);
-    out << "\nxyz_m   = " << triple_text(manifest.lidar->mount.xyz_m)
-        << "\nrpy_deg = " << triple_text(manifest.lidar->mount.rpy_deg) << "\n";
-  }
-  out << sensor_text("imu", manifest.imu, true, true);
-  out << sensor_text("barometer", manifest.barometer, true, false);
-  out << sensor_text("base_barometer", manifest.base_barometer, false, false);
-  out << sensor_text("wheel", manifest.wheel, false, false);
-  out << sensor_text("reference", manifest.reference, false, false);
+  out << manifest_text(manifest);
   out.close();
   if (!out) {
     throw DataError(file.string() + ": cannot be written");

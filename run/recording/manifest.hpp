@@ -28,6 +28,7 @@ struct LidarEntry {
 struct SensorEntry {
   std::string file;
   Mount mount;
+  bool robot_clock = false;  ///< base station: its stamps were converted to the robot's clock already
 };
 
 struct Manifest {
@@ -53,6 +54,9 @@ Manifest read_manifest(const std::filesystem::path& folder, std::vector<std::str
 /// @throws DataError "file:line: key: rule" when the text breaks the format
 Manifest parse_manifest(std::string_view content, const std::string& file,
                         std::vector<std::string>& warnings);
+
+/// Text of a recording.toml; parsing it gives an equal manifest.
+std::string manifest_text(const Manifest& manifest);
 
 /// Writes `folder`/recording.toml; reading it gives an equal manifest.
 /// @throws DataError when the file cannot be written

@@ -174,6 +174,10 @@ void RecordingReader::Impl::tie_base() {
     base_clock.reason = "no base station";
     return;
   }
+  if (manifest.base_barometer->robot_clock) {
+    base_clock.reason = "base-station stamps are on the robot's clock, as isobard converted them";
+    return;
+  }
   std::optional<StampSpan> robot;
   if (manifest.barometer) {
     robot = pressure_span(folder / manifest.barometer->file);

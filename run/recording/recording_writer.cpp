@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/recording/recording_writer.hpp"
 
-#include <pcap/pcap.h>
-
+#include <array>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
@@ -10,67 +10,13 @@
 
 #include "core/errors.hpp"
 #include "run/recording/csv_writer.hpp"
+#include "run/recording/pcap_file.hpp"
 #include "run/recording/reference.hpp"
 #include "run/recording/udp_frame.hpp"
 #include "run/text/number_text.hpp"
 
 namespace isobar::recording {
 namespace {
-
-constexpr int kSnapLength = 65'535 + static_cast<int>(kEthernetHeaderBytes);
-
-/// A pcap file with nanosecond stamps.
-class PcapFile {
- public:
-  explicit PcapFile(const std::filesystem::path& file) : name_(file.string()) {
-    handle_ = pcap_open_dead_with_tstamp_precision(DLT_EN10MB, kSnapLength, PCAP_TSTAMP_PRECISION_NANO);
-    dumper_ = handle_ == nullptr ? nullptr : pcap_dump_open(handle_, name_.c_str());
-    if (dumper_ == nullptr) {
-      const std::string reason = handle_ == nullptr ? "libpcap refused" : pcap_geterr(handle_);
-      release();
-      throw DataError(name_ + ": cannot be written: " + reason);
-    }
-  }
-  ~PcapFile() { release(); }
-  PcapFile(const PcapFile&) = delete;
-  PcapFile& operator=(const PcapFile&) = delete;
-
-  void write(std::int64_t stamp_ns, std::span<const std::uint8_t> frame) {
-    pcap_pkthdr header{};
-    header.ts.tv_sec = stamp_ns / 1'000'000'000;
-    header.ts.tv_usec = stamp_ns % 1'000'000'000;  // nanoseconds: PCAP_TSTAMP_PRECISION_NANO
-    header.caplen = static_cast<bpf_u_int32>(frame.size());
-    header.len = header.caplen;
-    pcap_dump(reinterpret_cast<u_char*>(dumper_), &header, frame.data());
-  }
-
-  void close() {
-    if (dumper_ == nullptr) {
-      return;
-    }
-    const bool failed = pcap_dump_flush(dumper_) != 0 || std::ferror(pcap_dump_file(dumper_)) != 0;
-    release();
-    if (failed) {
-      throw DataError(name_ + ": could not be written completely");
-    }
-  }
-
- private:
-  void release() {
-    if (dumper_ != nullptr) {
-      pcap_dump_close(dumper_);
-      dumper_ = nullptr;
-    }
-    if (handle_ != nullptr) {
-      pcap_close(handle_);
-      handle_ = nullptr;
-    }
-  }
-
-  std::string name_;
-  pcap_t* handle_ = nullptr;
-  pcap_dumper_t* dumper_ = nullptr;
-};
 
 TextFile& present(std::optional<TextFile>& file, const char* sensor) {
   if (!file) {
@@ -79,9 +25,16 @@ TextFile& present(std::optional<TextFile>& file, const char* sensor) {
   return *file;
 }
 
-void write_pressure(TextFile& file, const PressureSample& sample) {
+constexpr const char* kImuHeader = "t_ns,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2";
+constexpr const char* kAttitudeHeader = ",qw,qx,qy,qz\n";
+
+void write_pressure(TextFile& file, const PressureSample& sample, bool every_column) {
   CsvRow row;
-  file.write(row.add(sample.stamp_ns).add(sample.pressure_pa).add(sample.temperature_c).finish());
+  row.add(sample.stamp_ns).add(sample.pressure_pa).add(sample.temperature_c);
+  if (every_column) {
+    row.add(sample.variance_pa2).add(static_cast<std::int64_t>(sample.station));
+  }
+  file.write(row.finish());
 }
 
 }  // namespace
@@ -89,6 +42,7 @@ void write_pressure(TextFile& file, const PressureSample& sample) {
 struct RecordingWriter::Files {
   std::filesystem::path folder;
   Manifest manifest;
+  bool every_column = false;
   std::optional<PcapFile> lidar;
   std::optional<TextFile> imu;
   std::optional<TextFile> barometer;
@@ -100,6 +54,9 @@ struct RecordingWriter::Files {
   std::vector<std::uint8_t> frame;
   std::uint16_t identification = 0;
 
+  std::array<std::optional<TextFile>*, 6> text_files() {
+    return {&imu, &barometer, &base_barometer, &wheel, &reference, &segments};
+  }
   void open_csv(std::optional<TextFile>& file, const std::optional<SensorEntry>& entry, const char* header) {
     if (entry) {
       file.emplace(folder / entry->file);
@@ -108,7 +65,8 @@ struct RecordingWriter::Files {
   }
 };
 
-RecordingWriter::RecordingWriter(const std::filesystem::path& folder, const Manifest& manifest)
+RecordingWriter::RecordingWriter(const std::filesystem::path& folder, const Manifest& manifest,
+                                 const WriterOptions& options)
     : files_(std::make_unique<Files>()) {
   if (std::filesystem::exists(folder / kManifestFile)) {
     throw DataError(folder.string() + ": already holds a recording");
@@ -120,15 +78,22 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& folder, const Mani
   }
   files_->folder = folder;
   files_->manifest = manifest;
+  files_->every_column = options.every_column;
   write_manifest(folder, manifest);
   if (manifest.lidar) {
     files_->lidar.emplace(folder / manifest.lidar->file);
   }
-  const char* pressure_header = "t_ns,pressure_pa,temperature_c\n";
+  const char* pressure_header = options.every_column ? "t_ns,pressure_pa,temperature_c,variance_pa2,station\n"
+                                                     : "t_ns,pressure_pa,temperature_c\n";
   files_->open_csv(files_->imu, manifest.imu, "");
   files_->open_csv(files_->barometer, manifest.barometer, pressure_header);
   files_->open_csv(files_->base_barometer, manifest.base_barometer, pressure_header);
   files_->open_csv(files_->wheel, manifest.wheel, "t_ns,vx_m_s,vy_m_s,wz_rad_s\n");
+  if (files_->imu && options.every_column) {
+    files_->imu_has_attitude = true;
+    files_->imu->write(kImuHeader);
+    files_->imu->write(kAttitudeHeader);
+  }
   files_->open_csv(files_->reference, manifest.reference, "# t x y z qx qy qz qw\n");
 }
 
@@ -142,14 +107,14 @@ void RecordingWriter::add_packet(std::int64_t stamp_ns, std::span<const std::uin
 }
 
 void RecordingWriter::add_packet(std::int64_t stamp_ns, std::span<const std::uint8_t> payload,
-                                 std::uint16_t port) {
+                                 std::uint16_t port, std::uint32_t sender_ipv4) {
   if (!files_->lidar) {
     throw std::logic_error("RecordingWriter: the manifest has no lidar");
   }
   if (payload.size() > kMaxUdpPayloadBytes) {
     throw std::logic_error("RecordingWriter: no UDP packet is that long");
   }
-  build_udp_frame(payload, port, files_->identification++, files_->frame);
+  build_udp_frame(payload, port, files_->identification++, files_->frame, sender_ipv4);
   files_->lidar->write(stamp_ns, files_->frame);
 }
 
@@ -157,8 +122,8 @@ void RecordingWriter::add_imu(const ImuSample& sample) {
   TextFile& file = present(files_->imu, "imu");
   if (!files_->imu_has_attitude) {
     files_->imu_has_attitude = sample.has_attitude;
-    file.write("t_ns,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2");
-    file.write(sample.has_attitude ? ",qw,qx,qy,qz\n" : "\n");
+    file.write(kImuHeader);
+    file.write(sample.has_attitude ? kAttitudeHeader : "\n");
   }
   CsvRow row;
   row.add(sample.stamp_ns);
@@ -170,17 +135,20 @@ void RecordingWriter::add_imu(const ImuSample& sample) {
   }
   if (*files_->imu_has_attitude) {
     const Eigen::Quaterniond& q = sample.q_world_imu;
-    row.add(q.w()).add(q.x()).add(q.y()).add(q.z());
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    for (const double part : {q.w(), q.x(), q.y(), q.z()}) {
+      row.add(sample.has_attitude ? part : unknown);
+    }
   }
   file.write(row.finish());
 }
 
 void RecordingWriter::add_pressure(const PressureSample& sample) {
-  write_pressure(present(files_->barometer, "barometer"), sample);
+  write_pressure(present(files_->barometer, "barometer"), sample, files_->every_column);
 }
 
 void RecordingWriter::add_base_pressure(const PressureSample& sample) {
-  write_pressure(present(files_->base_barometer, "base_barometer"), sample);
+  write_pressure(present(files_->base_barometer, "base_barometer"), sample, files_->every_column);
 }
 
 void RecordingWriter::add_wheel(const WheelSample& sample) {
@@ -202,16 +170,27 @@ void RecordingWriter::add_segment(const text::Segment& segment) {
                           "," + segment.label + "\n");
 }
 
+void RecordingWriter::flush() {
+  if (files_->lidar) {
+    files_->lidar->flush();
+  }
+  for (std::optional<TextFile>* file : files_->text_files()) {
+    if (*file) {
+      (*file)->flush();
+    }
+  }
+}
+
 void RecordingWriter::close() {
   if (files_->imu && !files_->imu_has_attitude) {
     files_->imu_has_attitude = false;
-    files_->imu->write("t_ns,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2\n");
+    files_->imu->write(kImuHeader);
+    files_->imu->write("\n");
   }
   if (files_->lidar) {
     files_->lidar->close();
   }
-  for (std::optional<TextFile>* file : {&files_->imu, &files_->barometer, &files_->base_barometer,
-                                        &files_->wheel, &files_->reference, &files_->segments}) {
+  for (std::optional<TextFile>* file : files_->text_files()) {
     if (*file) {
       (*file)->close();
     }

@@ -9,9 +9,16 @@
 
 #include "core/samples.hpp"
 #include "run/recording/manifest.hpp"
+#include "run/recording/udp_frame.hpp"
 #include "run/text/segments.hpp"
 
 namespace isobar::recording {
+
+struct WriterOptions {
+  /// Columns that a live recording may need later: attitude also while the IMU computes none yet, variance and
+  /// station of pressures.
+  bool every_column = false;
+};
 
 /// Writer of a recording folder (docs/files-and-formats.md, version 1).
 /// Keeps the order of each stream; streams may
@@ -21,7 +28,8 @@ class RecordingWriter {
  public:
   /// Creates the folder with its parents, writes the manifest, and opens the files of its sensors.
   /// @throws DataError when a file cannot be written or the folder already holds a recording
-  RecordingWriter(const std::filesystem::path& folder, const Manifest& manifest);
+  RecordingWriter(const std::filesystem::path& folder, const Manifest& manifest,
+                  const WriterOptions& options = {});
   ~RecordingWriter();  ///< closes without reporting errors: call close() first
   RecordingWriter(const RecordingWriter&) = delete;
   RecordingWriter& operator=(const RecordingWriter&) = delete;
@@ -29,7 +37,9 @@ class RecordingWriter {
   /// UDP payload from the lidar (at most 65507 bytes), as Ethernet/IPv4/UDP in a nanosecond pcap.
   void add_packet(std::int64_t stamp_ns, std::span<const std::uint8_t> payload);
   /// As above, to another destination port: a Velodyne's position packets go to 8308.
-  void add_packet(std::int64_t stamp_ns, std::span<const std::uint8_t> payload, std::uint16_t port);
+  /// @param sender_ipv4 host byte order
+  void add_packet(std::int64_t stamp_ns, std::span<const std::uint8_t> payload, std::uint16_t port,
+                  std::uint32_t sender_ipv4 = kVelodyneIpv4);
   void add_imu(const ImuSample& sample);
   void add_pressure(const PressureSample& sample);
   void add_base_pressure(const PressureSample& sample);  ///< stamp on the base station's own clock
@@ -37,6 +47,9 @@ class RecordingWriter {
   void add_reference(std::int64_t stamp_ns, const Eigen::Isometry3d& T_map_base);
   void add_segment(const text::Segment& segment);
 
+  /// Hands all whole rows and packets to the kernel: a killed process loses only what was added later.
+  /// @throws DataError when any write failed (disk full)
+  void flush();
   /// Flushes and closes all files.
   /// @throws DataError when any write failed (disk full)
   void close();

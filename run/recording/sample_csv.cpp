@@ -56,6 +56,23 @@ void parse_attitude(const text::CsvReader& csv, ImuSample& sample) {
   }
 }
 
+/// The columns that only live recordings have. Unusable fields leave the defaults.
+void parse_origin(const text::CsvReader& csv, PressureSample& sample) {
+  constexpr std::size_t kVariance = 3;
+  constexpr std::size_t kStation = 4;
+  constexpr std::int64_t kMostStations = 2;
+  double variance_pa2 = 0.0;
+  if (csv.has(kVariance) && text::parse_number(csv.field(kVariance), variance_pa2) &&
+      std::isfinite(variance_pa2) && variance_pa2 > 0.0) {
+    sample.variance_pa2 = variance_pa2;
+  }
+  std::int64_t station = 0;
+  if (csv.has(kStation) && text::parse_number(csv.field(kStation), station) && station >= 0 &&
+      station < kMostStations) {
+    sample.station = static_cast<std::uint8_t>(station);
+  }
+}
+
 }  // namespace
 
 text::CsvReader open_imu_csv(const std::filesystem::path& file) {
@@ -65,7 +82,7 @@ text::CsvReader open_imu_csv(const std::filesystem::path& file) {
 }
 
 text::CsvReader open_pressure_csv(const std::filesystem::path& file) {
-  return {text::TextLines(file), {"t_ns", "pressure_pa", "temperature_c"}};
+  return {text::TextLines(file), {"t_ns", "pressure_pa", "temperature_c"}, {"variance_pa2", "station"}};
 }
 
 text::CsvReader open_wheel_csv(const std::filesystem::path& file) {
@@ -100,6 +117,7 @@ const char* parse_row(const text::CsvReader& csv, PressureSample& sample, std::s
     value = csv.field(2);
     return kNoNumber;
   }
+  parse_origin(csv, sample);
   const char* rule = implausibility(sample);
   if (rule != nullptr) {
     value = kPlausiblePressurePa.holds(sample.pressure_pa) ? csv.field(2) : csv.field(1);

@@ -7,7 +7,6 @@
 namespace isobar::recording {
 namespace {
 
-constexpr std::array<std::uint8_t, 4> kSourceAddress{192, 168, 1, 201};
 constexpr std::array<std::uint8_t, 4> kDestinationAddress{255, 255, 255, 255};
 constexpr std::array<std::uint8_t, 6> kSourceMac{0x60, 0x76, 0x88, 0x00, 0x00, 0x00};
 constexpr std::uint8_t kUdpProtocol = 17;
@@ -38,7 +37,7 @@ std::uint16_t internet_checksum(std::uint32_t sum) {
 }
 
 void build_udp_frame(std::span<const std::uint8_t> payload, std::uint16_t port, std::uint16_t identification,
-                     std::vector<std::uint8_t>& frame) {
+                     std::vector<std::uint8_t>& frame, std::uint32_t source_ipv4) {
   const std::size_t udp_length = kUdpHeaderBytes + payload.size();
   frame.assign(kEthernetHeaderBytes + kIpv4HeaderBytes + udp_length, 0);
 
@@ -54,7 +53,8 @@ void build_udp_frame(std::span<const std::uint8_t> payload, std::uint16_t port, 
   ip[6] = 0x40;  // do not fragment
   ip[8] = 64;    // time to live
   ip[9] = kUdpProtocol;
-  std::copy(kSourceAddress.begin(), kSourceAddress.end(), ip + 12);
+  put_u16(ip + 12, source_ipv4 >> 16U);
+  put_u16(ip + 14, source_ipv4 & 0xFFFFU);
   std::copy(kDestinationAddress.begin(), kDestinationAddress.end(), ip + 16);
   put_u16(ip + 10, internet_checksum(internet_sum({ip, kIpv4HeaderBytes})));
 

@@ -19,11 +19,14 @@ inline constexpr std::size_t kMaxUdpPayloadBytes = 65'535 - kIpv4HeaderBytes - k
 /// Folds and complements the sum.
 [[nodiscard]] std::uint16_t internet_checksum(std::uint32_t sum);
 
-/// Builds the frame of a payload: from 192.168.1.201 (a Velodyne's factory address) to the broadcast address,
-/// equal source and destination port.
+/// A Velodyne's factory address, 192.168.1.201, in host byte order.
+inline constexpr std::uint32_t kVelodyneIpv4 = 0xC0A8'01C9;
+
+/// Builds the frame of a payload: to the broadcast address, equal source and destination port.
+/// @param source_ipv4 host byte order
 /// @param payload at most kMaxUdpPayloadBytes
 /// @param frame overwritten
 void build_udp_frame(std::span<const std::uint8_t> payload, std::uint16_t port, std::uint16_t identification,
-                     std::vector<std::uint8_t>& frame);
+                     std::vector<std::uint8_t>& frame, std::uint32_t source_ipv4 = kVelodyneIpv4);
 
 }  // namespace isobar::recording
