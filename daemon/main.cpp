@@ -18,6 +18,7 @@
 #include "core/errors.hpp"
 #include "daemon/barometer_source.hpp"
 #include "daemon/base_station.hpp"
+#include "daemon/black_box.hpp"
 #include "daemon/configuration.hpp"
 #include "daemon/graph.hpp"
 #include "daemon/health.hpp"
@@ -29,6 +30,7 @@
 #include "daemon/output_thread.hpp"
 #include "daemon/prior_thread.hpp"
 #include "daemon/registration_thread.hpp"
+#include "daemon/run_description.hpp"
 #include "daemon/run_files.hpp"
 #include "daemon/sample_thread.hpp"
 #include "daemon/scheduling.hpp"
@@ -47,6 +49,8 @@ class RobotGraph final : public Graph {
       : config_(config),
         stages_(stage_settings(config)),
         scheduling_(robot_scheduling(config.realtime)),
+        description_(config),
+        black_box_(black_box::BlackBox::make(config)),
         files_(config),
         map_(stages_.map, stages_.T_base_lidar, config.output.cloud_interval_s, files_.store(),
              scheduling_.map),
@@ -61,6 +65,7 @@ class RobotGraph final : public Graph {
                                 : nullptr),
         monitor_(config) {
     // Start order: consumers first.
+    if (black_box_) black_box_->add_to(workers_);
     if (output_) workers_.add(output_->worker());
     workers_.add(map_.worker());
     workers_.add(registration_.worker());
@@ -103,6 +108,7 @@ class RobotGraph final : public Graph {
   }
   void fill_health(std::int64_t now_ns, ipc::HealthReport& report) override {
     monitor_.fill(status(now_ns), report);
+    if (black_box_) black_box_->fill_health(report);
   }
   [[nodiscard]] Apply apply_of(const Setting& setting) const override { return setting.apply; }
   void apply(const ConfigChange& change) override {
@@ -117,6 +123,7 @@ class RobotGraph final : public Graph {
     }
     map_.configure(stages_.map, config_.output.cloud_interval_s, scheduling.map.deadline_ms);
     monitor_.configure(config_);
+    description_.publish(config_);
   }
   void collect() override {
     static_cast<void>(monitor_.input_starts_over(lidar_.status(), prior_.status()));
@@ -131,6 +138,8 @@ class RobotGraph final : public Graph {
   StageSettings stages_;
   RobotScheduling scheduling_;
   ipc::Broker broker_;
+  RunDescriptionPublisher description_;  // for recorders
+  std::unique_ptr<black_box::BlackBox> black_box_;
   RunFiles files_;
   MapThread map_;
   RegistrationThread registration_;
@@ -156,6 +165,7 @@ int main_with_errors(int argc, char** argv) {
   }
   // Before the first thread, so that all threads inherit the blocked signals.
   Service service;
+  black_box::block_save_signal();
   Configuration configuration(options.config_file, [&options](Config& config) {
     if (!options.output_directory.empty()) config.output.directory = options.output_directory;
   });
