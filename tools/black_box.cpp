@@ -12,6 +12,7 @@
 
 #include "core/errors.hpp"
 #include "drivers/clock/robot_clock.hpp"
+#include "ipc/service_view.hpp"
 #include "ipc/shared_memory.hpp"
 #include "tools/commands.hpp"
 #include "tools/subcommand.hpp"
@@ -85,6 +86,7 @@ class BlackBoxLink {
 };
 
 void run_save(const SaveOptions& options) {
+  ipc::enter_service_view();
   BlackBoxLink link;
   link.save(options);
   if (link.state().last_failed) throw ServiceError(std::string("not saved: ") + link.state().last);
@@ -93,6 +95,7 @@ void run_save(const SaveOptions& options) {
 
 void run_state(const StateOptions&) {
   constexpr double kMb = 1e6;
+  ipc::enter_service_view();
   const BlackBoxLink link;
   const ipc::BlackBoxState& state = link.state();
   std::printf("holds %.1f s in %.1f MB (at most %.0f MB); %llu inputs lost\n",

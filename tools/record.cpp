@@ -131,7 +131,10 @@ class Recorder {
 
   /// After the end of a source. False when another one would not help.
   bool reconnect() {
-    if (source_->exit_code() == RecordSource::kOtherVersion) {
+    const int code = source_->exit_code();
+    if (code == RecordSource::kRefused && !session_.started())
+      throw ServiceError("isobard's inputs cannot be read, see above");
+    if (code == RecordSource::kOtherVersion) {
       throw ServiceError(
           "isobard does not describe itself to recorders: install isobard and isobar of one version");
     }

@@ -19,6 +19,7 @@
 #include "core/errors.hpp"
 #include "daemon/input_tap.hpp"
 #include "drivers/clock/robot_clock.hpp"
+#include "ipc/service_view.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar::tools {
@@ -92,8 +93,16 @@ class LogPipe {
   std::uint64_t dropped_ = 0;
 };
 
-std::unique_ptr<ipc::Attachment> attach() {
+/// Ends with the parent, also when that is killed. Again after a change of user, which clears it.
+void end_with(pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) std::_Exit(0);
+}
+
+std::unique_ptr<ipc::Attachment> attach(pid_t parent) {
   while (g_source_stops == 0) {
+    ipc::enter_service_view();  // in each round: the service may start later
+    end_with(parent);
     ::alarm(kAttachLimitS);
     try {
       auto attachment = std::make_unique<ipc::Attachment>("isobar-record", 400ms);
@@ -162,8 +171,7 @@ class Source {
 
 /// The child process.
 [[noreturn]] void run_child(int descriptor, pid_t parent, bool quiet) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) std::_Exit(0);
+  end_with(parent);
   struct sigaction on_stop {};
   on_stop.sa_handler = [](int) { g_source_stops = 1; };
   ::sigaction(SIGTERM, &on_stop, nullptr);
@@ -172,10 +180,11 @@ class Source {
   sigset_t none;
   sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
-  int code = RecordSource::kBrokerEnded;
+  int code = RecordSource::kRefused;
   try {
-    const auto attachment = attach();
+    const auto attachment = attach(parent);
     if (attachment == nullptr) std::_Exit(0);
+    code = RecordSource::kBrokerEnded;
     code = Source(descriptor, *attachment).run();
     if (code == RecordSource::kBrokerEnded) std::_Exit(code);  // detaching would wait for an answer
     ::close(descriptor);

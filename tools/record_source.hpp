@@ -18,6 +18,8 @@ class RecordSource {
   static constexpr int kBrokerEnded = 3;   ///< isobard has ended, or is silent
   static constexpr int kOtherVersion = 4;  ///< isobard does not describe itself: it is another version
 
+  static constexpr int kRefused = 5;  ///< this user may not attach; the child has printed why
+
   /// Forks the child. The calling process must not have attached, and must have no other threads.
   /// @param quiet the child prints no errors: the same ones were printed before
   /// @throws ServiceError when the system refuses a pipe or a process
