@@ -18,10 +18,17 @@ void InputTap::drain_packets(recording::InputLog& log) {
   }
 }
 
+void InputTap::drain_base_stations(recording::InputLog& log) {
+  while (const auto sample = base_barometer_.take()) {
+    const bool is_known = sample->station < base_paths_.size();
+    if (is_known && base_paths_[sample->station].check(*sample)) log.add_base_pressure(*sample);
+  }
+}
+
 void InputTap::drain(recording::InputLog& log) {
   while (const auto sample = imu_.take()) log.add(*sample);
   while (const auto sample = barometer_.take()) log.add_pressure(*sample);
-  while (const auto sample = base_barometer_.take()) log.add_base_pressure(*sample);
+  drain_base_stations(log);
   while (const auto sample = wheel_.take()) log.add(*sample);
   drain_packets(log);
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
-#include <string>
 
+#include "daemon/base_path_choice.hpp"
 #include "ipc/shared_memory.hpp"
 #include "run/recording/input_log.hpp"
 
@@ -26,11 +27,14 @@ class InputTap {
 
  private:
   void drain_packets(recording::InputLog& log);
+  void drain_base_stations(recording::InputLog& log);
 
   ipc::Subscriber<ipc::LidarPackets> packets_{ipc::topics::kLidarPackets};
   ipc::Subscriber<ImuSample> imu_{ipc::topics::kImu};
   ipc::Subscriber<PressureSample> barometer_{ipc::topics::kBarometer};
   ipc::Subscriber<PressureSample> base_barometer_{ipc::topics::kBaseBarometer};
+  std::array<BasePathChoice, 2>
+      base_paths_;  ///< by station, as in the prior thread: what it refuses is left out
   ipc::Subscriber<WheelSample> wheel_{ipc::topics::kWheel};
   std::optional<std::uint64_t> lost_before_;  ///< LidarPackets::lost of the first message
   std::uint64_t lost_packets_ = 0;            ///< the growth of it since

@@ -23,7 +23,7 @@ void PacketTap::add(const ReceivedDatagram& datagram) noexcept {
   }
   ipc::LidarPacket& packet = group_->packets[group_->count++];
   packet.stamp_ns = datagram.stamp_ns;
-  packet.sender_ipv4 = datagram.sender_ipv4;
+  packet.sender_ipv4 = datagram.sender.ipv4;
   packet.byte_count = static_cast<std::uint32_t>(datagram.payload.size());
   std::copy(datagram.payload.begin(), datagram.payload.end(), packet.bytes);
   if (group_->count == ipc::LidarPackets::kMaxPackets) publish();

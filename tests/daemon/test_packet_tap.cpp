@@ -34,7 +34,7 @@ class Traffic {
     }
   }
   [[nodiscard]] ReceivedDatagram operator[](int i) const {
-    return {packets_[static_cast<std::size_t>(i)], kStart + i * kPacketNs, 0x0A00'0001U, false};
+    return {packets_[static_cast<std::size_t>(i)], kStart + i * kPacketNs, {0x0A00'0001U, 2'368}, false};
   }
 
  private:
@@ -93,7 +93,7 @@ TEST_CASE("a subscriber receives every packet unchanged, also the last ones befo
     const ReceivedDatagram sent = traffic[read];
     REQUIRE(entry.kind == recording::LogKind::kPacket);
     REQUIRE(entry.stamp_ns == sent.stamp_ns);
-    REQUIRE(entry.sender_ipv4 == sent.sender_ipv4);
+    REQUIRE(entry.sender_ipv4 == sent.sender.ipv4);
     REQUIRE(std::equal(entry.packet.begin(), entry.packet.end(), sent.payload.begin(), sent.payload.end()));
   }
   CHECK(read == kPackets);
@@ -115,7 +115,7 @@ TEST_CASE("packets that a full queue drops, and packets that are too long, are c
   inputs.drain(log);
   CHECK(inputs.lost() == 3 * kGroup);
   const std::vector<std::uint8_t> long_payload(ipc::LidarPacket::kMaxBytes + 1);
-  tap.add({long_payload, kStart, 0, false});
+  tap.add({long_payload, kStart, {}, false});
   send_group();
   inputs.drain(log);
   CHECK(inputs.lost() == 3 * kGroup + 1);
