@@ -34,7 +34,7 @@ std::string duration_text(std::int64_t duration_ns) {
   const double s = std::abs(seconds_between(0, duration_ns));
   const char sign = duration_ns < 0 ? '-' : '+';
   if (s < 60.0) return fmt::format("{}{:.3f} s", sign, s);
-  const auto whole = static_cast<std::int64_t>(s);
+  const std::int64_t whole = std::llround(s);
   return fmt::format("{}{} days {:02}:{:02}:{:02}", sign, whole / kDayS, whole / 3600 % 24, whole / 60 % 60,
                      whole % 60);
 }
