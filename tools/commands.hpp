@@ -22,6 +22,7 @@ void add_noise_command(CLI::App& app);    ///< pressure log -> sigma, Allan devi
 void add_map_command(CLI::App& app);      ///< info, check and export of a run's map
 void add_status_command(CLI::App& app);   ///< health and figures of the running isobard
 void add_metrics_command(CLI::App& app);  ///< the same for Prometheus
+void add_reset_command(CLI::App& app);    ///< asks the running isobard for a new map frame
 void add_echo_command(CLI::App& app);     ///< prints what a DDS subscriber receives
 
 }  // namespace isobar::tools
