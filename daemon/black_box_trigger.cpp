@@ -32,7 +32,8 @@ std::optional<std::string> FaultTrigger::check(const ipc::HealthReport& report, 
     const bool is_error = entry.level == ipc::HealthLevel::kError;
     const bool was_good = known != levels_.end() && (known->second == ipc::HealthLevel::kOk ||
                                                      known->second == ipc::HealthLevel::kWarning);
-    if (!fault && is_error && was_good && is_chosen(name)) fault = name;
+    const bool is_cause = name != ipc::HealthReport::kSummaryName;  // the summary only repeats another entry
+    if (!fault && is_cause && is_error && was_good && is_chosen(name)) fault = name;
     levels_.insert_or_assign(std::string(name), entry.level);
   }
   if (fault && saved_ns_ && now_ns - *saved_ns_ < kMinIntervalNs) return std::nullopt;
