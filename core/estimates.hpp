@@ -71,6 +71,7 @@ enum class PoseMode : std::uint8_t {
 struct PoseEstimate {
   std::int64_t stamp_ns = 0;
   std::uint32_t sequence = 0;  ///< of the scan; between scans, of the last one
+  std::uint32_t session = 1;   ///< number of the map frame, 1 …; poses of two frames cannot be compared
   PoseMode mode = PoseMode::kInitializing;
   Method method = Method::k3Dof;            ///< configured method
   Method effective_method = Method::k3Dof;  ///< method that ran: 3-DOF without any height runs as 4-DOF
@@ -91,6 +92,14 @@ struct PoseEstimate {
       Eigen::Vector3d::Zero();   ///< of the information matrix per pair, ascending
   double registration_ms = 0.0;  ///< CPU time of the registration; filled by the thread that runs it
 };
+
+/// True for a pose that is none yet: before gravity is found (covariance 0), or of a continued run whose place no
+/// scan has confirmed (it is only where the robot was).
+[[nodiscard]] inline bool place_unknown(const PoseEstimate& pose) {
+  constexpr double kKnownVarianceM2 = 25.0;  // poses in the map are known to centimetres
+  const double variance_m2 = pose.covariance(0, 0);
+  return pose.mode == PoseMode::kInitializing && (variance_m2 == 0.0 || variance_m2 > kKnownVarianceM2);
+}
 
 /// A deskewed scan in the base_link frame at the pose's time, thinned for the map.
 struct RegisteredScan {

@@ -80,6 +80,7 @@ void PriorThread::drain() noexcept {
   }
   draft_status_.counters = estimator_.counters();
   draft_status_.punctuality = deadline_.status();
+  draft_status_.datum = estimator_.height_datum();
   draft_status_.barometers = estimator_.barometers();
   // In the order of Kind.
   draft_status_.dropped = {imu_.dropped(), barometer_.dropped(), base_barometer_.dropped(), wheel_.dropped()};

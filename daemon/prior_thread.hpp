@@ -35,6 +35,7 @@ struct PriorStatus {
   HeightSource height_source = HeightSource::kNone;
   BarometerHealth barometers;
   bool attitude_valid = false;
+  HeightDatum datum;           ///< for the next run
   DeadlineStatus punctuality;  ///< from an IMU sample to the publication of its prior
 };
 
@@ -42,6 +43,9 @@ struct PriorStatus {
 class PriorThread {
  public:
   PriorThread(const PriorConfig& config, ThreadSettings settings);
+
+  /// Continues the height of an earlier run. Before the start.
+  void resume(const HeightDatum& datum) { estimator_.resume(datum); }
 
   [[nodiscard]] Worker& worker() noexcept { return worker_; }
   /// Changes the deadline and the settings that PriorEstimator::configure() takes, from the next round on. Main

@@ -11,6 +11,18 @@ RegistrationStage::RegistrationStage(const RegistrationConfig& config, Method me
       sink_(sink),
       without_points_(std::make_unique<Scan>()) {}
 
+void RegistrationStage::begin_at(std::uint32_t session, const std::optional<KnownPlace>& place) {
+  registration_->set_session(session);
+  if (place) registration_->resume(*place);
+}
+
+// The clock may have started over: poses of the new frame need not be newer than the last one.
+void RegistrationStage::begin_new_frame() {
+  registration_->begin_new_frame();
+  newest_prior_ = {};
+  silence_ = {};
+}
+
 void RegistrationStage::add_prior(const Prior& prior) {
   newest_prior_ = prior;
   registration_->add_prior(prior);

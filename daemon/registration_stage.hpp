@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "core/estimates.hpp"
 #include "core/map/map_snapshot.hpp"
@@ -36,6 +37,12 @@ class RegistrationStage {
     next->take_over(*registration_);
     registration_.swap(next);
   }
+
+  /// See Registration.
+  void begin_at(std::uint32_t session, const std::optional<KnownPlace>& place);
+  void begin_new_frame();
+  [[nodiscard]] std::uint32_t session() const { return registration_->session(); }
+  [[nodiscard]] bool searching() const { return registration_->searching(); }
 
   /// Takes a prior; in order of time.
   void add_prior(const Prior& prior);

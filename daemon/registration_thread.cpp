@@ -29,6 +29,7 @@ RegistrationThread::RegistrationThread(const StageSettings& stages, SnapshotExch
       snapshots_(snapshots),
       priors_(ipc::topics::kPrior),
       scans_(ipc::topics::kLidarScan),
+      commands_(ipc::topics::kCommand),
       poses_(ipc::topics::kPose),
       registered_scans_(ipc::topics::kRegisteredScan),
       waiter_({&scans_.raw()}),
@@ -64,6 +65,7 @@ void RegistrationThread::drain() noexcept {
     queue_.configure(change.queue);
     deadline_.set_limit(change.deadline_ms);
   });
+  obey();
   while (const auto prior = priors_.take()) stage_.add_prior(*prior);
   const std::int64_t now_ns = RobotClock::now_ns();
   bool scan_arrived = false;
@@ -76,6 +78,17 @@ void RegistrationThread::drain() noexcept {
   if (scan) register_scan(*scan);
   bridge_silence(scan_arrived, now_ns);
   report();
+}
+
+// Commands come through shared memory (`isobar reset`) or from a thread of this process.
+void RegistrationThread::obey() noexcept {
+  NewFrameReason reason = new_frame_.exchange(NewFrameReason::kNone, std::memory_order_relaxed);
+  while (const auto message = commands_.take()) {
+    if (message->command == ipc::Command::kNewFrame) reason = NewFrameReason::kCommand;
+  }
+  if (reason == NewFrameReason::kNone) return;
+  stage_.begin_new_frame();
+  draft_status_.session_reason = reason;
 }
 
 void RegistrationThread::skip_dropped() noexcept {
@@ -120,6 +133,13 @@ void RegistrationThread::report() noexcept {
   draft_status_.dropped_scans = queue_.dropped_count();
   draft_status_.dropped_priors = priors_.dropped();
   draft_status_.punctuality = deadline_.status();
+  const std::uint32_t session = stage_.session();
+  const bool told = draft_status_.session_reason == NewFrameReason::kNone;
+  if (draft_status_.searching && session != draft_status_.session && told) {
+    draft_status_.session_reason = NewFrameReason::kPlaceUnknown;
+  }
+  draft_status_.session = session;
+  draft_status_.searching = stage_.searching();
   status_.put(draft_status_);
 }
 

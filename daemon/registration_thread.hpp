@@ -2,15 +2,18 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <memory>
 
 #include "core/map/map_snapshot.hpp"
 #include "core/map/snapshot_exchange.hpp"
+#include "core/name_table.hpp"
 #include "daemon/deadline.hpp"
 #include "daemon/handover.hpp"
 #include "daemon/registration_stage.hpp"
+#include "daemon/run_start.hpp"
 #include "daemon/scan_queue.hpp"
 #include "daemon/seq_lock.hpp"
 #include "daemon/stage_settings.hpp"
@@ -27,6 +30,21 @@ struct PoseSummary {
   std::array<double, 6> variances{};  ///< of x, y, z [m^2], roll, pitch, yaw [rad^2]
 };
 
+/// Why a map frame was begun.
+enum class NewFrameReason : std::uint8_t {
+  kNone,            ///< the first of the run, or the continued one
+  kPlaceUnknown,    ///< a continued run does not find its place in its map
+  kCommand,         ///< somebody asked for it
+  kInputStartsOver  ///< the sensors' clock has jumped back: another recording is played
+};
+
+inline constexpr NameTable<NewFrameReason, 4> kNewFrameReasonNames{{{
+    {NewFrameReason::kNone, "none"},
+    {NewFrameReason::kPlaceUnknown, "the place is not that of the map"},
+    {NewFrameReason::kCommand, "on command"},
+    {NewFrameReason::kInputStartsOver, "the input started over"},
+}}};
+
 /// Status of the registration thread.
 struct RegistrationStatus {
   std::uint64_t scans = 0;
@@ -34,7 +52,10 @@ struct RegistrationStatus {
   std::uint64_t dropped_scans =
       0;  ///< scans superseded by a newer one, or lost before this thread; see ScanQueue
   std::uint64_t dropped_priors = 0;
-  std::uint64_t bridged = 0;  ///< poses without a scan
+  std::uint64_t bridged = 0;                              ///< poses without a scan
+  std::uint32_t session = 1;                              ///< number of the map frame
+  NewFrameReason session_reason = NewFrameReason::kNone;  ///< why it was begun
+  bool searching = false;                                 ///< a continued run has not found its place yet
   double overlap = 0.0;
   double registration_ms = 0.0;
   PoseMode mode = PoseMode::kInitializing;
@@ -52,6 +73,13 @@ class RegistrationThread final : private EstimateSink {
  public:
   RegistrationThread(const StageSettings& stages, SnapshotExchange<MapSnapshot>& snapshots,
                      const ScanQueueConfig& queue, ThreadSettings settings);
+
+  /// Begins with a map frame, or continues in a known one. Before the start.
+  void begin_at(const RunStart& start) { stage_.begin_at(start.session, start.place); }
+  /// Begins a new map frame with the next scan; the old map and trajectory are kept. Any thread.
+  void begin_new_frame(NewFrameReason reason) noexcept {
+    new_frame_.store(reason, std::memory_order_relaxed);
+  }
 
   [[nodiscard]] Worker& worker() noexcept { return worker_; }
   /// Builds the registration anew with other settings; before the next scan it replaces the one in use, whose
@@ -77,6 +105,7 @@ class RegistrationThread final : private EstimateSink {
   void loop() noexcept;
   [[nodiscard]] std::chrono::nanoseconds timeout() const noexcept;
   void drain() noexcept;
+  void obey() noexcept;
   void skip_dropped() noexcept;
   void register_scan(const Scan& scan) noexcept;
   void bridge_silence(bool scan_arrived, std::int64_t now_ns) noexcept;
@@ -87,6 +116,7 @@ class RegistrationThread final : private EstimateSink {
   SnapshotExchange<MapSnapshot>& snapshots_;
   ipc::Subscriber<Prior> priors_;
   ipc::Subscriber<Scan> scans_;
+  ipc::Subscriber<ipc::CommandMessage> commands_;
   ipc::Publisher<PoseEstimate> poses_;
   ipc::Publisher<RegisteredScan> registered_scans_;
   ipc::Waiter waiter_;
@@ -96,6 +126,7 @@ class RegistrationThread final : private EstimateSink {
   std::unique_ptr<RegisteredScan> unpublished_;  ///< used while no chunk is free: the pose is still published
   Deadline deadline_;
   Handover<Change> changes_;
+  std::atomic<NewFrameReason> new_frame_{NewFrameReason::kNone};  ///< asked for; kNone: not
   std::uint64_t warm_up_faults_ = 0;
   RegistrationStatus draft_status_;
   SeqLock<RegistrationStatus> status_;

@@ -21,6 +21,7 @@ struct MapCloud {
 
   std::int64_t stamp_ns = 0;       ///< stamp of the newest scan in the map, robot clock
   std::uint32_t sequence = 0;      ///< number of maps published before this one; equal in all its pieces
+  std::uint32_t session = 1;       ///< number of the map frame, as in PoseEstimate
   std::uint32_t first_point = 0;   ///< points of the map in the pieces before this one
   std::uint32_t total_points = 0;  ///< of the map
   std::uint32_t point_count = 0;   ///< points[0 … point_count-1] are valid
@@ -109,6 +110,16 @@ struct HealthReport {
   }
 };
 
+/// What a person can ask of a running isobard.
+enum class Command : std::uint8_t {
+  kNewFrame = 1,  ///< begin a new map frame with an empty map; the old map and trajectory are kept
+};
+
+/// A command, published by the `isobar` program.
+struct CommandMessage {
+  Command command = Command::kNewFrame;
+};
+
 /// A topic: one row of the table below. Published by isobard, topics of samples also by isobar-dds. Any
 /// number of subscribers.
 template <class Payload>
@@ -135,6 +146,7 @@ inline constexpr Topic<LidarPackets> kLidarPackets{"lidar/packets", 128, 0};
 inline constexpr Topic<RunDescription> kRunDescription{"run_description", 1, 1};
 inline constexpr Topic<BlackBoxOrder> kBlackBoxOrder{"black_box/order", 4, 0};
 inline constexpr Topic<BlackBoxState> kBlackBoxState{"black_box/state", 1, 1};
+inline constexpr Topic<CommandMessage> kCommand{"command", 4, 0};
 
 }  // namespace topics
 

@@ -32,6 +32,23 @@ constexpr double kLongestStepS = 1.0;
 BaseReference::BaseReference(const AltimeterConfig& config)
     : config_(config), stations_{BaseStation(config), BaseStation(config)} {}
 
+// A known station counts as lost: its return brings the reference back to the datum.
+void BaseReference::resume(const HeightDatum& datum) {
+  for (std::size_t i = 0; i < kStations; ++i) {
+    offset_known_[i] = datum.station_known[i];
+    offset_log_[i] = datum.station_offset_log[i];
+    if (offset_known_[i]) state_ = State::kLost;
+  }
+}
+
+// Jumps that a station has made are part of its offset: the next run begins with its present level.
+void BaseReference::describe(HeightDatum& datum) const {
+  for (std::size_t i = 0; i < kStations; ++i) {
+    datum.station_known[i] = offset_known_[i] && !condemned_[i];
+    datum.station_offset_log[i] = offset_log_[i] - stations_[i].jump_log();
+  }
+}
+
 PressureStatus BaseReference::add(const PressureSample& sample, std::int64_t now_ns) {
   if (sample.station >= kStations) return PressureStatus::kBadValue;
   return stations_[sample.station].add(sample, now_ns);

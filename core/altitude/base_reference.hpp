@@ -7,6 +7,7 @@
 
 #include "core/altitude/altitude_config.hpp"
 #include "core/altitude/base_station.hpp"
+#include "core/altitude/height_datum.hpp"
 #include "core/altitude/station_vote.hpp"
 #include "core/samples.hpp"
 
@@ -32,6 +33,11 @@ class BaseReference {
 
   /// Reference until the first base station: `log_pa` is ln of the robot's first pressure [Pa].
   void start(double log_pa) { log_pa_ = log_pa; }
+
+  /// Continues the datum of an earlier run, before the first sample.
+  void resume(const HeightDatum& datum);
+  /// Fills the base stations of the datum.
+  void describe(HeightDatum& datum) const;
 
   PressureStatus add(const PressureSample& sample, std::int64_t now_ns);
 

@@ -32,6 +32,8 @@ class BaseStation {
 
   /// ln of the pressure [Pa] without jumps: changes with the weather alone.
   [[nodiscard]] double value() const;
+  /// Sum of the jumps that value() leaves out, of ln of the pressure.
+  [[nodiscard]] double jump_log() const { return jump_log_; }
   /// Variance of value() (relative variance of the pressure) at `now_ns`.
   [[nodiscard]] double variance(std::int64_t now_ns) const;
 

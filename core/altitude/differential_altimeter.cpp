@@ -32,6 +32,11 @@ double DifferentialAltimeter::scale_uncertainty() const {
   return config_.air.sigma_k / (air_.temperature_c() + kZeroCelsiusK);
 }
 
+void DifferentialAltimeter::resume(const HeightDatum& datum, double port_height_m) {
+  base_.resume(datum);
+  first_height_m_ = port_height_m;
+}
+
 void DifferentialAltimeter::restart_clock() {
   robot_.restart_clock();
   base_.restart_clock();
@@ -83,7 +88,7 @@ PressureStatus DifferentialAltimeter::add_robot(const PressureSample& sample, Al
   out = AltimeterReading{};
   const double log_pa = std::log(sample.pressure_pa);
   if (!started_) {
-    base_.start(log_pa);
+    base_.start(log_pa + first_height_m_ / scale_m());
     first_noise_variance_m2_ =
         squared(scale_m() / sample.pressure_pa) * noise_variance_pa2(sample, robot_noise_, config_);
     first_stamp_ns_ = sample.stamp_ns;

@@ -38,6 +38,14 @@ class DifferentialAltimeter {
  public:
   explicit DifferentialAltimeter(const AltimeterConfig& config);
 
+  /// Continues the datum of an earlier run, before the first sample. `port_height_m`: height of the port above
+  /// the datum's zero, the altimeter's bias included, until a known base station is heard.
+  void resume(const HeightDatum& datum, double port_height_m);
+  /// Fills the base stations of the datum.
+  void describe(HeightDatum& datum) const { base_.describe(datum); }
+  /// A base station of the resumed datum has not been heard yet.
+  [[nodiscard]] bool waits_for_base() const { return base_.ever() && !base_.present(); }
+
   /// Robot clock, from the newest sample of any sensor: detects silent and stale barometers.
   void set_time(std::int64_t now_ns) { now_ns_ = now_ns; }
   /// Height of the port by dead reckoning [m]; NaN where it is invalid (no wheels, an elevator). Lets the
@@ -77,6 +85,7 @@ class DifferentialAltimeter {
   NoiseEstimator robot_noise_;
   BaseReference base_;
   AirTemperatureTracker air_;
+  double first_height_m_ = 0.0;  // of the port at the first reading
   double witness_m_ = std::numeric_limits<double>::quiet_NaN();
   double last_pa_ = 0.0;
   double first_noise_variance_m2_ = 0.0;

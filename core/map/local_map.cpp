@@ -35,12 +35,15 @@ bool plane_in_cube(const MapBlock& block, int place) {
 
 }  // namespace
 
-LocalMap::LocalMap(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, TileStorage* storage)
+LocalMap::LocalMap(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, TileStorage* storage,
+                   std::uint32_t session)
     : config_(config),
       cell_m_(static_cast<float>(config.cell_m)),
       T_base_lidar_(T_base_lidar),
       storage_(storage),
+      session_(session),
       fitter_(config, [this](const TileKey& key) { return find_tile(key); }),
+      snapshot_(std::make_shared<const MapSnapshot>(session)),
       seen_through_(config, T_base_lidar) {}
 
 void LocalMap::configure(const MapConfig& config) {
@@ -66,8 +69,8 @@ bool LocalMap::wants(const PoseEstimate& pose) const {
 bool LocalMap::update(const RegisteredScan& scan) {
   constexpr double kMaxCoordinateM = 1e8;  // a cell index must fit into 32 bits; no robot drives that far
   const auto& pose = scan.pose.T_map_base.matrix();
-  if (scan.point_count == 0 || !pose.allFinite() || pose.cwiseAbs().maxCoeff() > kMaxCoordinateM ||
-      !wants(scan.pose)) {
+  if (scan.point_count == 0 || scan.pose.session != session_ || !pose.allFinite() ||
+      pose.cwiseAbs().maxCoeff() > kMaxCoordinateM || !wants(scan.pose)) {
     return false;
   }
   const Eigen::Vector3d p_map_base = scan.pose.T_map_base.translation();
@@ -182,7 +185,9 @@ SlotSet& LocalMap::waiting_in(Tile& tile, std::size_t block) {
 void LocalMap::refit_stale() {
   for (const StaleBlock& stale : stale_) {
     Tile& tile = *stale.tile;
-    tile.changed = fitter_.refit(tile.cells, stale.block, stale.waiting) || tile.changed;
+    const bool refitted = fitter_.refit(tile.cells, stale.block, stale.waiting);
+    tile.changed = refitted || tile.changed;
+    tile.unstored = refitted || tile.unstored;
     tile.cells.block(stale.block)->list_index = MapBlock::kNotListed;
   }
   stale_.clear();
@@ -205,9 +210,9 @@ void LocalMap::publish() {
     }
   }
   if (wants_trees) {
-    snapshot_ = std::make_shared<const NearestPlane>(std::move(trees), cell_m_);
+    snapshot_ = std::make_shared<const NearestPlane>(std::move(trees), cell_m_, session_);
   } else {
-    snapshot_ = std::make_shared<const PlaneHash>(std::move(planes), cell_m_);
+    snapshot_ = std::make_shared<const PlaneHash>(std::move(planes), cell_m_, session_);
   }
 }
 

@@ -27,7 +27,9 @@ class LocalMap {
  public:
   /// `T_base_lidar`: pose of the lidar in base_link; rays start there. `storage`: may be null; tiles beyond
   /// the radius are then dropped.
-  LocalMap(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, TileStorage* storage = nullptr);
+  /// `session`: number of the map frame; scans of another one are left out.
+  LocalMap(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, TileStorage* storage = nullptr,
+           std::uint32_t session = 1);
   LocalMap(const LocalMap&) = delete;
   LocalMap& operator=(const LocalMap&) = delete;
 
@@ -47,7 +49,19 @@ class LocalMap {
 
   /// Writes every tile in memory to the storage, for the end of a run.
   void store_all();
+  /// Writes some of the tiles whose planes have changed since they were last written, so that a crash loses
+  /// little. Called once a second, every change is written within 2 * kSweepParts seconds, and one call writes
+  /// a share of 1 / kSweepParts of the changed tiles.
+  void store_some();
+  static constexpr std::size_t kSweepParts = 4;
+  /// Another storage, which may hold other versions of the tiles in memory: those count as changed.
+  void change_storage(TileStorage* storage);
 
+  /// Reads the stored tiles around a place, the nearest first, and publishes them in snapshot(): the map of
+  /// an earlier run. Tiles beyond a maximum follow with the next updates.
+  void load_around(const Eigen::Vector3d& p_map_base);
+
+  [[nodiscard]] std::uint32_t session() const { return session_; }
   [[nodiscard]] std::size_t cell_count() const;
   [[nodiscard]] std::size_t tile_count() const { return tiles_.size(); }
   /// Cells removed because rays passed through them, since the start.
@@ -59,6 +73,7 @@ class LocalMap {
     MapTile cells;
     std::shared_ptr<const TileTree> tree;  // over cells.planes(); null unless the matcher is kNearest
     bool changed = true;                   // since the last cells.publish()
+    bool unstored = true;                  // planes have changed since the last store()
   };
   // A block whose planes are out of date, and the slots that wait for a refit.
   struct StaleBlock {
@@ -84,7 +99,7 @@ class LocalMap {
   void remove_seen_through(const RegisteredScan& scan, double elapsed_s);
   SlotSet& waiting_in(Tile& tile, std::size_t block);
   void refit_stale();
-  void store(const TileKey& key);
+  bool store(const TileKey& key);
   void evict(const Eigen::Vector3d& p_map_base);
   void look_for_stored(const Eigen::Vector3d& p_map_base);
   void bring_back_stored();
@@ -97,12 +112,15 @@ class LocalMap {
   float cell_m_;
   Eigen::Isometry3d T_base_lidar_;
   TileStorage* storage_;
+  std::uint32_t session_;
   PlaneFitter fitter_;
   std::unordered_map<TileKey, std::unique_ptr<Tile>, TileKey::Hash> tiles_;
-  std::shared_ptr<const MapSnapshot> snapshot_ = std::make_shared<const MapSnapshot>();
+  std::shared_ptr<const MapSnapshot> snapshot_;
   std::array<PendingPoint, 32> pending_points_;
   std::array<Tile*, 64> recent_{};  // tiles of this scan, by hash of their key
   std::vector<StaleBlock> stale_;   // blocks changed by this update
+  std::vector<TileKey> sweep_;      // tiles to be written by store_some(), the next one last
+  std::size_t sweep_share_ = 0;     // of them per call
   std::vector<TileKey> stored_;     // stored tiles to bring back, the nearest last
   std::size_t restored_ = 0;        // number of tiles read from the storage by this update
   std::vector<std::byte> bytes_;    // scratch

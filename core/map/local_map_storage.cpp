@@ -14,6 +14,9 @@ namespace {
 // Maximum number of tiles that one update reads from the storage: it takes a few milliseconds.
 constexpr std::size_t kTilesPerUpdate = 8;
 
+// Maximum number of tiles that are read before the first scan: about a second.
+constexpr std::size_t kTilesAtStart = 600;
+
 }  // namespace
 
 // Tile that a point is added to, read from the storage if it is there. Null if this update has read its
@@ -35,13 +38,52 @@ LocalMap::Tile* LocalMap::tile_for_points(const TileKey& key) {
 LocalMap::Tile* LocalMap::restore(const TileKey& key) {
   ++restored_;
   Tile* tile = tiles_.emplace(key, std::make_unique<Tile>(key)).first->second.get();
-  if (storage_->take(key, bytes_)) tile->cells.restore(bytes_, cell_m_);
+  tile->unstored = !(storage_->take(key, bytes_) && tile->cells.restore(bytes_, cell_m_));
   return tile;
 }
 
-void LocalMap::store(const TileKey& key) {
-  tiles_.at(key)->cells.store(cell_m_, bytes_);
-  storage_->put(key, bytes_);
+// False if the disk refuses: the tile stays unstored.
+bool LocalMap::store(const TileKey& key) {
+  Tile& tile = *tiles_.at(key);
+  tile.cells.store(cell_m_, bytes_);
+  const bool stored = storage_->put(key, bytes_);
+  tile.unstored = tile.unstored && !stored;
+  return stored;
+}
+
+void LocalMap::store_some() {
+  if (storage_ == nullptr) {
+    return;
+  }
+  if (sweep_.empty()) {
+    for (const auto& [key, tile] : tiles_) {
+      if (tile->unstored) sweep_.push_back(key);
+    }
+    sweep_share_ = (sweep_.size() + kSweepParts - 1) / kSweepParts;
+  }
+  for (std::size_t i = 0; i < sweep_share_ && !sweep_.empty(); ++i) {
+    const TileKey key = sweep_.back();
+    sweep_.pop_back();
+    const auto found = tiles_.find(key);
+    if (found == tiles_.end() || !found->second->unstored) continue;
+    // A full disk refuses the others as well.
+    if (!store(key)) sweep_.clear();
+  }
+}
+
+void LocalMap::change_storage(TileStorage* storage) {
+  storage_ = storage;
+  for (auto& [key, tile] : tiles_) tile->unstored = true;
+}
+
+void LocalMap::load_around(const Eigen::Vector3d& p_map_base) {
+  look_for_stored(p_map_base);
+  for (std::size_t i = 0; i < kTilesAtStart && !stored_.empty(); ++i) {
+    restore(stored_.back());
+    stored_.pop_back();
+  }
+  restored_ = 0;
+  publish();
 }
 
 void LocalMap::store_all() {

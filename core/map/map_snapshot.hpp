@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "core/map/grid.hpp"
@@ -36,6 +37,8 @@ struct PlaneMatch {
 class MapSnapshot {
  public:
   MapSnapshot() = default;
+  /// An empty map.
+  explicit MapSnapshot(std::uint32_t session) : session_(session) {}
   virtual ~MapSnapshot() = default;
   MapSnapshot(const MapSnapshot&) = delete;
   MapSnapshot& operator=(const MapSnapshot&) = delete;
@@ -51,11 +54,15 @@ class MapSnapshot {
   [[nodiscard]] std::size_t plane_count() const { return plane_count_; }
   /// Edge of a cell [m].
   [[nodiscard]] float cell_m() const { return cell_m_; }
+  /// Number of the map frame, as in PoseEstimate.
+  [[nodiscard]] std::uint32_t session() const { return session_; }
 
  protected:
-  MapSnapshot(float cell_m, std::size_t plane_count) : cell_m_(cell_m), plane_count_(plane_count) {}
+  MapSnapshot(float cell_m, std::size_t plane_count, std::uint32_t session = 1)
+      : session_(session), cell_m_(cell_m), plane_count_(plane_count) {}
 
  private:
+  std::uint32_t session_ = 1;
   float cell_m_ = 0.25F;
   std::size_t plane_count_ = 0;
 };

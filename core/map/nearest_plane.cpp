@@ -98,8 +98,9 @@ const TileTree::Plane* TileTree::nearest(const Eigen::Vector3f& p_tile, const Ei
   return result.plane();
 }
 
-NearestPlane::NearestPlane(std::vector<std::shared_ptr<const TileTree>> trees, float cell_m)
-    : MapSnapshot(cell_m, count_planes(trees)), directory_(std::move(trees)) {}
+NearestPlane::NearestPlane(std::vector<std::shared_ptr<const TileTree>> trees, float cell_m,
+                           std::uint32_t session)
+    : MapSnapshot(cell_m, count_planes(trees), session), directory_(std::move(trees)) {}
 
 bool NearestPlane::match_one(const MatchQuery& query, const Eigen::Vector3f& p_local,
                              PlaneMatch& match) const {

@@ -3,6 +3,7 @@
 // nanoflann.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -44,8 +45,8 @@ class TileTree {
 /// Matches a point to the plane whose point is nearest (the paper's data association).
 class NearestPlane final : public MapSnapshot {
  public:
-  /// `trees`: no null pointers.
-  NearestPlane(std::vector<std::shared_ptr<const TileTree>> trees, float cell_m);
+  /// `trees`: no null pointers. `session`: number of the map frame.
+  NearestPlane(std::vector<std::shared_ptr<const TileTree>> trees, float cell_m, std::uint32_t session = 1);
 
   void match(const MatchQuery& query, std::span<const Eigen::Vector3f> p_local,
              std::span<PlaneMatch> matches) const override;

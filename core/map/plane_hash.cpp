@@ -159,8 +159,8 @@ class PlaneHash::Search {
   bool known_ = false;
 };
 
-PlaneHash::PlaneHash(std::vector<std::shared_ptr<const PlaneTile>> tiles, float cell_m)
-    : MapSnapshot(cell_m, count_planes(tiles)), directory_(std::move(tiles)) {}
+PlaneHash::PlaneHash(std::vector<std::shared_ptr<const PlaneTile>> tiles, float cell_m, std::uint32_t session)
+    : MapSnapshot(cell_m, count_planes(tiles), session), directory_(std::move(tiles)) {}
 
 void PlaneHash::match(const MatchQuery& query, std::span<const Eigen::Vector3f> p_local,
                       std::span<PlaneMatch> matches) const {

@@ -3,6 +3,7 @@
 // that faces the robot and lies close to the point, the nearest plane of the cells around.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -16,8 +17,8 @@ namespace isobar {
 /// Matches a point to the plane of its cell, or else to the nearest plane.
 class PlaneHash final : public MapSnapshot {
  public:
-  /// `tiles`: no null pointers.
-  PlaneHash(std::vector<std::shared_ptr<const PlaneTile>> tiles, float cell_m);
+  /// `tiles`: no null pointers. `session`: number of the map frame.
+  PlaneHash(std::vector<std::shared_ptr<const PlaneTile>> tiles, float cell_m, std::uint32_t session = 1);
 
   void match(const MatchQuery& query, std::span<const Eigen::Vector3f> p_local,
              std::span<PlaneMatch> matches) const override;

@@ -72,6 +72,12 @@ void HeightFilter::start(double z_m, double vz_sigma_m_s) {
   started_ = true;
 }
 
+void HeightFilter::resume(double z_m, double variance_m2, double vz_sigma_m_s, double offset_m) {
+  start(z_m, vz_sigma_m_s);
+  filter_.resume(z_m, variance_m2, vz_sigma_m_s, offset_m);
+  restart_forks();
+}
+
 void HeightFilter::restart_forks() {
   for (Fork& fork : forks_) fork = {filter_, 0.0};
   disagreeing_s_ = fork_misfit_m_ = 0.0;

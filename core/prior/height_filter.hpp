@@ -41,7 +41,13 @@ class HeightFilter {
   explicit HeightFilter(const HeightConfig& config);
 
   void start(double z_m, double vz_sigma_m_s);
+  /// Continues the height of an earlier run (VerticalFilter::resume()).
+  void resume(double z_m, double variance_m2, double vz_sigma_m_s, double offset_m);
   [[nodiscard]] bool started() const { return started_; }
+  /// Offset between the barometers [m].
+  [[nodiscard]] double offset_m() const { return filter_.value(VerticalFilter::kOffset); }
+  [[nodiscard]] double offset_variance_m2() const { return filter_.variance(VerticalFilter::kOffset); }
+  [[nodiscard]] bool step_open() const { return filter_.step_open(); }
 
   /// `accel_density`: noise of the vertical acceleration [m^2/s^3].
   void predict(double up_accel_m_s2, double dt_s, double accel_density);

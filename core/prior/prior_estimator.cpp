@@ -42,6 +42,27 @@ void PriorEstimator::configure(const PriorConfig& config) {
 const PriorCounters& PriorEstimator::counters() const { return state_->counters; }
 const BarometerHealth& PriorEstimator::barometers() const { return state_->barometers; }
 
+void PriorEstimator::resume(const HeightDatum& datum) {
+  if (!datum.known) return;
+  State& s = *state_;
+  s.resumed = datum;
+  // Level: the attitude is not known before the first samples, and the levers are short.
+  s.altimeter.resume(datum, datum.height_m + s.config.p_base_port.z() + datum.offset_m);
+}
+
+HeightDatum PriorEstimator::height_datum() const {
+  const State& s = *state_;
+  HeightDatum datum;
+  if (!s.height.started()) return s.resumed;
+  datum.known = s.reading_source != HeightSource::kNone;
+  datum.height_m = s.height.z_m() - s.above_base(s.p_base_imu);
+  datum.variance_m2 = s.height.variance_m2() + s.height.offset_variance_m2();
+  datum.offset_m = s.height.offset_m();
+  datum.step_open = s.height.step_open();
+  s.altimeter.describe(datum);
+  return datum;
+}
+
 bool PriorEstimator::add_imu(const ImuSample& sample, Prior& out) {
   State& s = *state_;
   const ImuStatus status = s.imu_gate.check(sample);
@@ -107,6 +128,7 @@ void PriorEstimator::add_pressure(const PressureSample& measured) {
   if (reading.event == ReferenceEvent::kBaseLost) ++s.counters.base_lost;
   if (reading.event == ReferenceEvent::kBaseSwitched) ++s.counters.base_switched;
   s.reading_source = reading.source;
+  s.reading_m = reading.height_m;
   if (!s.attitude.started() || !s.height.started()) return;
   const double lever_m = s.above_base(s.config.p_base_port - s.p_base_imu);
   const PressureUse use = s.height.update_pressure(reading, lever_m, s.imu_gate.stamp_ns());

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "core/altitude/barometer_monitor.hpp"
+#include "core/altitude/height_datum.hpp"
 #include "core/estimates.hpp"
 #include "core/prior/prior_config.hpp"
 #include "core/samples.hpp"
@@ -75,6 +76,11 @@ class PriorEstimator {
   /// Changes the limits, the standstill detection and the dead reckoning; the estimate goes on. Allocates
   /// nothing.
   void configure(const PriorConfig& config);
+  /// Continues the height of an earlier run, before the first sample. With the base station of that run the
+  /// pressure tells the height; without it, the robot stands at the height where it was.
+  void resume(const HeightDatum& datum);
+  /// The height datum at the time of the last IMU sample, for the next run.
+  [[nodiscard]] HeightDatum height_datum() const;
 
   /// True, and `out` filled, if the sample was accepted.
   bool add_imu(const ImuSample& sample, Prior& out);

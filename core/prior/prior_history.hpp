@@ -19,6 +19,7 @@ class PriorHistory {
 
   /// Appends a prior. Ignores one that is not newer than the newest: the history stays sorted.
   void add(const Prior& prior);
+  void clear() { count_ = 0; }
 
   /// False where the priors around `stamp_ns` are more than 0.5 s apart, or at() would fail: the IMU was
   /// silent and the motion is unknown.

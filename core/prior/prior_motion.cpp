@@ -5,6 +5,7 @@
 
 #include "core/pose_carrying.hpp"
 #include "core/prior/prior_state.hpp"
+#include "core/squared.hpp"
 
 namespace isobar {
 namespace {
@@ -22,6 +23,14 @@ constexpr double kStartSigmaRad = 0.02;
 // Vertical speed at the start, 1 sigma: on wheels, and of a hanging platform.
 constexpr double kStartClimbOnWheelsMS = 0.05;
 constexpr double kStartClimbHangingMS = 0.3;
+// A continued height waits for pressures up to this long after the alignment: a base station settles in 1 s.
+constexpr double kWaitForPressureS = 1.8;
+// Vertical motion of a robot that is switched off, 1 sigma: it is pushed over a threshold.
+constexpr double kStandSigmaM = 0.05;
+// The pressure contradicts: a difference that neither turbulence nor a ventilation zone makes.
+constexpr double kMovedM = 1.0;
+constexpr double kMovedSigmas = 5.0;
+constexpr double kMovedSigmaM = 0.3;
 // Mean gyro bias from the IMU's own attitude, 1 sigma.
 constexpr double kDeviceBiasSigmaRadS = 0.01;
 
@@ -34,10 +43,38 @@ void PriorEstimator::State::align(const Eigen::Vector3d& gyro, const Eigen::Vect
   if (status != GravityAlignment::Status::kAligned) return;
   attitude.start(alignment.force_sum(), yaw_before_rad, kStartSigmaRad);
   alignment.restart();
+  if (aligned_ns == 0) aligned_ns = imu_gate.stamp_ns();
+  start_height();
+}
+
+void PriorEstimator::State::start_height() {
   if (height.started()) return;
-  const bool on_wheels = wheels.valid(imu_gate.stamp_ns());
-  height_start_ns = imu_gate.stamp_ns();
-  height.start(above_base(p_base_imu), on_wheels ? kStartClimbOnWheelsMS : kStartClimbHangingMS);
+  const std::int64_t now_ns = imu_gate.stamp_ns();
+  // A continued height waits for the pressures that it continues with.
+  const bool incomplete = reading_source == HeightSource::kNone || altimeter.waits_for_base();
+  if (resumed.known && incomplete && seconds_between(aligned_ns, now_ns) < kWaitForPressureS) return;
+  height_start_ns = now_ns;
+  const double vz_sigma_m_s = wheels.valid(now_ns) ? kStartClimbOnWheelsMS : kStartClimbHangingMS;
+  if (resumed.known) {
+    continue_height(vz_sigma_m_s);
+  } else {
+    height.start(above_base(p_base_imu), vz_sigma_m_s);
+  }
+}
+
+// The robot stands where it was, unless the pressure contradicts: then it was taken to another floor.
+void PriorEstimator::State::continue_height(double vz_sigma_m_s) {
+  double z_m = resumed.height_m + above_base(p_base_imu);
+  double variance_m2 = resumed.variance_m2 + squared(kStandSigmaM);
+  if (reading_source == HeightSource::kDifferential && !resumed.step_open) {
+    const double lever_m = above_base(config.p_base_port - p_base_imu);
+    const double risen_m = reading_m - lever_m - resumed.offset_m - z_m;
+    if (std::abs(risen_m) > std::max(kMovedM, kMovedSigmas * std::sqrt(variance_m2))) {
+      z_m += risen_m;
+      variance_m2 += squared(kMovedSigmaM);
+    }
+  }
+  height.resume(z_m, variance_m2, vz_sigma_m_s, resumed.offset_m);
 }
 
 void PriorEstimator::State::bridge_gap(const Eigen::Vector3d& gyro, double dt_s) {
@@ -128,6 +165,7 @@ void PriorEstimator::State::step(const Eigen::Vector3d& gyro, const Eigen::Vecto
                                  bool gap) {
   const std::int64_t stamp_ns = imu_gate.stamp_ns();
   const bool on_wheels = wheels.valid(stamp_ns);
+  start_height();
   if (gap) {
     bridge_gap(gyro, dt_s);
   } else {

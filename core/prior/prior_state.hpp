@@ -70,10 +70,15 @@ struct PriorEstimator::State {
   bool new_wheels = false;                                // since the last IMU sample
   double since_bounded_s = 0.0;                           // since the last bounded-velocity update
   HeightSource reading_source = HeightSource::kNone;      // of the last altimeter reading
+  double reading_m = 0.0;                                 // of the last altimeter reading
   std::int64_t height_start_ns = 0;
+  HeightDatum resumed;          // of an earlier run; !known: none
+  std::int64_t aligned_ns = 0;  // first alignment; 0: not yet
 
   // prior_motion.cpp. `gyro` [rad/s] and `force` [m/s^2] in base axes.
   void align(const Eigen::Vector3d& gyro, const Eigen::Vector3d& force, double dt_s);
+  void start_height();
+  void continue_height(double vz_sigma_m_s);
   void step(const Eigen::Vector3d& gyro, const Eigen::Vector3d& force, double dt_s, bool gap);
   void bridge_gap(const Eigen::Vector3d& gyro, double dt_s);
   void restart_clock(double dt_s);

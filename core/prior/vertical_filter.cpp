@@ -31,6 +31,14 @@ void VerticalFilter::start(double z_m, double vz_sigma_m_s) {
   step_open_ = false;
 }
 
+void VerticalFilter::resume(double z_m, double variance_m2, double vz_sigma_m_s, double offset_m) {
+  start(z_m, vz_sigma_m_s);
+  P_(kZ, kZ) = variance_m2;
+  x_[kOffset] = offset_m;
+  P_(kOffset, kOffset) = 0.0;
+  offset_age_s_ = config_.offset_learning_s;
+}
+
 void VerticalFilter::predict(double up_accel_m_s2, double dt_s, double accel_density, bool weather_moves) {
   const double accel = up_accel_m_s2 - x_[kAccelBias];
   const double keep = std::exp(-dt_s / config_.turbulence_time_s);

@@ -30,6 +30,10 @@ class VerticalFilter {
   /// Starts at height `z_m`, exactly, with a vertical speed of 0, 1 sigma `vz_sigma_m_s`.
   void start(double z_m, double vz_sigma_m_s);
 
+  /// Continues the height of an earlier run, whose offset between the barometers is fixed: `z_m` and its
+  /// variance, which includes the offset's.
+  void resume(double z_m, double variance_m2, double vz_sigma_m_s, double offset_m);
+
   /// `accel_density`: [m^2/s^3], spectral density of the acceleration's noise. `weather_moves`: no base
   /// station.
   void predict(double up_accel_m_s2, double dt_s, double accel_density, bool weather_moves);

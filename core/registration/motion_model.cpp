@@ -30,12 +30,6 @@ double non_negative_root(double x) { return std::sqrt(std::max(x, 0.0)); }
 
 }  // namespace
 
-void MotionModel::take_over(const MotionModel& other) {
-  const RegistrationConfig own = config_;
-  *this = other;
-  config_ = own;
-}
-
 void MotionModel::start(const Prior& prior) {
   const Eigen::Matrix3d& R = prior.T_odom_base.linear();
   T_map_base_.setIdentity();
@@ -45,6 +39,29 @@ void MotionModel::start(const Prior& prior) {
   last_ = prior;
   v_map_m_s_.setZero();
   confirmed_ns_ = prior.stamp_ns;
+  unconfirmed_m_ = 0.0;
+}
+
+void MotionModel::start_at(const Prior& prior, const Eigen::Isometry3d& T_map_base) {
+  start(prior);
+  const Eigen::Matrix3d& R = T_map_base.linear();
+  T_map_base_.linear() = rotation_about_z(std::atan2(R(1, 0), R(0, 0))) * T_map_base_.linear();
+  T_map_base_.translation().head<2>() = T_map_base.translation().head<2>();
+  if (prior.height_source == HeightSource::kNone)
+    T_map_base_.translation().z() = T_map_base.translation().z();
+}
+
+void MotionModel::take_over(const MotionModel& other) {
+  const RegistrationConfig own = config_;
+  *this = other;
+  config_ = own;
+}
+
+void MotionModel::relocate(const Prior& now, const Eigen::Isometry3d& T_map_base) {
+  last_ = now;
+  T_map_base_ = T_map_base;
+  v_map_m_s_.setZero();
+  confirmed_ns_ = now.stamp_ns;
   unconfirmed_m_ = 0.0;
 }
 

@@ -36,9 +36,11 @@ bool height_from_altimeter(const PoseEstimate& pose) {
 PosePropagator::PosePropagator(const PosePropagatorConfig& config) : config_(config) {}
 
 void PosePropagator::add_pose(const PoseEstimate& pose) {
-  if (!is_finite(pose) || (has_anchor_ && pose.stamp_ns <= anchor_.pose.stamp_ns)) {
+  const bool new_session = has_anchor_ && pose.session != anchor_.pose.session;
+  if (!is_finite(pose) || (has_anchor_ && !new_session && pose.stamp_ns <= anchor_.pose.stamp_ns)) {
     return;
   }
+  if (new_session) begin_session(pose);
   Anchor next;
   next.pose = pose;
   next.carried = PoseAnchor(pose.T_map_base, pose.T_map_odom.inverse() * pose.T_map_base);
@@ -49,6 +51,14 @@ void PosePropagator::add_pose(const PoseEstimate& pose) {
   }
   anchor_ = next;
   has_anchor_ = true;
+}
+
+// The odom frame stays where it is in the world; the new map frame begins at the robot. Its clock may have
+// started over.
+void PosePropagator::begin_session(const PoseEstimate& first) {
+  if (has_odometry_) T_odom_map_ = T_odom_base_ * first.T_map_base.inverse(Eigen::Isometry);
+  has_anchor_ = has_prior_ = false;
+  height_count_ = 0;
 }
 
 bool PosePropagator::propagate(const Prior& prior, Odometry& out) {
@@ -62,18 +72,19 @@ bool PosePropagator::propagate(const Prior& prior, Odometry& out) {
     return false;
   }
   const Eigen::Isometry3d best = best_pose(prior);
-  if (has_odometry_) {
+  if (has_odometry_ && has_prior_) {
     // Both ends of the step use the same anchor: a new registration is a correction, not a motion.
     T_odom_base_ = T_odom_base_ * best_pose(last_prior_).inverse(Eigen::Isometry) * best;
-    slew_towards(best, seconds_between(last_prior_.stamp_ns, prior.stamp_ns));
+    slew_towards(T_odom_map_ * best, seconds_between(last_prior_.stamp_ns, prior.stamp_ns));
   } else {
-    T_odom_base_ = best;
+    T_odom_base_ = T_odom_map_ * best;
     has_odometry_ = true;
   }
   last_prior_ = prior;
   has_prior_ = true;
 
   out.stamp_ns = prior.stamp_ns;
+  out.session = anchor_.pose.session;
   out.T_map_base = best;
   out.T_odom_base = T_odom_base_;
   out.T_map_odom = best * T_odom_base_.inverse(Eigen::Isometry);

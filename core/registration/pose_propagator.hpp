@@ -30,6 +30,7 @@ struct PosePropagatorConfig {
 /// Poses, twist and covariances for navigation at one time.
 struct Odometry {
   std::int64_t stamp_ns = 0;
+  std::uint32_t session = 1;  ///< number of the map frame, as in PoseEstimate
   Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();   ///< jumps at corrections
   Eigen::Isometry3d T_odom_base = Eigen::Isometry3d::Identity();  ///< continuous
   Eigen::Isometry3d T_map_odom = Eigen::Isometry3d::Identity();   ///< T_map_base = T_map_odom * T_odom_base
@@ -44,12 +45,14 @@ struct Odometry {
 /// altimeter or dead reckoning, whichever predicts z in the pose's effective method (traits_of()).
 ///
 /// The odom frame of the result is not that of Prior::T_odom_base, which drifts without bound: the
-/// registration's corrections enter it, low-passed and rate-limited. Allocates nothing. Not thread-safe.
+/// registration's corrections enter it, low-passed and rate-limited. It continues when a new map frame begins
+/// (PoseEstimate::session): then only T_map_odom jumps. Allocates nothing. Not thread-safe.
 class PosePropagator {
  public:
   explicit PosePropagator(const PosePropagatorConfig& config = {});
 
-  /// Takes a result of the registration. Ignores poses that are not finite or not newer than the last.
+  /// Takes a result of the registration. Ignores poses that are not finite, or not newer than the last one of
+  /// their map frame.
   void add_pose(const PoseEstimate& pose);
 
   /// Pose at the time of `prior`. False, and `out` unchanged, where no pose has come yet or the prior is not
@@ -73,6 +76,7 @@ class PosePropagator {
   // Heights of the last 1.28 s at 400 Hz: more than the delay of any registered pose.
   static constexpr std::size_t kHeights = 512;
 
+  void begin_session(const PoseEstimate& first);
   [[nodiscard]] Eigen::Isometry3d best_pose(const Prior& prior) const;
   [[nodiscard]] bool height_at(std::int64_t stamp_ns, double& height_m) const;
   [[nodiscard]] Eigen::Vector3d registered_velocity(const PoseEstimate& pose) const;
@@ -86,6 +90,7 @@ class PosePropagator {
   Prior last_prior_;
   bool has_prior_ = false;
   Eigen::Isometry3d T_odom_base_ = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d T_odom_map_ = Eigen::Isometry3d::Identity();  // what the odom frame follows
   bool has_odometry_ = false;
   std::array<Height, kHeights> heights_{};
   std::size_t height_count_ = 0;

@@ -21,16 +21,6 @@ constexpr double kLeastVariance = 1e-8;
 
 Matrix6d covariance_of(const Prediction& prediction) { return prediction.deviation.cwiseAbs2().asDiagonal(); }
 
-void copy_statistics(const MatchResult& match, PoseEstimate& pose) {
-  pose.iterations = match.iterations;
-  pose.sampled_points = match.sampled_points;
-  pose.matched_pairs = match.matched_pairs;
-  pose.residual_rms_m = match.residual_rms_m;
-  pose.overlap = match.overlap;
-  pose.degenerate = match.degenerate;
-  pose.smallest_eigenvalues = match.smallest_eigenvalues;
-}
-
 // Roll and pitch fixed by gravity and z fixed by the altimeter have the prior's variances.
 void set_fixed_variances(const Prior& prior, bool gravity_fixes_tilt, bool altimeter_fixes_z,
                          Matrix6d& covariance) {
@@ -51,30 +41,28 @@ Registration::Registration(const RegistrationConfig& config, Method method,
       traits_(traits_of(method, HeightSource::kNone)),
       traits_with_height_(traits_of(method, HeightSource::kDifferential)),
       traits_without_imu_(traits_of(Method::k6Dof, HeightSource::kNone)),
-      motion_(config),
+      state_(config),
       deskewer_(T_base_lidar, config.min_range_m, config.max_range_m),
       sampler_(config.map_voxel_m, config.sample_points),
       matcher_(config, T_base_lidar.translation()) {
-  last_.method = method;
+  state_.last.method = method;
 }
 
 void Registration::take_over(const Registration& other) {
-  history_ = other.history_;  // rings of one length
-  motion_.take_over(other.motion_);
-  last_ = other.last_;
-  scans_without_gravity_ = other.scans_without_gravity_;
-  bootstrap_scans_ = other.bootstrap_scans_;
-  bootstrapping_ = other.bootstrapping_;
+  MotionModel motion = state_.motion;
+  motion.take_over(other.state_.motion);
+  state_ = other.state_;  // rings of one length
+  state_.motion = motion;
 }
 
-void Registration::add_prior(const Prior& prior) { history_.add(prior); }
+void Registration::add_prior(const Prior& prior) { state_.history.add(prior); }
 
 bool Registration::ready(const Scan& scan) const {
-  return !history_.empty() && history_.newest().stamp_ns >= scan.end_stamp_ns;
+  return !state_.history.empty() && state_.history.newest().stamp_ns >= scan.end_stamp_ns;
 }
 
 const MethodTraits& Registration::traits_for(const Prior& prior) const {
-  if (!prior.attitude_valid && traits_.registers && motion_.started()) {
+  if (!prior.attitude_valid && traits_.registers && state_.motion.started()) {
     return traits_without_imu_;
   }
   return prior.height_source == HeightSource::kNone ? traits_ : traits_with_height_;
@@ -83,7 +71,8 @@ const MethodTraits& Registration::traits_for(const Prior& prior) const {
 PoseEstimate Registration::description_of(const Prior& prior, const MethodTraits& traits) const {
   PoseEstimate pose;
   pose.stamp_ns = prior.stamp_ns;
-  pose.sequence = last_.sequence;
+  pose.sequence = state_.last.sequence;
+  pose.session = session();
   pose.method = asked_;
   pose.effective_method = traits.method;
   pose.height_source = prior.height_source;
@@ -92,14 +81,14 @@ PoseEstimate Registration::description_of(const Prior& prior, const MethodTraits
 
 Prior Registration::prior_at(std::int64_t stamp_ns) const {
   Prior prior;
-  const bool known = history_.dense_at(stamp_ns) && history_.at(stamp_ns, prior);
+  const bool known = state_.history.dense_at(stamp_ns) && state_.history.at(stamp_ns, prior);
   return known ? prior : prior_without_imu(stamp_ns);
 }
 
 Prior Registration::prior_without_imu(std::int64_t stamp_ns) const {
   Prior prior;
-  if (!history_.at(stamp_ns, prior)) {
-    prior = stamp_ns < history_.oldest().stamp_ns ? history_.oldest() : history_.newest();
+  if (!state_.history.at(stamp_ns, prior)) {
+    prior = stamp_ns < state_.history.oldest().stamp_ns ? state_.history.oldest() : state_.history.newest();
     prior.stamp_ns = stamp_ns;
   }
   prior.attitude_valid = false;
@@ -108,34 +97,41 @@ Prior Registration::prior_without_imu(std::int64_t stamp_ns) const {
   return prior;
 }
 
-// False while the map waits for gravity.
+// False while the map waits for gravity, or a known place for the height.
 bool Registration::start_motion(const Prior& prior) {
-  if (motion_.started()) return true;
-  if (!prior.attitude_valid && ++scans_without_gravity_ < kMaxScansWithoutGravity) return false;
-  motion_.start(prior);
+  if (state_.motion.started()) return true;
+  if (!prior.attitude_valid && ++state_.scans_without_gravity < kMaxScansWithoutGravity) return false;
+  if (state_.place) return start_at_place(prior);
+  state_.motion.start(prior);
   return true;
 }
 
 void Registration::register_scan(const Scan& scan, const MapSnapshot& map, RegisteredScan& out) {
   PoseEstimate& pose = out.pose;
   out.point_count = 0;
-  if (history_.empty()) {
-    last_.stamp_ns = scan.end_stamp_ns;
-    pose = last_;
+  if (state_.history.empty()) {
+    state_.last.stamp_ns = scan.end_stamp_ns;
+    pose = state_.last;
     return;
   }
   const Prior end = prior_at(scan.end_stamp_ns);
   pose = description_of(end, traits_for(end));
   pose.sequence = scan.sequence;
   if (!start_motion(end)) {
-    last_ = pose;
+    pose.T_map_base = state_.last.T_map_base;
+    pose.covariance = state_.last.covariance;
+    state_.last = pose;
     return;
   }
   const MethodTraits& traits = traits_for(end);
-  const Prediction prediction = motion_.predict(end, traits);
-  prepare_scan(scan, history_, motion_.scan_motion(end, prediction), deskewer_, sampler_, out);
+  const Prediction prediction = state_.motion.predict(end, traits);
+  prepare_scan(scan, state_.history, state_.motion.scan_motion(end, prediction), deskewer_, sampler_, out);
+  if (state_.search.active()) {
+    search_place(map, end, prediction, traits, out);
+    return;
+  }
 
-  const MatchResult result = map.empty() ? MatchResult{} : match(map, end, prediction, traits);
+  const MatchResult result = knows(map) ? match(map, end, prediction, traits) : MatchResult{};
   const bool registered = result.solved && acceptable(result, prediction);
   copy_statistics(result, pose);
   pose.mode = mode_after(registered, traits);
@@ -149,11 +145,11 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
   // A scan with neither IMU nor registration does not become the start of the next prediction: the scan
   // before it stays the start.
   if (registered) {
-    motion_.correct(end, pose.T_map_base);
+    state_.motion.correct(end, pose.T_map_base);
   } else if (end.attitude_valid) {
-    motion_.keep_prediction(end, prediction);
+    state_.motion.keep_prediction(end, prediction);
   }
-  last_ = pose;
+  state_.last = pose;
 }
 
 MatchResult Registration::match(const MapSnapshot& map, const Prior& prior, const Prediction& prediction,
@@ -169,10 +165,10 @@ MatchResult Registration::match(const MapSnapshot& map, const Prior& prior, cons
 PoseMode Registration::mode_after(bool registered, const MethodTraits& traits) {
   // Bootstrap: until the first success scans enter the map at the predicted pose. The first revolution may be
   // incomplete, and one scan may cover too little of the place.
-  bootstrapping_ =
-      bootstrapping_ && !registered && traits.registers && bootstrap_scans_++ < kMaxBootstrapScans;
+  state_.bootstrapping = state_.bootstrapping && !registered && traits.registers &&
+                         state_.bootstrap_scans++ < kMaxBootstrapScans;
   if (registered) return PoseMode::kRegistered;
-  return bootstrapping_ ? PoseMode::kInitializing : PoseMode::kPriorOnly;
+  return state_.bootstrapping ? PoseMode::kInitializing : PoseMode::kPriorOnly;
 }
 
 bool Registration::acceptable(const MatchResult& match, const Prediction& prediction) const {
@@ -190,17 +186,17 @@ bool Registration::acceptable(const MatchResult& match, const Prediction& predic
 }
 
 bool Registration::propagate(PoseEstimate& out) const {
-  if (history_.empty() || !motion_.started()) {
+  if (state_.history.empty() || !state_.motion.started()) {
     return false;
   }
-  const Prior& now = history_.newest();
+  const Prior& now = state_.history.newest();
   const MethodTraits& traits = traits_for(now);
-  const Prediction prediction = motion_.predict(now, traits);
+  const Prediction prediction = state_.motion.predict(now, traits);
   out = description_of(now, traits);
-  out.mode = PoseMode::kPriorOnly;
+  out.mode = searching() ? PoseMode::kInitializing : PoseMode::kPriorOnly;
   out.T_map_base = prediction.T_map_base;
   out.T_map_odom = prediction.T_map_odom;
-  out.covariance = last_.covariance + as_pose_covariance(covariance_of(prediction));
+  out.covariance = state_.last.covariance + as_pose_covariance(covariance_of(prediction));
   set_fixed_variances(now, traits.attitude_from_gravity, traits.z_prediction == ZPrediction::kAltimeter,
                       out.covariance);
   return true;

@@ -7,17 +7,35 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 
 #include "core/estimates.hpp"
 #include "core/map/map_snapshot.hpp"
 #include "core/prior/prior_history.hpp"
+#include "core/registration/known_place.hpp"
 #include "core/registration/method.hpp"
 #include "core/registration/motion_model.hpp"
+#include "core/registration/place_search.hpp"
 #include "core/registration/registration_config.hpp"
 #include "core/registration/scan_matcher.hpp"
 #include "core/registration/scan_preparation.hpp"
 
 namespace isobar {
+
+/// What a Registration has learnt, and another one with other settings takes over.
+struct RegistrationState {
+  explicit RegistrationState(const RegistrationConfig& config) : motion(config) {}
+
+  PriorHistory history;
+  MotionModel motion;
+  PlaceSearch search;
+  std::optional<KnownPlace> place;
+  PoseEstimate last;
+  std::uint32_t scans_without_gravity = 0;
+  std::uint32_t scans_without_height = 0;  ///< of a known place
+  std::uint32_t bootstrap_scans = 0;
+  bool bootstrapping = true;  ///< no scan has been registered yet
+};
 
 /// Registers scans to the map, starting from the prior. Allocates in its constructor only. Not thread-safe.
 class Registration {
@@ -25,10 +43,24 @@ class Registration {
   /// `T_base_lidar`: pose of the lidar in base_link.
   Registration(const RegistrationConfig& config, Method method, const Eigen::Isometry3d& T_base_lidar);
 
+  /// Number of the first map frame, before the first scan.
+  void set_session(std::uint32_t session) { state_.last.session = session; }
+  /// Continues in a known map, before the first scan: the place is searched around the last one, and scans
+  /// stay out of the map until it is confirmed. If it is not, begin_new_frame().
+  void resume(const KnownPlace& place);
+  /// Begins a new map frame with the next scan, at x = y = yaw = 0, and increments session(). The height
+  /// keeps its datum. Forgets the priors, whose clock may have started over.
+  void begin_new_frame();
+  /// Number of the map frame, 1 …
+  [[nodiscard]] std::uint32_t session() const { return state_.last.session; }
+  /// The place of resume() is not confirmed yet.
+  [[nodiscard]] bool searching() const { return state_.place.has_value() || state_.search.active(); }
+
   /// Appends a prior; priors come in order of time.
   void add_prior(const Prior& prior);
 
-  /// Takes over what another Registration with other settings has learnt: the pose goes on. Allocates nothing.
+  /// Takes over what another Registration with other settings has learnt: the pose goes on. Allocates nothing,
+  /// except while a place is searched.
   void take_over(const Registration& other);
 
   /// True where the priors reach the end of the scan: register_scan() then extrapolates nothing.
@@ -48,6 +80,18 @@ class Registration {
   [[nodiscard]] Prior prior_at(std::int64_t stamp_ns) const;
   [[nodiscard]] Prior prior_without_imu(std::int64_t stamp_ns) const;
   bool start_motion(const Prior& prior);
+  [[nodiscard]] bool knows(const MapSnapshot& map) const {
+    return !map.empty() && map.session() == session();
+  }
+  // registration_place.cpp
+  void next_frame();
+  bool start_at_place(const Prior& prior);
+  void search_place(const MapSnapshot& map, const Prior& end, const Prediction& expected,
+                    const MethodTraits& traits, RegisteredScan& out);
+  PlaceVerdict try_hypotheses(const MapSnapshot& map, const Prior& end, const Prediction& expected,
+                              const MethodTraits& traits);
+  PlaceVerdict confirm_place(const MapSnapshot& map, const Prior& end, const Prediction& expected,
+                             const MethodTraits& traits, PoseEstimate& pose);
   [[nodiscard]] MatchResult match(const MapSnapshot& map, const Prior& prior, const Prediction& prediction,
                                   const MethodTraits& traits);
   [[nodiscard]] bool acceptable(const MatchResult& match, const Prediction& prediction) const;
@@ -58,15 +102,10 @@ class Registration {
   MethodTraits traits_;  // without a height
   MethodTraits traits_with_height_;
   MethodTraits traits_without_imu_;  // IMU silent: the motion comes from the scans alone
-  PriorHistory history_;
-  MotionModel motion_;
+  RegistrationState state_;
   Deskewer deskewer_;
   Sampler sampler_;
   ScanMatcher matcher_;
-  PoseEstimate last_;
-  std::uint32_t scans_without_gravity_ = 0;
-  std::uint32_t bootstrap_scans_ = 0;
-  bool bootstrapping_ = true;  // no scan has been registered yet
 };
 
 }  // namespace isobar

@@ -109,4 +109,14 @@ void ScanMatcher::summarise(const MatchProblem& problem, const Step& step, Match
   result.twist_covariance.diagonal() += fixed.cwiseProduct(problem.prediction.deviation.cwiseAbs2());
 }
 
+void copy_statistics(const MatchResult& match, PoseEstimate& pose) {
+  pose.iterations = match.iterations;
+  pose.sampled_points = match.sampled_points;
+  pose.matched_pairs = match.matched_pairs;
+  pose.residual_rms_m = match.residual_rms_m;
+  pose.overlap = match.overlap;
+  pose.degenerate = match.degenerate;
+  pose.smallest_eigenvalues = match.smallest_eigenvalues;
+}
+
 }  // namespace isobar

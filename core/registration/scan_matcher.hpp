@@ -48,6 +48,9 @@ struct MatchResult {
   Eigen::Vector3d smallest_eigenvalues = Eigen::Vector3d::Zero();
 };
 
+/// Fills the fields of the pose that describe its match.
+void copy_statistics(const MatchResult& match, PoseEstimate& pose);
+
 /// Matches scans to the map. Allocates in its constructor only. Not thread-safe.
 class ScanMatcher {
  public:

@@ -32,6 +32,11 @@ using PointFieldMessage = sensor_msgs_msg_dds__PointField_;
 [[nodiscard]] TimeMessage to_time(std::int64_t stamp_ns) noexcept;
 [[nodiscard]] std::int64_t to_stamp_ns(const TimeMessage& time) noexcept;
 
+/// Name of a map frame: that of the configuration for the first one, with _2, _3 … for later ones.
+[[nodiscard]] inline std::string frame_of_session(const std::string& map_frame, std::uint32_t session) {
+  return session <= 1 ? map_frame : map_frame + "_" + std::to_string(session);
+}
+
 void fill_header(std::int64_t stamp_ns, const std::string& frame, HeaderMessage& header) noexcept;
 void fill_odometry(const Odometry& odometry, const DdsConfig& names, OdometryMessage& message) noexcept;
 void fill_pose(const PoseEstimate& pose, const DdsConfig& names, PoseMessage& message) noexcept;

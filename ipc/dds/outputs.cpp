@@ -31,6 +31,7 @@ PoseOutputs::Writers::Writers(dds_entity_t participant, const DdsConfig& config)
 
 PoseOutputs::PoseOutputs(const DdsConfig& config, const SensorMounts& mounts)
     : config_(config),
+      first_map_frame_(config.map_frame),
       mounts_(mounts),
       propagator_(config.propagator),
       odom_rate_(config.odom_rate_hz),
@@ -65,6 +66,7 @@ void PoseOutputs::on_prior(const Prior& prior) {
 
 void PoseOutputs::on_pose(const PoseEstimate& pose) {
   if (pose.mode == PoseMode::kInitializing) return;
+  follow_session(pose.session);
   propagator_.add_pose(pose);
   if (!to_) return;
   PoseEstimate published = pose;
@@ -72,6 +74,13 @@ void PoseOutputs::on_pose(const PoseEstimate& pose) {
   PoseMessage message{};
   fill_pose(published, config_, message);
   to_->pose.write(message);
+}
+
+// A new map frame has a name of its own: consumers see that poses before and after cannot be compared.
+void PoseOutputs::follow_session(std::uint32_t session) {
+  if (session == session_) return;
+  session_ = session;
+  config_.map_frame = frame_of_session(first_map_frame_, session);
 }
 
 void PoseOutputs::write_transforms(const Odometry& odometry) {
@@ -164,11 +173,12 @@ void CloudOutputs::on_scan(const RegisteredScan& scan, std::int64_t shift_ns) {
 
 void CloudOutputs::on_map(const ipc::MapCloud& piece, std::int64_t shift_ns) {
   map_shift_ns_ = shift_ns;
+  map_frame_ = frame_of_session(config_.map_frame, piece.session);
   if (map_.add(piece, map_builder_) && to_) write_map();
 }
 
 void CloudOutputs::write_map() {
-  to_->map.write(map_builder_.message(map_.stamp_ns() + map_shift_ns_, config_.map_frame));
+  to_->map.write(map_builder_.message(map_.stamp_ns() + map_shift_ns_, map_frame_));
 }
 
 std::vector<dds_entity_t> CloudOutputs::writers() const {

@@ -78,10 +78,13 @@ class PoseOutputs {
     std::optional<Writer<TfMessage>> tf_static;  ///< null: not published
   };
 
+  void follow_session(std::uint32_t session);
   void write_static_transforms();
   void write_transforms(const Odometry& odometry);
 
-  DdsConfig config_;
+  DdsConfig config_;  ///< map_frame is that of session_
+  std::string first_map_frame_;
+  std::uint32_t session_ = 1;
   SensorMounts mounts_;
   std::int64_t shift_ns_ = 0;
   PosePropagator propagator_;
@@ -151,6 +154,7 @@ class CloudOutputs {
   CloudBuilder scan_builder_{CloudBuilder::Fields::kWithRing};
   CloudBuilder map_builder_{CloudBuilder::Fields::kWithoutRing};
   MapAssembly map_;
+  std::string map_frame_;  ///< of the newest map
   std::int64_t map_shift_ns_ = 0;
   std::optional<Writers> to_;
 };

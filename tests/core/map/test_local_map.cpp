@@ -66,6 +66,8 @@ std::size_t points_within(const LocalMap& map, const Eigen::Vector3d& centre, do
 // Tile storage in memory that counts the tiles read.
 struct StorageInMemory final : isobar::TileStorage {
   bool put(const isobar::TileKey& key, std::span<const std::byte> bytes) override {
+    ++put_count;
+    if (full) return false;
     tiles[key].assign(bytes.begin(), bytes.end());
     return true;
   }
@@ -77,6 +79,8 @@ struct StorageInMemory final : isobar::TileStorage {
   [[nodiscard]] bool contains(const isobar::TileKey& key) const override { return tiles.contains(key); }
   std::map<isobar::TileKey, std::vector<std::byte>> tiles;
   std::size_t taken = 0;
+  std::size_t put_count = 0;
+  bool full = false;
 };
 
 // The room with a post of 0.4 m width at (x_m, 0), like a standing person.
@@ -329,6 +333,59 @@ TEST_CASE("a scan with a non-finite pose is refused") {
   scan->pose.T_map_base.translation().y() = std::nan("");
   CHECK_FALSE(map.update(*scan));
   CHECK(map.cell_count() == 0);
+}
+
+TEST_CASE("changed tiles reach the storage within a sweep, unchanged ones are not written again") {
+  StorageInMemory storage;
+  LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity(), &storage);
+  const auto scan = std::make_unique<RegisteredScan>();
+  for (int i = 0; i < 5; ++i) {
+    fill_scan(*scan, 0.2 * i, 1'000'000'000LL * i, range_to_walls);
+    map.update(*scan);
+  }
+  for (std::size_t i = 0; i < LocalMap::kSweepParts; ++i) map.store_some();
+  CHECK(storage.tiles.size() == map.tile_count());
+  const std::size_t written = storage.put_count;
+  for (std::size_t i = 0; i < 2 * LocalMap::kSweepParts; ++i) map.store_some();
+  CHECK(storage.put_count == written);
+  fill_scan(*scan, 1.2, 6'000'000'000LL, range_to_walls);
+  map.update(*scan);
+  for (std::size_t i = 0; i < LocalMap::kSweepParts; ++i) map.store_some();
+  CHECK(storage.put_count > written);
+}
+
+TEST_CASE("tiles that a full disk refuses are written when it has room") {
+  StorageInMemory storage;
+  storage.full = true;
+  LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity(), &storage);
+  const auto scan = std::make_unique<RegisteredScan>();
+  fill_scan(*scan, 0.0, 0, range_to_walls);
+  map.update(*scan);
+  for (std::size_t i = 0; i < LocalMap::kSweepParts; ++i) map.store_some();
+  CHECK(storage.put_count == LocalMap::kSweepParts);  // one attempt a call
+  storage.full = false;
+  for (std::size_t i = 0; i < LocalMap::kSweepParts; ++i) map.store_some();
+  CHECK(storage.tiles.size() == map.tile_count());
+}
+
+TEST_CASE("a map that is read around a place has the planes that were stored, before any scan") {
+  StorageInMemory storage;
+  LocalMap map(MapConfig{}, Eigen::Isometry3d::Identity(), &storage);
+  const auto scan = std::make_unique<RegisteredScan>();
+  for (int i = 0; i < 5; ++i) {
+    fill_scan(*scan, 0.2 * i, 1'000'000'000LL * i, range_to_walls);
+    map.update(*scan);
+  }
+  map.store_all();
+  LocalMap continued(MapConfig{}, Eigen::Isometry3d::Identity(), &storage, 3);
+  CHECK(continued.snapshot()->empty());
+  continued.load_around(Eigen::Vector3d(0.5, 0.0, 0.0));
+  CHECK(continued.snapshot()->plane_count() == map.snapshot()->plane_count());
+  CHECK(continued.snapshot()->session() == 3);
+  CHECK_FALSE(continued.update(*scan));  // a scan of frame 1
+  scan->pose.session = 3;
+  scan->pose.stamp_ns += 2'000'000'000LL;
+  CHECK(continued.update(*scan));
 }
 
 }  // namespace isobar::test::test_local_map

@@ -64,6 +64,7 @@ RegistrationRun::RegistrationRun(World world, Motion motion, MakePrior make_prio
     : world_(std::move(world)),
       motion_(std::move(motion)),
       make_prior_(std::move(make_prior)),
+      method_(method),
       registration_(std::make_unique<Registration>(RegistrationConfig{}, method, run_lidar_mount())),
       map_(MapConfig{}, run_lidar_mount()) {
   registration_->add_prior(make_prior_(kRunStartNs));
@@ -86,6 +87,11 @@ const PoseEstimate& RegistrationRun::step(bool scan_arrives) {
     register_scan();
   }
   return out_->pose;
+}
+
+void RegistrationRun::restart_at(const KnownPlace& place) {
+  registration_ = std::make_unique<Registration>(RegistrationConfig{}, method_, run_lidar_mount());
+  registration_->resume(place);
 }
 
 void RegistrationRun::steps(int count) {

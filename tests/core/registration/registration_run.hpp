@@ -55,6 +55,9 @@ class RegistrationRun {
   Registration& registration() { return *registration_; }
   /// Builds the registration anew with other settings, as a live run does when its configuration changes.
   void rebuild(const RegistrationConfig& config, Method method);
+  LocalMap& map() { return map_; }
+  /// A new registration continues at `place` with the same map.
+  void restart_at(const KnownPlace& place);
   Scan& scan() { return *scan_; }
   /// Replaces the world from the next scan on.
   void enter(const World& world) { world_ = world; }
@@ -65,6 +68,7 @@ class RegistrationRun {
   World world_;
   Motion motion_;
   MakePrior make_prior_;
+  Method method_;
   std::unique_ptr<Registration> registration_;
   LocalMap map_;
   std::mt19937 random_{42};

@@ -227,4 +227,37 @@ TEST_CASE("priors and poses that are not finite or go back in time are ignored")
 
 }  // namespace
 
+TEST_CASE("odom is continuous when a new map frame begins, even if its clock starts over") {
+  for (const bool clock_starts_over : {false, true}) {
+    CAPTURE(clock_starts_over);
+    const Drive drive;
+    PosePropagator propagator;
+    Odometry before;
+    propagator.add_pose(drive.registered(0));
+    for (int step = 1; step < 400; ++step) {
+      if (step % kPriorsPerScan == 0) propagator.add_pose(drive.registered(step));
+      propagator.propagate(drive.prior(step), before);
+    }
+    const std::int64_t back_ns = clock_starts_over ? 399 * kStepNs : 0;
+    // The new frame begins at the robot, at another yaw.
+    const Eigen::Isometry3d T_new_old = drive.truth(400).inverse();
+    Odometry after;
+    for (int step = 400; step < 460; ++step) {
+      PoseEstimate pose = drive.registered(step, T_new_old);
+      pose.session = 2;
+      pose.stamp_ns -= back_ns;
+      if (step % kPriorsPerScan == 0) propagator.add_pose(pose);
+      Prior prior = drive.prior(step);
+      prior.stamp_ns -= back_ns;
+      REQUIRE(propagator.propagate(prior, after));
+      CHECK(after.session == 2);
+      // 1 m/s for 5 ms, and the slewing of corrections of the new frame, of which there are none.
+      CHECK((after.T_odom_base.translation() - before.T_odom_base.translation()).norm() < 0.012);
+      CHECK((after.T_map_odom * after.T_odom_base).isApprox(after.T_map_base, 1e-9));
+      before = after;
+    }
+    CHECK((after.T_map_base.translation() - (T_new_old * drive.truth(459)).translation()).norm() < 1e-6);
+  }
+}
+
 }  // namespace isobar::test::test_pose_propagator

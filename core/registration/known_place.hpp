@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+
+namespace isobar {
+
+/// Place in a known map where the robot was last: the start of a run that continues another one.
+struct KnownPlace {
+  std::uint32_t session = 1;  ///< number of the map frame
+  std::int64_t stamp_ns = 0;  ///< time of the pose, robot clock
+  Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
+  bool has_height = false;  ///< the prior will continue the height of this map: the search waits for it
+  Eigen::Vector3d v_map_m_s = Eigen::Vector3d::Zero();  ///< velocity at that time
+};
+
+}  // namespace isobar

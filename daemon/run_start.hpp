@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/altitude/height_datum.hpp"
+#include "core/registration/known_place.hpp"
+
+namespace isobar {
+
+/// Where a live run begins.
+struct RunStart {
+  std::uint32_t session = 1;        ///< number of the map frame
+  std::optional<KnownPlace> place;  ///< of the run that is continued
+  HeightDatum datum;                ///< of the run that is continued
+};
+
+}  // namespace isobar
