@@ -63,8 +63,10 @@ void add_removal(MapConfig& map, SectionBuilder& s) {
 void add_files(MapFileSettings& files, SectionBuilder& s) {
   s.applies(Apply::kRestart);
   s.text("directory", files.directory, TextRule::kAny,
-         "Folder for the tiles that have left memory; a map already there is replaced. Empty: the folder map "
-         "in output.directory; if that is empty too, tiles that leave memory are lost.");
+         "Folder for the tiles of the map; a map of an earlier run is continued. Must be new, empty or "
+         "isobard's "
+         "own. Empty: the folder map in output.directory; if that is empty too, tiles that leave memory are "
+         "lost.");
   s.number("max_disk_gb", &files.max_disk_gb, "GB", 0.001, 1'000.0,
            "Largest size of the tile files; beyond it the tiles that left memory longest ago are deleted. 4: "
            "ten million points take about half of 1 GB.");

@@ -91,7 +91,9 @@ void add_input(InputSettings& input, std::vector<Setting>& settings) {
 void add_output(OutputSettings& output, std::vector<Setting>& settings) {
   SectionBuilder s("output", UsedBy::kRobot, settings);
   s.text("directory", output.directory, TextRule::kAny,
-         "Output folder for trajectory, map and status. Empty: no files are written.")
+         "Output folder for trajectory, map and status; an earlier run there is continued. Must be new, "
+         "empty or "
+         "isobard's own. Empty: no files are written.")
       .basic();
   s.applies(Apply::kLive);
   s.number("cloud_interval_s", &output.cloud_interval_s, "s", 0.2, 3'600.0,

@@ -36,15 +36,20 @@ std::vector<HeightSigma> sigmas_of(const std::vector<StatusRow>& status) {
   return sigmas;
 }
 
+std::string cut_note(const std::string& name, const StampRepairs& repairs) {
+  return name + ": line " + std::to_string(repairs.cut_line) + ", the last one, is cut and is left out.";
+}
+
 RunFolder load_estimate(const fs::path& path) {
   if (fs::is_directory(path)) return read_run_folder(path, kMaxMapPoints);
-  return {parse_tum(files::read_text_file(path), path.string()), {}, {}};
+  return {parse_tum(files::read_text_file(path), path.string()), {}, {}, {}};
 }
 
 EvaluatedMethod evaluate_one(const ReferenceData& reference, const EstimateSource& source,
                              const EvaluationOptions& options) {
   RunFolder run = load_estimate(source.path);
-  EvaluatedMethod method{source.name, {}, source.path, std::move(run.status), std::move(run.map.points)};
+  EvaluatedMethod method{
+      source.name, {}, source.path, std::move(run.status), std::move(run.map.points), std::move(run.notes)};
   try {
     method.evaluation =
         evaluate(reference.trajectory, reference.segments, run.trajectory, sigmas_of(method.status), options);
@@ -67,6 +72,9 @@ void add_notes(EvaluatedRun& run) {
     const MethodFigures& figures = method.evaluation.figures;
     if (needed_repair(figures.repairs))
       run.notes.push_back(repairs_note(display_name(method.name), figures.repairs));
+    if (figures.repairs.cut_line > 0)
+      run.notes.push_back(cut_note(display_name(method.name), figures.repairs));
+    for (const std::string& note : method.notes) run.notes.push_back(display_name(method.name) + ": " + note);
     const std::size_t outside = figures.poses - figures.paired;
     if (static_cast<double>(outside) > kNotedShareOutside * static_cast<double>(figures.poses)) {
       run.notes.push_back(display_name(method.name) + ": " + std::to_string(outside) + " of " +
@@ -87,6 +95,9 @@ ReferenceData load_reference(const fs::path& path, const std::optional<fs::path>
   std::optional<fs::path> file = segments_file;
   if (!file && is_recording && fs::exists(path / "segments.csv")) file = path / "segments.csv";
   if (file) reference.segments = text::read_segments(text::TextLines(*file));
+  if (reference.trajectory.repairs.cut_line > 0) {
+    reference.notes.push_back(cut_note("The reference", reference.trajectory.repairs));
+  }
   if (needed_repair(reference.trajectory.repairs)) {
     reference.notes.push_back(repairs_note("The reference", reference.trajectory.repairs));
   }

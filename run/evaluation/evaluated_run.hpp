@@ -40,6 +40,7 @@ struct EvaluatedMethod {
   std::filesystem::path source;
   std::vector<StatusRow> status;                 ///< empty for a .tum file
   std::vector<std::array<float, 3>> map_points;  ///< reference frame [m], thinned; empty for a .tum file
+  std::vector<std::string> notes{};              ///< what was left out, in sentences
 };
 
 /// Reference and all evaluated estimates.

@@ -29,17 +29,18 @@ struct StatusRow {
 /// A run's output. Only the trajectory is required.
 struct RunFolder {
   Trajectory trajectory;
-  std::vector<StatusRow> status;  ///< empty without status.csv
-  files::PlyPoints map;           ///< map frame [m]; empty without map.ply
+  std::vector<StatusRow> status;   ///< empty without status.csv
+  files::PlyPoints map;            ///< map frame [m]; empty without map.ply
+  std::vector<std::string> notes;  ///< what was left out, in sentences
 };
 
-/// Reads the folder of a run.
+/// Reads the folder of a run. A map.ply that cannot be read is left out: a run that was killed leaves one.
 /// @param max_map_points of a larger map every n-th point is kept
 /// @throws DataError "file:line: rule" when a file breaks its format, or when there is no trajectory.tum
 RunFolder read_run_folder(const std::filesystem::path& directory, std::size_t max_map_points);
 
 /// Parses status.csv. Columns in any order, unknown ones ignored, only t_ns required; empty cells and "nan"
-/// mean unknown.
+/// mean unknown. A last line that is cut is left out.
 /// @throws DataError "name:line: rule" when a line breaks the format
 std::vector<StatusRow> parse_status_csv(std::string_view text, const std::string& name);
 

@@ -40,13 +40,21 @@ Trajectory make_trajectory(std::vector<StampedPose> poses) {
 Trajectory parse_tum(std::string_view text, const std::string& name) {
   std::vector<StampedPose> poses;
   text::TextLines lines(text, name);
-  while (const auto row = text::next_tum_row(lines)) {
-    poses.push_back({row->stamp_ns, row->position_m, row->attitude});
+  std::size_t cut_line = 0;
+  try {
+    while (const auto row = text::next_tum_row(lines)) {
+      poses.push_back({row->stamp_ns, row->position_m, row->attitude});
+    }
+  } catch (const DataError&) {
+    if (!lines.without_end() || poses.empty()) throw;
+    cut_line = lines.line_number();
   }
   if (poses.empty()) {
     throw DataError(name + ": has no pose");
   }
-  return make_trajectory(std::move(poses));
+  Trajectory trajectory = make_trajectory(std::move(poses));
+  trajectory.repairs.cut_line = cut_line;
+  return trajectory;
 }
 
 std::vector<double> travelled_distance_m(const std::vector<StampedPose>& poses, double min_step_m) {

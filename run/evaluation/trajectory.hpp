@@ -20,10 +20,11 @@ struct StampedPose {
   Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();
 };
 
-/// Repairs that made the stamps strictly ascending.
+/// Repairs that made the file complete and the stamps strictly ascending.
 struct StampRepairs {
   std::size_t duplicates = 0;  ///< dropped: an earlier line has the same stamp
   std::size_t backwards = 0;   ///< moved: a previous line has a later stamp
+  std::size_t cut_line = 0;    ///< number of the last line, left out because it is cut; 0: none
 };
 
 /// Poses with strictly ascending stamps.
@@ -41,7 +42,8 @@ Trajectory make_trajectory(std::vector<StampedPose> poses);
 
 /// Parses the TUM trajectory format: `t x y z qx qy qz qw`, t in seconds, '#' starts a comment line. Blank
 /// lines, CRLF, commas or tabs between the numbers are accepted; quaternions are normalised. Stamps are read
-/// digit by digit: nine decimals give exact nanoseconds. `name`: name of the text in errors.
+/// digit by digit: nine decimals give exact nanoseconds. A last line that is cut (no line end, and no pose) is
+/// left out: a run that ended in a power cut leaves one. `name`: name of the text in errors.
 /// @throws DataError "name:line: rule" when a line breaks a rule, or when there is no pose
 Trajectory parse_tum(std::string_view text, const std::string& name);
 

@@ -4,6 +4,9 @@
 #include <array>
 #include <bit>
 #include <string>
+#include <system_error>
+
+#include "core/errors.hpp"
 
 namespace isobar::files {
 
@@ -20,9 +23,19 @@ std::string ply_header(std::uint64_t count) {
          "\nproperty float x\nproperty float y\nproperty float z\nproperty float intensity\nend_header\n";
 }
 
+/// A device or a pipe cannot be replaced.
+std::filesystem::path written_first(const std::filesystem::path& file) {
+  std::error_code error;
+  const bool other = std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error);
+  return other ? file : std::filesystem::path(file.string() + ".part");
+}
+
 }  // namespace
 
-PlyWriter::PlyWriter(const std::filesystem::path& file) : file_(file) { file_.write(ply_header(0)); }
+PlyWriter::PlyWriter(const std::filesystem::path& file)
+    : path_(file), written_(written_first(file)), file_(written_) {
+  file_.write(ply_header(0));
+}
 
 void PlyWriter::add(float x_m, float y_m, float z_m, float intensity) {
   const std::array<float, 4> vertex{x_m, y_m, z_m, intensity};
@@ -34,7 +47,12 @@ void PlyWriter::close() {
   if (!file_.is_open()) return;
   file_.seek(0);
   file_.write(ply_header(count_));
+  file_.sync();
   file_.close();
+  if (written_ == path_) return;
+  std::error_code error;
+  std::filesystem::rename(written_, path_, error);
+  if (error) throw ServiceError(path_.string() + ": cannot be replaced: " + error.message());
 }
 
 }  // namespace isobar::files

@@ -8,13 +8,12 @@
 
 namespace isobar::files {
 
-/// Streams points into a PLY file: binary, little endian, vertices of four floats x, y, z, intensity. Not
-/// thread-safe.
+/// Streams points into a PLY file: binary, little endian, vertices of four floats x, y, z, intensity. The file
+/// appears, or is replaced, as a whole by close(); until then it is FILE.part. Not thread-safe.
 /// @throws ServiceError naming the file when writing fails
 class PlyWriter {
  public:
   explicit PlyWriter(const std::filesystem::path& file);
-  /// Without close() the header keeps the count 0, which marks an interrupted run.
   ~PlyWriter() = default;
   PlyWriter(const PlyWriter&) = delete;
   PlyWriter& operator=(const PlyWriter&) = delete;
@@ -26,6 +25,8 @@ class PlyWriter {
   [[nodiscard]] std::uint64_t count() const { return count_; }
 
  private:
+  std::filesystem::path path_;
+  std::filesystem::path written_;  ///< path_, or beside it until close()
   OutputFile file_;
   std::uint64_t count_ = 0;
 };

@@ -63,22 +63,27 @@ std::string_view status_line(const PoseEstimate& pose, double altimeter_height_m
 
 }  // namespace
 
-PoseWriter::PoseWriter(const std::filesystem::path& directory)
-    : trajectory_(made_directory(directory) / kTrajectoryFile), status_(directory / kStatusFile) {
-  trajectory_.write("# t_s x_m y_m z_m qx qy qz qw: base_link in map\n");
-  status_.write(std::string(kStatusColumns) + "\n");
-}
+PoseWriter::PoseWriter(const std::filesystem::path& directory, Start start, std::uint32_t session)
+    : trajectory_(made_directory(directory) / name_of_session(kTrajectoryFile, session),
+                  "# t_s x_m y_m z_m qx qy qz qw: base_link in " + name_of_session("map", session) + "\n",
+                  start),
+      status_(directory / name_of_session(kStatusFile, session), std::string(kStatusColumns) + "\n", start) {}
 
 void PoseWriter::add(const PoseEstimate& pose, double altimeter_height_m, double altimeter_sd_m) {
   Line line;
-  trajectory_.write(trajectory_line(pose, line));
-  status_.write(status_line(pose, altimeter_height_m, altimeter_sd_m, line));
+  trajectory_.add(trajectory_line(pose, line));
+  status_.add(status_line(pose, altimeter_height_m, altimeter_sd_m, line));
   ++count_;
 }
 
-void PoseWriter::close() {
-  trajectory_.close();
-  status_.close();
+void PoseWriter::flush() {
+  trajectory_.flush();
+  status_.flush();
+}
+
+void PoseWriter::sync() {
+  trajectory_.sync();
+  status_.sync();
 }
 
 }  // namespace isobar::files

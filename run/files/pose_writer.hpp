@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "core/estimates.hpp"
-#include "run/files/text_file.hpp"
+#include "run/files/line_file.hpp"
 
 namespace isobar::files {
 
@@ -17,22 +17,36 @@ inline constexpr std::string_view kStatusColumns =
     "residual_rms_m,eigenvalue_0,eigenvalue_1,eigenvalue_2,scan_ms,altimeter_height_m,altimeter_sd_m,"
     "x_m,y_m,z_m,sd_x_m,sd_y_m,sd_z_m,sd_yaw_rad";
 
-/// Streams poses into trajectory.tum and status.csv of a folder, which it creates; files of an earlier run
-/// are replaced. Not thread-safe.
-/// @throws ServiceError naming the file when writing fails
+/// Writes poses into trajectory.tum and status.csv of a folder, which it creates, as whole lines. Those of a
+/// later map frame have the names of name_of_session(). Not thread-safe.
 class PoseWriter {
  public:
-  explicit PoseWriter(const std::filesystem::path& directory);
+  /// @throws ServiceError naming the file when it cannot be opened
+  explicit PoseWriter(const std::filesystem::path& directory, Start start = Start::kNew,
+                      std::uint32_t session = 1);
 
   /// @param altimeter_height_m height above the start, NaN when unknown
   /// @param altimeter_sd_m its standard deviation, NaN when unknown
   void add(const PoseEstimate& pose, double altimeter_height_m, double altimeter_sd_m);
-  void close();
+  /// Writes the lines to the files; see LineFile.
+  /// @throws ServiceError naming the file when writing fails
+  void flush();
+  /// Waits until the lines are on the disk.
+  /// @throws ServiceError naming the file
+  void sync();
   [[nodiscard]] std::uint64_t count() const { return count_; }
+  [[nodiscard]] std::size_t pending_bytes() const {
+    return trajectory_.pending_bytes() + status_.pending_bytes();
+  }
+  [[nodiscard]] std::uint64_t dropped_lines() const { return trajectory_.dropped_lines(); }
+  /// Bytes of incomplete last lines that were removed at the start.
+  [[nodiscard]] std::uint64_t removed_bytes() const {
+    return trajectory_.removed_bytes() + status_.removed_bytes();
+  }
 
  private:
-  OutputFile trajectory_;
-  OutputFile status_;
+  LineFile trajectory_;
+  LineFile status_;
   std::uint64_t count_ = 0;
 };
 

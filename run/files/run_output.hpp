@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,35 +24,52 @@ struct RunCount {
 };
 
 /// Writes the folder of a run (run_layout.hpp) during the run. One thread.
-/// @throws ServiceError naming the file when writing fails
+/// @throws ServiceError naming the file when writing fails; a later call tries again
 class RunOutput {
  public:
-  explicit RunOutput(const std::filesystem::path& directory);
-  /// Folder for the tile store of the run.
-  [[nodiscard]] static std::filesystem::path map_directory(const std::filesystem::path& directory) {
-    return directory / kMapDirectory;
+  /// @param start kNew replaces the trajectory of an earlier run, kContinue appends to it
+  /// @param session number of the map frame of the first pose
+  explicit RunOutput(const std::filesystem::path& directory, Start start = Start::kNew,
+                     std::uint32_t session = 1);
+  /// Folder for the tile store of a map frame.
+  [[nodiscard]] static std::filesystem::path map_directory(const std::filesystem::path& directory,
+                                                           std::uint32_t session = 1) {
+    return directory / name_of_session(kMapDirectory, session);
   }
 
+  /// Takes a pose; the files of another map frame begin with its first pose. Writes when a replay has
+  /// gathered enough lines, and leaves it to flush() in a run that continues.
   void add_pose(const PoseEstimate& pose, const Prior& prior);
-  /// Writes map.ply from the run's tile store, at the end of the run.
+  /// Writes the lines to the files.
+  void flush() { poses_->flush(); }
+  /// Waits until the lines are on the disk.
+  void sync() { poses_->sync(); }
+  /// Replaces map.ply by the points of the map, at the end of the run.
   MapExport write_map(FileTileStore& store, const MapHeader& header);
   /// Writes settings.toml.
   void write_settings(std::string_view toml) const;
-  /// Writes counters.csv and closes all files.
-  void close(const std::vector<RunCount>& counts);
+  /// Writes counters.csv.
+  void write_counters(const std::vector<RunCount>& counts) const;
 
-  [[nodiscard]] std::uint64_t poses() const { return poses_.count(); }
+  [[nodiscard]] std::uint64_t poses() const { return pose_count_; }
   [[nodiscard]] std::uint64_t registered() const { return registered_; }
   [[nodiscard]] std::uint64_t from_prior() const { return from_prior_; }
-  [[nodiscard]] std::uint64_t map_points() const { return map_.count(); }
+  [[nodiscard]] std::uint64_t map_points() const { return map_points_; }
+  [[nodiscard]] std::uint64_t dropped_lines() const { return dropped_before_ + poses_->dropped_lines(); }
+  [[nodiscard]] std::uint64_t removed_bytes() const { return poses_->removed_bytes(); }
 
  private:
+  void follow_session(std::uint32_t session);
+
   std::filesystem::path directory_;
-  PoseWriter poses_;
-  PlyWriter
-      map_;  ///< opened at the start, so that an earlier run's map.ply cannot be mistaken for this run's
+  Start start_;
+  std::uint32_t session_;
+  std::unique_ptr<PoseWriter> poses_;  ///< never null
+  std::uint64_t dropped_before_ = 0;   ///< lines of earlier map frames
+  std::uint64_t pose_count_ = 0;
   std::uint64_t registered_ = 0;
   std::uint64_t from_prior_ = 0;
+  std::uint64_t map_points_ = 0;
 };
 
 }  // namespace isobar::files

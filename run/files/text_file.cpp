@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/files/text_file.hpp"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
 #include <system_error>
@@ -47,6 +49,17 @@ void write_text_file(const std::filesystem::path& file, std::string_view text) {
   out.close();
 }
 
+void replace_file(const std::filesystem::path& file, std::string_view content) {
+  const std::filesystem::path part = file.string() + ".part";
+  OutputFile out(part);
+  out.write(content);
+  out.sync();
+  out.close();
+  std::error_code error;
+  std::filesystem::rename(part, file, error);
+  if (error) throw ServiceError(file.string() + ": cannot be replaced: " + error.message());
+}
+
 OutputFile::OutputFile(std::filesystem::path file) : path_(std::move(file)) {
   file_.reset(std::fopen(path_.c_str(), "wb"));
   if (!file_) fail("cannot be created");
@@ -61,6 +74,13 @@ void OutputFile::write(const void* data, std::size_t bytes) {
 
 void OutputFile::seek(long offset) {
   if (!file_ || std::fseek(file_.get(), offset, SEEK_SET) != 0) fail("cannot be written");
+}
+
+void OutputFile::sync() {
+  if (!file_ || std::fflush(file_.get()) != 0) fail("cannot be written");
+  if (::fdatasync(::fileno(file_.get())) != 0 && errno != EINVAL && errno != EROFS) {
+    fail("cannot be written to the disk");
+  }
 }
 
 void OutputFile::close() {

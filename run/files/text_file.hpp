@@ -19,6 +19,11 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t max_by
 /// @throws ServiceError naming the file when it cannot be written
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 
+/// Replaces a file as a whole: whenever the process or the machine ends, either the old or the new content is
+/// there.
+/// @throws ServiceError naming the file when it cannot be written; the old content stays
+void replace_file(const std::filesystem::path& file, std::string_view content);
+
 /// A file open for writing, with a large buffer.
 /// @throws ServiceError naming the file when any operation fails
 class OutputFile {
@@ -30,6 +35,8 @@ class OutputFile {
   void seek(long offset);
   /// Flushes and closes; later writes throw. The destructor closes, too, but cannot report errors.
   void close();
+  /// Waits until the content is on the disk; a pipe or a device has none.
+  void sync();
   [[nodiscard]] bool is_open() const { return file_ != nullptr; }
 
  private:

@@ -84,6 +84,7 @@ bool TextLines::next(std::string_view& line) {
         found == nullptr ? end_ : static_cast<std::size_t>(static_cast<const char*>(found) - buffer_.data());
     line = {buffer_.data() + begin_, stop - begin_};
     begin_ = found == nullptr ? end_ : stop + 1;
+    without_end_ = found == nullptr;
     break;
   }
   ++line_number_;

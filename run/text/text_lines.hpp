@@ -32,6 +32,8 @@ class TextLines {
   /// past it. Line numbers then count from there.
   void skip_to_last(std::uint64_t bytes);
 
+  /// The current line is the last one and has no line end: it may be cut.
+  [[nodiscard]] bool without_end() const { return without_end_; }
   [[nodiscard]] bool too_long() const { return too_long_; }
   /// "name:line: rule" for a line that is too long.
   [[nodiscard]] std::string too_long_message() const {
@@ -57,6 +59,7 @@ class TextLines {
   std::size_t line_number_ = 0;
   std::uint64_t bytes_read_ = 0;
   bool too_long_ = false;
+  bool without_end_ = false;
   bool at_end_ = false;
 };
 

@@ -27,6 +27,8 @@ class FileDescriptor {
   FileDescriptor& operator=(const FileDescriptor&) = delete;
 
   [[nodiscard]] int get() const { return value_; }
+  /// Gives up the ownership.
+  [[nodiscard]] int release() noexcept { return std::exchange(value_, -1); }
   [[nodiscard]] explicit operator bool() const { return value_ >= 0; }
 
  private:

@@ -167,10 +167,12 @@ FileTileStore::Segment* FileTileStore::segment_for(std::uint64_t bytes) {
     const std::uint64_t used = newest.file.tile_bytes();
     if (used == 0 || used + bytes <= limits_.segment_bytes()) return &newest;
     newest.file.seal();
+    if (!newest.file.flush()) refuse(newest.file.file().string() + ": cannot be written to the disk");
   }
   try {
     SegmentContent content;
     TileSegment file(segment_file(directory_, next_number_), TileSegment::Access::kWrite, content);
+    sync_folder(directory_);
     return &segments_.emplace(next_number_++, Segment{std::move(file)}).first->second;
   } catch (const Error& error) {
     refuse(error.what());
@@ -257,6 +259,12 @@ void FileTileStore::finish_compaction() {
   }
   erase_segment(compaction_->segment);
 }
+
+FileDescriptor FileTileStore::newest_file() const {
+  return segments_.empty() ? FileDescriptor() : segments_.rbegin()->second.file.duplicate();
+}
+
+bool FileTileStore::in_place() const { return !lock_ || lock_->in_place(); }
 
 void FileTileStore::refuse(const std::string& why) {
   if (counters_.refused++ == 0) counters_.first_refusal = why;

@@ -68,6 +68,10 @@ class FileTileStore : public TileStorage {
   bool put(const TileKey& key, std::span<const std::byte> bytes) override;
   bool take(const TileKey& key, std::vector<std::byte>& bytes) override;
   [[nodiscard]] bool contains(const TileKey& key) const override { return tiles_.contains(key); }
+  /// The newest segment, for a thread that waits until it is on the disk; older ones are there already.
+  [[nodiscard]] FileDescriptor newest_file() const;
+  /// True while the folder holds the files of this store: nobody has deleted or replaced them.
+  [[nodiscard]] bool in_place() const;
   /// Keys of all tiles, sorted by x, y, z.
   [[nodiscard]] std::vector<TileKey> keys() const { return TileKey::sorted(tiles_); }
 

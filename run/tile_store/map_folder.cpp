@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <toml++/toml.h>
 #include <unistd.h>
 
@@ -12,6 +13,7 @@
 #include <charconv>
 #include <cstdio>
 #include <fstream>
+#include <sstream>
 #include <system_error>
 
 #include "core/errors.hpp"
@@ -104,21 +106,40 @@ MapHeader read_map_header(const fs::path& directory) {
 
 void write_map_header(const fs::path& directory, const MapHeader& header) {
   const fs::path file = directory / "map.toml";
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << "# Map of Isobar. `isobar map info` prints its content.\n"
-      << "format = " << MapHeader::kFormat << "\n";
-  out.precision(17);
-  out.setf(std::ios::showpoint);
-  out << "tile_m = " << header.tile_m << "\ncell_m = " << header.cell_m << "\n";
-  out.close();
-  if (!out) throw ServiceError(file.string() + ": cannot be written: " + errno_message());
+  const fs::path part = directory / "map.toml.part";
+  std::ostringstream text;
+  text << "# Map of Isobar. `isobar map info` prints its content.\n"
+       << "format = " << MapHeader::kFormat << "\n";
+  text.precision(17);
+  text.setf(std::ios::showpoint);
+  text << "tile_m = " << header.tile_m << "\ncell_m = " << header.cell_m << "\n";
+  const std::string content = text.str();
+  const FileDescriptor out(::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+  const auto size = static_cast<ssize_t>(content.size());
+  if (!out || ::write(out.get(), content.data(), content.size()) != size || ::fsync(out.get()) != 0 ||
+      ::rename(part.c_str(), file.c_str()) != 0) {
+    throw ServiceError(file.string() + ": cannot be written: " + errno_message());
+  }
+  sync_folder(directory);
 }
 
-MapLock::MapLock(const fs::path& directory) {
+void sync_folder(const fs::path& directory) noexcept {
+  const FileDescriptor folder(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  static_cast<void>(!folder || ::fsync(folder.get()) == 0);
+}
+
+bool MapLock::in_place() const {
+  struct stat held {};
+  struct stat named {};
+  return ::fstat(file_.get(), &held) == 0 && ::stat(path_.c_str(), &named) == 0 &&
+         held.st_ino == named.st_ino && held.st_dev == named.st_dev;
+}
+
+MapLock::MapLock(const fs::path& directory) : path_(directory / "lock") {
   std::error_code error;
   fs::create_directories(directory, error);
   if (error) throw ServiceError(directory.string() + ": cannot be created: " + error.message());
-  const fs::path file = directory / "lock";
+  const fs::path& file = path_;
   file_ = FileDescriptor(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
   if (!file_) throw ServiceError(file.string() + ": cannot be opened: " + errno_message());
   if (::flock(file_.get(), LOCK_EX | LOCK_NB) != 0) {

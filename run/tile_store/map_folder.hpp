@@ -23,7 +23,7 @@ struct MapHeader {
 /// Reads DIR/map.toml.
 /// @throws DataError when the file is missing or breaks a rule; the text is "file:line:column: key: rule"
 MapHeader read_map_header(const std::filesystem::path& directory);
-/// Writes DIR/map.toml.
+/// Writes DIR/map.toml, as a whole whenever the machine ends.
 /// @throws ServiceError when the file cannot be written
 void write_map_header(const std::filesystem::path& directory, const MapHeader& header);
 
@@ -33,10 +33,16 @@ class MapLock {
   /// Creates the folder if it is missing, and takes the lock.
   /// @throws ServiceError when another process holds the lock (the text names it) or a file cannot be opened
   explicit MapLock(const std::filesystem::path& directory);
+  /// True while the lock's file is in its folder: nobody has deleted or replaced it.
+  [[nodiscard]] bool in_place() const;
 
  private:
+  std::filesystem::path path_;
   FileDescriptor file_;
 };
+
+/// Waits until the names of new files are on the disk, where the file system can.
+void sync_folder(const std::filesystem::path& directory) noexcept;
 
 /// Numbers of the segments in the folder, ascending.
 /// @throws ServiceError when the folder cannot be read

@@ -235,6 +235,10 @@ const char* TileSegment::read(const TileKey& key, const TilePlace& place,
   return fault;
 }
 
+FileDescriptor TileSegment::duplicate() const {
+  return FileDescriptor(::fcntl(tiles_.get(), F_DUPFD_CLOEXEC, 0));
+}
+
 bool TileSegment::flush() noexcept { return ::fdatasync(tiles_.get()) == 0; }
 
 void TileSegment::remove() noexcept {

@@ -53,6 +53,9 @@ class TileSegment {
 
   /// Closes the index: no record is appended after this.
   void seal() { index_ = FileDescriptor(); }
+  /// A second descriptor of the file of tiles, for a thread that waits for the disk; none when the system
+  /// refuses.
+  [[nodiscard]] FileDescriptor duplicate() const;
   /// Waits until all records are on the disk (fdatasync). False if the disk refuses.
   bool flush() noexcept;
   /// Deletes both files; tiles remain readable during the lifetime of this object.

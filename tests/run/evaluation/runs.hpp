@@ -43,7 +43,7 @@ inline void write_run(const std::filesystem::path& folder, double slope) {
     pose.registration_ms = 20.0 + std::fmod(p.position_m.x(), 3.0);
     writer.add(pose, -9.0, 0.05);
   }
-  writer.close();
+  writer.flush();
   files::PlyWriter map(folder / files::kMapPointsFile);
   for (int i = 0; i < 2000; ++i) map.add(0.03F * static_cast<float>(i) - 7.0F, -8.0F, -9.0F, 1.0F);
   map.close();

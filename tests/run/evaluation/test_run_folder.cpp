@@ -7,6 +7,7 @@
 #include "core/errors.hpp"
 #include "run/evaluation/run_folder.hpp"
 #include "run/files/pose_writer.hpp"
+#include "run/files/text_file.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -38,7 +39,7 @@ TEST_CASE("poses and status rows come back from the folder of a run as they were
   files::PoseWriter writer(folder.path() / "new" / "run");
   for (std::uint32_t i = 0; i < 50; ++i) writer.add(some_pose(i), i == 7 ? NAN : 0.25 * i, 0.05);
   CHECK(writer.count() == 50);
-  writer.close();
+  writer.flush();
 
   const RunFolder run = read_run_folder(folder.path() / "new" / "run", 100);
   REQUIRE(run.trajectory.poses.size() == 50);
@@ -69,7 +70,7 @@ TEST_CASE("stamps before 1970 and huge values give lines that can be read back")
   pose.residual_rms_m = -1e308;
   pose.overlap = INFINITY;
   writer.add(pose, -NAN, INFINITY);
-  writer.close();
+  writer.flush();
   const RunFolder run = read_run_folder(folder.path(), 100);
   CHECK(run.trajectory.poses[0].stamp_ns == -1'500'000'000);
   CHECK(run.trajectory.poses[0].position_m.x() == doctest::Approx(1e300));
@@ -85,6 +86,20 @@ TEST_CASE("status.csv requires t_ns only, ignores unknown columns, and errors na
   CHECK(message_of([] { parse_status_csv("scan_ms\n1\n", "s"); }) == "s:1: column 't_ns' is missing");
   CHECK(message_of([] { parse_status_csv("t_ns,scan_ms\n1,fast\n", "s"); }) ==
         "s:2: scan_ms: 'fast' is not a number");
+}
+
+TEST_CASE("status.csv and map.ply of a run that was killed are used as far as they are good") {
+  const auto rows = parse_status_csv("t_ns,mode,scan_ms\n5,registered,1.5\n6,registered,2.5\n7,regis", "s");
+  CHECK(rows.size() == 2);
+  CHECK(parse_status_csv("t_ns,scan_ms\n5,1.5\n6,n", "s").size() == 1);
+  CHECK_THROWS_AS(parse_status_csv("t_ns,mode\n5\n6,registered\n", "s"), DataError);
+  const TemporaryFolder folder;
+  files::write_text_file(folder.path() / "trajectory.tum", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n");
+  files::write_text_file(folder.path() / "map.ply", "");
+  const RunFolder run = read_run_folder(folder.path(), 100);
+  CHECK(run.trajectory.poses.size() == 2);
+  REQUIRE(run.notes.size() == 1);
+  CHECK(run.notes[0] == (folder.path() / "map.ply").string() + ": has no 'end_header'; the map is left out.");
 }
 
 TEST_CASE("a folder without a trajectory is refused") {

@@ -61,6 +61,22 @@ TEST_CASE("a broken TUM file is refused with file, line and rule") {
   CHECK(message_of("1 0 0 0 0 0 0 0\n") == "file.tum:1: qx qy qz qw is not a unit quaternion");
 }
 
+TEST_CASE("a last line that is cut at any byte is left out and told; a cut line elsewhere is an error") {
+  const std::string good = "# t x y z\n1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n";
+  const std::string last = "3.100000000 1.5 0.25 -0.125 0 0 0 1";
+  for (std::size_t length = 0; length <= last.size(); ++length) {
+    CAPTURE(length);
+    const Trajectory t = parse_tum(good + last.substr(0, length), "f");
+    // Complete, though without a line end: as other programs write the last line.
+    const bool complete = length == last.size();
+    CHECK(t.poses.size() == (complete ? 3 : 2));
+    CHECK(t.repairs.cut_line == (complete || length == 0 ? 0 : 4));
+  }
+  CHECK(parse_tum(good + std::string(500, '\0'), "f").repairs.cut_line == 4);
+  CHECK_THROWS_AS(parse_tum("1 0 0 0 0 0 0 1\n2 1 0\n3 1 0 0 0 0 0 1\n", "f"), DataError);
+  CHECK_THROWS_AS(parse_tum("1 0 0", "f"), DataError);
+}
+
 TEST_CASE("the travelled distance of a circle is its circumference up to the chords' 1/24 (step/radius)^2") {
   const double radius_m = 3.0;
   const Trajectory t = sampled(2 * std::numbers::pi, 1e-3, [&](double a) {

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Checkpoint of a live run: where the next start of isobard goes on.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+
+#include "core/altitude/height_datum.hpp"
+
+namespace isobar::files {
+
+/// Where a run was.
+struct Checkpoint {
+  std::uint32_t session = 1;  ///< number of the map frame, 1 …
+  std::int64_t stamp_ns = 0;  ///< of the pose, robot clock
+  std::int64_t clock_ns = 0;  ///< robot clock when it was written
+  Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d v_map_m_s = Eigen::Vector3d::Zero();  ///< velocity, from the last poses
+  HeightDatum datum;
+};
+
+/// Format: magic, version, length, fields (little-endian), CRC-32 of all bytes before it.
+inline constexpr std::size_t kCheckpointBytes = 216;
+using CheckpointBytes = std::array<std::byte, kCheckpointBytes>;
+
+[[nodiscard]] CheckpointBytes encode(const Checkpoint& checkpoint);
+/// @return nothing where length, magic, version, checksum or a value is wrong; `rule` then says which
+[[nodiscard]] std::optional<Checkpoint> decode(std::span<const std::byte> bytes, const char*& rule);
+
+/// Replaces the file as a whole.
+/// @throws ServiceError naming the file when it cannot be written; the old checkpoint stays
+void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);
+/// Reads the file; nothing when there is none.
+/// @throws DataError "file: rule" when it cannot be read or is damaged
+[[nodiscard]] std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file);
+
+}  // namespace isobar::files
