@@ -13,6 +13,7 @@
 #include "daemon/health_entry.hpp"
 #include "daemon/input_health.hpp"
 #include "daemon/lidar_sender.hpp"
+#include "daemon/run_health.hpp"
 #include "daemon/status_figures.hpp"
 
 namespace isobar {
@@ -244,6 +245,7 @@ void HealthMonitor::fill_registration(const StatusSnapshot& now, HealthReport& r
 }
 
 void HealthMonitor::fill_map(const StatusSnapshot& now, HealthReport& report) const {
+  add_run_entries(now, report);
   const std::int64_t last_ns = now.map.punctuality.last_ns;
   const bool stale = last_ns == 0 || now.now_ns - last_ns > kStageSilenceNs;
   const std::string text = last_ns == 0 ? "waiting for the first scan"

@@ -10,6 +10,7 @@
 #include "daemon/barometer_thread.hpp"
 #include "daemon/lidar_thread.hpp"
 #include "daemon/map_thread.hpp"
+#include "daemon/output_status.hpp"
 #include "daemon/prior_thread.hpp"
 #include "daemon/registration_thread.hpp"
 #include "daemon/sample_thread.hpp"
@@ -27,6 +28,7 @@ struct StatusSnapshot {
   PriorStatus prior;
   RegistrationStatus registration;
   MapStatus map;
+  OutputStatus output;
   std::string lidar_waits_for{};  ///< see UdpReceiver::waiting_for()
   std::string samples_wait_for{};
 };

@@ -52,7 +52,7 @@ class RobotGraph final : public Graph {
         description_(config),
         black_box_(black_box::BlackBox::make(config)),
         files_(config),
-        map_(stages_.map, stages_.T_base_lidar, config.output.cloud_interval_s, files_.store(),
+        map_(stages_.map, stages_.T_base_lidar, config.output.cloud_interval_s, files_.maps(), files_.start(),
              scheduling_.map),
         registration_(stages_, map_.snapshots(), scan_queue_config(config.realtime),
                       scheduling_.registration),
@@ -61,12 +61,17 @@ class RobotGraph final : public Graph {
         samples_(config.input.address, config.input.port, {.barometer = barometer_ == nullptr},
                  config.input.senders, scheduling_.inertial),
         lidar_(stages_.lidar, config.lidar, scheduling_.lidar),
-        output_(files_.output() ? std::make_unique<OutputThread>(*files_.output(), scheduling_.output)
-                                : nullptr),
+        output_(files_.checkpoint_file().empty()
+                    ? nullptr
+                    : std::make_unique<OutputThread>(
+                          files_, [this] { return prior_.status().datum; }, scheduling_.output)),
         monitor_(config) {
-    // Start order: consumers first.
+    registration_.begin_at(files_.start());
+    prior_.resume(files_.start().datum);
+    // Start order: consumers first. The output thread is not watched: it may wait for a disk, and poses
+    // continue without it.
     if (black_box_) black_box_->add_to(workers_);
-    if (output_) workers_.add(output_->worker());
+    if (output_) workers_.add(output_->worker(), Watch::kNo);
     workers_.add(map_.worker());
     workers_.add(registration_.worker());
     workers_.add(prior_.worker());
@@ -90,6 +95,7 @@ class RobotGraph final : public Graph {
             prior_.status(),
             registration_.status(),
             map_.status(),
+            output_ ? output_->status() : OutputStatus{},
             lidar_.waiting_for(),
             samples_.waiting_for()};
   }
@@ -126,7 +132,9 @@ class RobotGraph final : public Graph {
     description_.publish(config_);
   }
   void collect() override {
-    static_cast<void>(monitor_.input_starts_over(lidar_.status(), prior_.status()));
+    if (monitor_.input_starts_over(lidar_.status(), prior_.status())) {
+      registration_.begin_new_frame(NewFrameReason::kInputStartsOver);
+    }
     lidar_.collect();
     prior_.collect();
     registration_.collect();

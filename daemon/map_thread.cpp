@@ -4,28 +4,47 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <chrono>
+#include <exception>
+#include <utility>
 
 #include "daemon/cpu_time.hpp"
 #include "daemon/message_loop.hpp"
 #include "drivers/clock/robot_clock.hpp"
 
 namespace isobar {
+namespace {
+
+constexpr std::chrono::seconds kWriteInterval(1);
+
+/// The local map of the run's start, with the tiles around the place of an earlier run.
+std::unique_ptr<LocalMap> loaded_map(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar,
+                                     MapStores& maps, const RunStart& start) {
+  auto map = std::make_unique<LocalMap>(config, T_base_lidar, maps.current(), start.session);
+  if (start.place) map->load_around(start.place->T_map_base.translation());
+  return map;
+}
+
+}  // namespace
 
 MapThread::MapThread(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, double cloud_interval_s,
-                     FileTileStore* store, ThreadSettings settings)
-    : map_(config, T_base_lidar, store),
-      snapshots_(map_.snapshot()),
+                     MapStores& maps, const RunStart& start, ThreadSettings settings)
+    : config_(config),
+      T_base_lidar_(T_base_lidar),
+      maps_(maps),
+      map_(loaded_map(config, T_base_lidar, maps, start)),
+      snapshots_(map_->snapshot()),
       scans_(ipc::topics::kRegisteredScan),
       clouds_(ipc::topics::kMapCloud),
       waiter_({&scans_.raw()}),
-      store_(store),
       cloud_interval_ns_(static_cast<std::int64_t>(cloud_interval_s * 1e9)),
       deadline_(settings.deadline_ms),
       worker_(std::move(settings), waiter_, [this] { loop(); }) {}
 
 void MapThread::loop() noexcept {
-  drain_until_stopped(waiter_, worker_.heartbeat(), [this] { drain(); });
-  map_.store_all();
+  drain_until_stopped(
+      waiter_, worker_.heartbeat(), [this] { drain(); }, [] { return kWriteInterval; });
+  map_->store_all();
   log_tile_losses();
 }
 
@@ -33,7 +52,8 @@ void MapThread::loop() noexcept {
 // because the registration needs the map around it now.
 void MapThread::drain() noexcept {
   changes_.take([this](const Change& change) {
-    map_.configure(change.config);
+    map_->configure(change.config);
+    config_ = map_->config();
     cloud_interval_ns_ = static_cast<std::int64_t>(change.cloud_interval_s * 1e9);
     deadline_.set_limit(change.deadline_ms);
   });
@@ -43,32 +63,83 @@ void MapThread::drain() noexcept {
     ++superseded_;
   }
   if (newest) add(*newest);
+  if (RobotClock::now_ns() - written_ns_ >= std::chrono::nanoseconds(kWriteInterval).count()) write_tiles();
   log_tile_losses();
   draft_status_.dropped_scans = scans_.dropped() + superseded_;
   draft_status_.punctuality = deadline_.status();
-  draft_status_.cells = map_.cell_count();
-  if (store_ != nullptr) {
+  draft_status_.cells = map_->cell_count();
+  if (const FileTileStore* store = maps_.current(); store != nullptr) {
     draft_status_.on_disk = true;
-    draft_status_.tiles_on_disk = store_->tile_count();
-    draft_status_.disk_bytes = store_->disk_bytes();
+    draft_status_.tiles_on_disk = store->tile_count();
+    draft_status_.disk_bytes = store->disk_bytes();
   }
   status_.put(draft_status_);
 }
 
 void MapThread::add(const RegisteredScan& scan) noexcept {
   const CpuTimer timer;
-  if (map_.update(scan)) {
-    snapshots_.publish(map_.snapshot());
+  if (scan.pose.session != map_->session()) begin_session(scan.pose.session);
+  if (map_->update(scan)) {
+    snapshots_.publish(map_->snapshot());
     draft_status_.update_ms = timer.elapsed_ms();
   }
   deadline_.note(scan.handed_over_ns, RobotClock::now_ns());
   publish_cloud(scan.pose.stamp_ns);
 }
 
+// The old map is kept as it is; the new one begins empty, with a folder of its own.
+void MapThread::begin_session(std::uint32_t session) noexcept {
+  map_->store_all();
+  FileTileStore* store = nullptr;
+  try {
+    store = maps_.open(session);
+  } catch (const std::exception& error) {
+    spdlog::error("{}; the new map is not written", error.what());
+  }
+  logged_ = {};
+  points_.clear();  // of a cloud of the old map that is on its way
+  cloud_points_sent_ = 0;
+  map_ = std::make_unique<LocalMap>(config_, T_base_lidar_, store, session);
+  snapshots_.publish(map_->snapshot());
+}
+
+// Once a second, so that a crash loses ten seconds of the map at most.
+void MapThread::write_tiles() noexcept {
+  written_ns_ = RobotClock::now_ns();
+  if (!maps_.configured()) return;
+  try {
+    // The disk was full at the start.
+    if (maps_.current() == nullptr) map_->change_storage(maps_.open(map_->session()));
+    if (!maps_.in_place()) follow_folder();
+  } catch (const std::exception& error) {
+    map_->change_storage(maps_.current());
+    if (!draft_status_.disk_failing) spdlog::error("map: {}; poses continue", error.what());
+    draft_status_.disk_failing = true;
+    return;
+  }
+  const std::uint64_t refused = maps_.current()->counters().refused;
+  map_->store_some();
+  const bool failing = maps_.current()->counters().refused > refused;
+  if (!failing && draft_status_.disk_failing && refused > 0) {
+    spdlog::info("map: writing tiles has resumed");
+    logged_.refused = false;
+  }
+  draft_status_.disk_failing = failing;
+  maps_.flusher().post(maps_.current()->newest_file());
+}
+
+// Somebody deleted the folder of the map: what is still readable and what is in memory goes into a new one.
+void MapThread::follow_folder() {
+  FileTileStore* store = maps_.open_again();
+  map_->change_storage(store);
+  spdlog::warn("map: its folder was deleted; it is written anew, with the {} tiles that could be read",
+               store->tile_count());
+}
+
 void MapThread::log_tile_losses() noexcept {
-  if (store_ == nullptr) return;
+  if (maps_.current() == nullptr) return;
   // Only the first loss of each kind is logged; counters.csv has the totals.
-  const TileStoreCounters& now = store_->counters();
+  const TileStoreCounters& now = maps_.current()->counters();
   if (now.refused > 0 && !logged_.refused) {
     spdlog::error("map: {}; until this ends, tiles that leave memory are lost; poses continue",
                   now.first_refusal);
@@ -84,7 +155,7 @@ void MapThread::publish_cloud(std::int64_t stamp_ns) noexcept {
   if (cloud_points_sent_ >= points_.size()) {  // no map is on its way
     if (stamp_ns - last_cloud_ns_ < cloud_interval_ns_ || !clouds_.has_subscribers()) return;
     points_.clear();
-    map_.append_points(points_);
+    map_->append_points(points_);
     last_cloud_ns_ = stamp_ns;
     cloud_points_sent_ = 0;
     ++cloud_sequence_;
@@ -94,6 +165,7 @@ void MapThread::publish_cloud(std::int64_t stamp_ns) noexcept {
   if (piece == nullptr) return;
   piece->stamp_ns = last_cloud_ns_;
   piece->sequence = cloud_sequence_;
+  piece->session = map_->session();
   piece->first_point = static_cast<std::uint32_t>(cloud_points_sent_);
   piece->total_points = static_cast<std::uint32_t>(points_.size());
   piece->point_count = std::min(ipc::MapCloud::kMaxPoints, piece->total_points - piece->first_point);

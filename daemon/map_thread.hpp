@@ -9,10 +9,11 @@
 #include "core/map/snapshot_exchange.hpp"
 #include "daemon/deadline.hpp"
 #include "daemon/handover.hpp"
+#include "daemon/map_stores.hpp"
+#include "daemon/run_start.hpp"
 #include "daemon/seq_lock.hpp"
 #include "daemon/worker.hpp"
 #include "ipc/shared_memory.hpp"
-#include "run/tile_store/file_tile_store.hpp"
 
 namespace isobar {
 
@@ -23,6 +24,7 @@ struct MapStatus {
   bool on_disk = false;  ///< tiles are written
   std::uint64_t tiles_on_disk = 0;
   std::uint64_t disk_bytes = 0;  ///< of the tiles
+  bool disk_failing = false;     ///< the last attempt to write tiles failed; the next one is a second later
   double update_ms = 0.0;        ///< CPU time of the last update
   DeadlineStatus punctuality;    ///< from the publication of a pose to the map snapshot with its scan
 };
@@ -31,10 +33,10 @@ struct MapStatus {
 /// viewers. Not real-time: it allocates, and it alone frees old snapshots.
 class MapThread {
  public:
-  /// @param store keeps the tiles that leave the local map; used by this
-  ///        thread only, while it runs. Null: they are discarded.
+  /// @param maps keeps the tiles; used by this thread only, while it runs
+  /// @param start the map frame, and the place around which its tiles are read
   MapThread(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, double cloud_interval_s,
-            FileTileStore* store, ThreadSettings settings);
+            MapStores& maps, const RunStart& start, ThreadSettings settings);
 
   /// Once stopped, the whole local map is in the store.
   [[nodiscard]] Worker& worker() noexcept { return worker_; }
@@ -63,16 +65,22 @@ class MapThread {
   void loop() noexcept;
   void drain() noexcept;
   void add(const RegisteredScan& scan) noexcept;
+  void begin_session(std::uint32_t session) noexcept;
+  void write_tiles() noexcept;
+  void follow_folder();
   void log_tile_losses() noexcept;
   void publish_cloud(std::int64_t stamp_ns) noexcept;
 
-  LocalMap map_;
+  MapConfig config_;
+  Eigen::Isometry3d T_base_lidar_;
+  MapStores& maps_;
+  std::unique_ptr<LocalMap> map_;  ///< never null
   SnapshotExchange<MapSnapshot> snapshots_;
   ipc::Subscriber<RegisteredScan> scans_;
   ipc::Publisher<ipc::MapCloud> clouds_;
   ipc::Waiter waiter_;
-  FileTileStore* store_;
   LoggedLosses logged_;
+  std::int64_t written_ns_ = 0;  ///< last write_tiles(), robot clock
   std::int64_t cloud_interval_ns_;
   std::int64_t last_cloud_ns_ = 0;
   std::uint32_t cloud_sequence_ = 0;

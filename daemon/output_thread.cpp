@@ -3,34 +3,123 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <chrono>
 #include <exception>
+#include <utility>
 
+#include "core/stamp.hpp"
 #include "daemon/message_loop.hpp"
+#include "drivers/clock/robot_clock.hpp"
 
 namespace isobar {
+namespace {
 
-OutputThread::OutputThread(files::RunOutput& output, ThreadSettings settings)
-    : output_(&output),
+/// Interval of writes: a power cut loses this and the time of one write.
+constexpr std::int64_t kWriteIntervalNs = 500'000'000;
+constexpr std::chrono::milliseconds kPoll(100);
+/// Longest step between two poses that gives a velocity.
+constexpr double kMaxStepS = 0.5;
+/// A larger velocity is a correction, not a motion.
+constexpr double kMaxSpeedMS = 15.0;
+
+}  // namespace
+
+OutputThread::OutputThread(RunFiles& files, std::function<HeightDatum()> datum, ThreadSettings settings)
+    : files_(files),
+      datum_(std::move(datum)),
+      checkpoint_file_(files.checkpoint_file()),
       poses_(ipc::topics::kPose),
       priors_(ipc::topics::kPrior),
       waiter_({&poses_.raw()}),
-      worker_(std::move(settings), waiter_, [this] { loop(); }) {}
+      worker_(std::move(settings), waiter_, [this] { loop(); }) {
+  draft_status_.present = true;
+  status_.put(draft_status_);
+}
 
 void OutputThread::loop() noexcept {
-  drain_until_stopped(waiter_, worker_.heartbeat(), [this] { drain(); });
+  drain_until_stopped(
+      waiter_, worker_.heartbeat(), [this] { drain(); }, [] { return kPoll; });
+  write();
 }
 
 void OutputThread::drain() noexcept {
   if (const auto prior = priors_.take_latest()) newest_prior_ = *prior;
-  while (const auto pose = poses_.take()) {
-    if (output_ == nullptr) continue;
-    try {
-      output_->add_pose(*pose, newest_prior_);
-    } catch (const std::exception& error) {
-      spdlog::error("{}; poses are still published but no longer written", error.what());
-      output_ = nullptr;
-    }
+  while (const auto pose = poses_.take()) add_pose(*pose);
+  if (RobotClock::now_ns() - written_ns_ >= kWriteIntervalNs) write();
+}
+
+void OutputThread::add_pose(const PoseEstimate& pose) noexcept {
+  ++draft_status_.poses;
+  note_for_checkpoint(pose);
+  if (files_.output() == nullptr || place_unknown(pose)) return;
+  try {
+    files_.output()->add_pose(pose, newest_prior_);
+  } catch (const std::exception& error) {
+    add_failure_ = error.what();
   }
+}
+
+// A pose before the place is known is none to go on from.
+void OutputThread::note_for_checkpoint(const PoseEstimate& pose) noexcept {
+  const double step_s = seconds_between(last_pose_.stamp_ns, pose.stamp_ns);
+  Eigen::Vector3d v_map_m_s = Eigen::Vector3d::Zero();
+  if (pose.session == last_pose_.session && step_s > 0.0 && step_s < kMaxStepS) {
+    v_map_m_s = (pose.T_map_base.translation() - last_pose_.T_map_base.translation()) / step_s;
+    if (v_map_m_s.norm() > kMaxSpeedMS) v_map_m_s.setZero();
+  }
+  last_pose_ = pose;
+  if (pose.mode == PoseMode::kInitializing) return;
+  checkpoint_.session = pose.session;
+  checkpoint_.stamp_ns = pose.stamp_ns;
+  checkpoint_.T_map_base = pose.T_map_base;
+  checkpoint_.v_map_m_s = v_map_m_s;
+  if (pose.mode == PoseMode::kRegistered) {
+    checkpoint_.overlap = std::clamp(pose.overlap, 0.0, 1.0);
+    checkpoint_.residual_rms_m = std::clamp(pose.residual_rms_m, 0.0, 1.0);
+  }
+  checkpoint_due_ = true;
+}
+
+void OutputThread::write() noexcept {
+  std::string failure = std::exchange(add_failure_, {});
+  const auto attempt = [&](const auto& part) {
+    try {
+      part();
+    } catch (const std::exception& error) {
+      if (failure.empty()) failure = error.what();
+    }
+  };
+  if (files_.output() != nullptr) {
+    attempt([&] { files_.output()->flush(); });
+    attempt([&] { files_.output()->sync(); });
+    draft_status_.dropped_lines = files_.output()->dropped_lines();
+  }
+  attempt([&] { write_checkpoint(); });
+  if (!files_.maps().flusher().flush()) failure = "the map's tiles cannot be written to the disk";
+  report(failure);
+  written_ns_ = RobotClock::now_ns();
+}
+
+void OutputThread::write_checkpoint() {
+  if (!checkpoint_due_ || checkpoint_file_.empty()) return;
+  checkpoint_.clock_ns = RobotClock::now_ns();
+  checkpoint_.datum = datum_();
+  files::write_checkpoint(checkpoint_file_, checkpoint_);
+  checkpoint_due_ = false;
+}
+
+void OutputThread::report(const std::string& failure) noexcept {
+  const bool failing = !failure.empty();
+  if (failing && !draft_status_.failing) {
+    spdlog::error("{}; poses continue, and writing resumes when the disk allows", failure);
+  }
+  if (!failing && draft_status_.failing) spdlog::info("writing to the disk has resumed");
+  draft_status_.failing = failing;
+  draft_status_.reason.fill('\0');
+  std::copy_n(failure.begin(), std::min(failure.size(), draft_status_.reason.size() - 1),
+              draft_status_.reason.begin());
+  status_.put(draft_status_);
 }
 
 }  // namespace isobar

@@ -1,30 +1,52 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "daemon/output_status.hpp"
+#include "daemon/run_files.hpp"
+#include "daemon/seq_lock.hpp"
 #include "daemon/worker.hpp"
 #include "ipc/shared_memory.hpp"
-#include "run/files/run_output.hpp"
 
 namespace isobar {
 
-/// Writes every pose to the run folder. Not real-time. A full
-/// disk ends the writing; poses are still published.
+/// Writes poses and checkpoints to the disk, and waits for the disk on behalf of the map thread. Not
+/// real-time. While the disk refuses, poses are published as ever and some minutes of them are kept.
 class OutputThread {
  public:
-  OutputThread(files::RunOutput& output, ThreadSettings settings);
+  /// @param datum the present height datum; any thread may call it
+  OutputThread(RunFiles& files, std::function<HeightDatum()> datum, ThreadSettings settings);
 
   /// Once stopped, every waiting pose is written.
   [[nodiscard]] Worker& worker() noexcept { return worker_; }
+  [[nodiscard]] OutputStatus status() const noexcept { return status_.get(); }
 
  private:
   void loop() noexcept;
   void drain() noexcept;
+  void add_pose(const PoseEstimate& pose) noexcept;
+  void note_for_checkpoint(const PoseEstimate& pose) noexcept;
+  void write() noexcept;
+  void write_checkpoint();
+  void report(const std::string& failure) noexcept;
 
-  files::RunOutput* output_;  ///< null after a failed write
+  RunFiles& files_;
+  std::function<HeightDatum()> datum_;
+  std::filesystem::path checkpoint_file_;
   ipc::Subscriber<PoseEstimate> poses_;
   ipc::Subscriber<Prior> priors_;
   ipc::Waiter waiter_;
   Prior newest_prior_;
+  PoseEstimate last_pose_;
+  files::Checkpoint checkpoint_;
+  bool checkpoint_due_ = false;  ///< a pose has come since the last one
+  std::int64_t written_ns_ = 0;  ///< robot clock
+  std::string add_failure_;      ///< since the last write()
+  OutputStatus draft_status_;
+  SeqLock<OutputStatus> status_;
   Worker worker_;
 };
 

@@ -156,6 +156,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
     if (events % 512 == 0) progress(reader.progress());
   }
   pipeline.finish();
+  output.flush();
   const std::vector<files::RunCount> map_counts = counts_of_map(*store, output);
 
   summary.scans = pipeline.scans();
@@ -176,7 +177,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   }
   warn_of_two_lidars(pipeline, used.lidar.port, summary);
   warn_of_unusable_sensors(reader.manifest(), pipeline, summary);
-  output.close(summary.counts);
+  output.write_counters(summary.counts);
   refuse_empty_run(summary, pipeline, recording);
   summary.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   return summary;

@@ -3,39 +3,30 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <array>
 
 #include "config/config_io.hpp"
+#include "core/errors.hpp"
 #include "daemon/counts.hpp"
-#include "daemon/stage_settings.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar {
 namespace {
 
-/// Store of the tiles that leave memory: the configured map
-/// folder, else the run folder's; null without either.
-std::unique_ptr<FileTileStore> map_store(const Config& config) {
-  std::filesystem::path directory = config.map_files.directory;
-  if (directory.empty() && !config.output.directory.empty()) {
-    directory = files::RunOutput::map_directory(config.output.directory);
-  }
-  if (directory.empty()) return nullptr;
-  return FileTileStore::create(directory, map_header(config), map_limits(config));
+KnownPlace place_of(const files::Checkpoint& checkpoint) {
+  return {.session = checkpoint.session,
+          .stamp_ns = checkpoint.stamp_ns,
+          .T_map_base = checkpoint.T_map_base,
+          .overlap = checkpoint.overlap,
+          .residual_rms_m = checkpoint.residual_rms_m,
+          .has_height = checkpoint.datum.known,
+          .v_map_m_s = checkpoint.v_map_m_s};
 }
 
-}  // namespace
+std::string frame_name(std::uint32_t session) { return files::name_of_session("map", session); }
 
-RunFiles::RunFiles(const Config& config) : directory_(config.output.directory) {
-  if (!directory_.empty()) {
-    output_.emplace(directory_);
-    output_->write_settings(show_config(config));
-  }
-  store_ = map_store(config);
-}
-
-void RunFiles::close(const StatusSnapshot& last) {
-  if (!output_) return;
+std::vector<files::RunCount> counts_of_threads(const StatusSnapshot& last) {
   std::vector<files::RunCount> counts = counts_of(last.lidar.counters, last.lidar.wrong_model_message.data());
   counts.push_back({"lidar packets of another sender", last.lidar.sender.refused, ""});
   run_counts::append(counts, counts_of(last.samples.counters));
@@ -50,8 +41,117 @@ void RunFiles::close(const StatusSnapshot& last) {
   counts.push_back({"baro lines refused", last.samples.refused_pressure, ""});
   run_counts::append(counts, counts_of(last.prior.counters));
   counts.push_back({"shared memory faults", ipc::library_fault_count(), ""});
-  run_counts::append(counts, counts_of_map(*store_, *output_));  // a run folder implies a store
-  output_->close(counts);
+  return counts;
+}
+
+/// Does one part of the end of a run; the others follow whatever happens to it.
+template <class Part>
+void do_or_log(const Part& part) {
+  try {
+    part();
+  } catch (const Error& error) {
+    spdlog::error("{}", error.what());
+  }
+}
+
+}  // namespace
+
+RunFiles::RunFiles(const Config& config) : directory_(config.output.directory), maps_(config) {
+  if (!directory_.empty()) files::refuse_foreign_folder(directory_, "", "output.directory");
+  choose_start();
+  if (directory_.empty()) return;
+  output_.emplace(directory_, files::Start::kContinue, start_.session);
+  do_or_log([&] { output_->write_settings(show_config(config)); });
+  if (output_->removed_bytes() > 0) {
+    spdlog::warn("{}: the last lines were incomplete, after a power cut; {} bytes are removed",
+                 directory_.string(), output_->removed_bytes());
+  }
+}
+
+std::filesystem::path RunFiles::checkpoint_file() const {
+  if (!directory_.empty()) return directory_ / files::kCheckpointFile;
+  if (maps_.configured()) return maps_.folder() / files::kCheckpointFile;
+  return {};
+}
+
+std::uint32_t RunFiles::newest_session() const {
+  const std::uint32_t run = directory_.empty() ? 0 : files::newest_session(directory_);
+  return std::max(run, maps_.newest_session());
+}
+
+void RunFiles::choose_start() {
+  const std::uint32_t newest = newest_session();
+  std::optional<files::Checkpoint> checkpoint;
+  std::string why = "there is no checkpoint of it";
+  try {
+    if (const auto file = checkpoint_file(); !file.empty()) checkpoint = files::read_checkpoint(file);
+  } catch (const Error& error) {
+    why = error.what();
+  }
+  if (newest == 0) {
+    static_cast<void>(open_map(1));
+    return;
+  }
+  if (checkpoint && checkpoint->session != newest) why = "its newest map frame has no checkpoint";
+  if ((!checkpoint || checkpoint->session != newest) && !begun(newest)) {
+    start_.session = newest;
+    return;
+  }
+  if (!checkpoint || checkpoint->session != newest) {
+    begin_beside(newest + 1, why);
+    return;
+  }
+  if (!open_map(newest)) {
+    begin_beside(newest + 1, "its map cannot be continued");
+    start_.datum = checkpoint->datum;
+    return;
+  }
+  start_ = {newest, place_of(*checkpoint), checkpoint->datum};
+  const Eigen::Vector3d p = checkpoint->T_map_base.translation();
+  spdlog::info(
+      "continues the earlier run in frame {} at ({:.2f}, {:.2f}, {:.2f}) m; the first scans must "
+      "confirm the place",
+      frame_name(newest), p.x(), p.y(), p.z());
+}
+
+// False for a frame that ended before its first pose: it begins again. Its map is then open.
+bool RunFiles::begun(std::uint32_t session) {
+  if (!directory_.empty() && !files::has_no_pose(directory_, session)) return true;
+  return !open_map(session) || (maps_.current() != nullptr && maps_.current()->tile_count() > 0);
+}
+
+/// @throws ServiceError when the disk refuses or another process writes the map
+/// @return false for a map that is not like the configured one
+bool RunFiles::open_map(std::uint32_t session) {
+  try {
+    maps_.open(session);
+  } catch (const DataError& error) {
+    spdlog::warn("{}", error.what());
+    return false;
+  } catch (const ServiceError& error) {
+    if (!maps_.disk_is_full()) throw;
+    spdlog::error("{}; poses continue, and the map is written when the disk has room", error.what());
+  }
+  return true;
+}
+
+void RunFiles::begin_beside(std::uint32_t session, const std::string& why) {
+  spdlog::warn("the earlier run is kept but not continued: {}; a new one begins beside it in frame {}", why,
+               frame_name(session));
+  start_.session = session;
+  static_cast<void>(open_map(session));
+}
+
+void RunFiles::close(const StatusSnapshot& last) {
+  if (!output_) return;
+  do_or_log([&] { output_->flush(); });
+  std::vector<files::RunCount> counts = counts_of_threads(last);
+  // A run folder implies a store, unless the disk has refused a new one.
+  if (maps_.current() != nullptr) {
+    do_or_log([&] { run_counts::append(counts, counts_of_map(*maps_.current(), *output_)); });
+  }
+  counts.push_back({"poses not written", output_->dropped_lines(), ""});
+  do_or_log([&] { output_->write_counters(counts); });
   spdlog::info("{} poses and {} map points in {}", output_->poses(), output_->map_points(),
                directory_.string());
 }

@@ -1,37 +1,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
+#include <filesystem>
 #include <optional>
+#include <string>
 
 #include "config/config.hpp"
 #include "daemon/health.hpp"
+#include "daemon/map_stores.hpp"
+#include "daemon/run_start.hpp"
+#include "run/files/checkpoint.hpp"
 #include "run/files/run_output.hpp"
-#include "run/tile_store/file_tile_store.hpp"
 
 namespace isobar {
 
-/// Files of a live run: the run folder of [output] and the tile store of the map, each only if configured.
-/// Main thread only; output() and store() belong to the output thread and the map thread while these run.
+/// Files of a live run: the run folder of [output] and the tiles of the map, each only if configured. A folder
+/// with an earlier run is continued: nothing in it is replaced but map.ply, counters.csv and settings.toml. An
+/// earlier run that cannot be continued is kept, and a new map frame begins beside it. Main thread only;
+/// output() and maps() belong to the output thread and the map thread while these run.
 class RunFiles {
  public:
-  /// Creates the folders and writes the settings of the run.
-  /// @throws ServiceError when the disk refuses
+  /// Creates or continues the folders and writes the settings of the run.
+  /// @throws ConfigError for a folder with files of others
+  /// @throws ServiceError when the disk refuses, or another process writes there
   explicit RunFiles(const Config& config);
 
+  [[nodiscard]] const RunStart& start() const noexcept { return start_; }
   [[nodiscard]] files::RunOutput* output() noexcept {
     return output_ ? &*output_ : nullptr;
-  }                                                                       ///< null: none configured
-  [[nodiscard]] FileTileStore* store() noexcept { return store_.get(); }  ///< null: none configured
+  }  ///< null: none configured
+  [[nodiscard]] MapStores& maps() noexcept { return maps_; }
+  /// File of the checkpoint; empty: nothing is configured that a later run could continue.
+  [[nodiscard]] std::filesystem::path checkpoint_file() const;
 
-  /// Writes map.ply and counters.csv. Call once, after all threads have stopped.
-  /// @throws ServiceError when the disk refuses
+  /// Writes the last poses, map.ply and counters.csv. What the disk refuses is logged. Call once, after all
+  /// threads have stopped.
   void close(const StatusSnapshot& last);
 
  private:
-  std::optional<files::RunOutput> output_;
-  std::unique_ptr<FileTileStore> store_;
+  [[nodiscard]] std::uint32_t newest_session() const;
+  void choose_start();
+  [[nodiscard]] bool begun(std::uint32_t session);
+  [[nodiscard]] bool open_map(std::uint32_t session);
+  void begin_beside(std::uint32_t session, const std::string& why);
+
   std::filesystem::path directory_;
+  MapStores maps_;
+  RunStart start_;
+  std::optional<files::RunOutput> output_;
 };
 
 }  // namespace isobar

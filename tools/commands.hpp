@@ -24,6 +24,7 @@ void add_status_command(CLI::App& app);     ///< health and figures of the runni
 void add_metrics_command(CLI::App& app);    ///< the same for Prometheus
 void add_record_command(CLI::App& app);     ///< running isobard -> recording
 void add_black_box_command(CLI::App& app);  ///< orders to the black box of the running isobard
+void add_reset_command(CLI::App& app);      ///< asks the running isobard for a new map frame
 void add_echo_command(CLI::App& app);       ///< prints what a DDS subscriber receives
 
 }  // namespace isobar::tools

@@ -126,12 +126,21 @@ std::optional<files::MapBox> box_of(const std::vector<double>& corners) {
 void run_export(const MapOptions& options) {
   const std::optional<files::MapBox> box = box_of(options.box);
   const Store store = open_map(options.directory);
+  if (store->tile_count() == 0) {
+    throw DataError(options.directory.string() + ": the map holds no tiles yet, so nothing was exported");
+  }
   files::PlyWriter ply(options.out);
   const files::MapExport done = files::export_map(*store, store->header(), box, ply);
   ply.close();
   print_faults(store->counters());
   std::printf("%llu points of %llu tiles in %s\n", Count{done.points}, Count{done.tiles},
               options.out.c_str());
+  if (done.points == 0) {
+    const files::MapBox extent = extent_of(store->keys(), store->header().tile_m);
+    std::printf("no points in the box: the map extends over x %g … %g, y %g … %g, z %g … %g m\n",
+                extent.lowest.x(), extent.highest.x(), extent.lowest.y(), extent.highest.y(),
+                extent.lowest.z(), extent.highest.z());
+  }
   if (done.unreadable > 0) {
     throw DataError(options.directory.string() + ": " + std::to_string(done.unreadable) +
                     " tiles are unreadable and left out; the first: " + done.first_unreadable);

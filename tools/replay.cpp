@@ -9,6 +9,7 @@
 
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
+#include "run/files/run_layout.hpp"
 #include "tools/commands.hpp"
 #include "tools/method_option.hpp"
 #include "tools/progress.hpp"
@@ -23,6 +24,7 @@ struct ReplayOptions {
   std::filesystem::path config;
   std::string method;
   std::filesystem::path out;
+  bool replace = false;
 };
 
 /// Counters of normal operation, which are not printed; the others are printed unless zero.
@@ -52,6 +54,17 @@ void print_summary(const ReplaySummary& summary, const std::filesystem::path& ou
   std::printf("written: %s/trajectory.tum map.ply map/ status.csv counters.csv settings.toml\n", out.c_str());
 }
 
+/// A run that is already in the folder is kept unless its removal is asked for.
+/// @throws UsageError
+void prepare_folder(const ReplayOptions& options) {
+  if (!files::holds_run(options.out)) return;
+  if (!options.replace) {
+    throw UsageError("--out: " + options.out.string() +
+                     " holds a run already; name another folder, or add --replace to delete that run");
+  }
+  files::remove_run(options.out);
+}
+
 void run_replay(const ReplayOptions& options) {
   Config config = options.config.empty() ? Config{} : load_config(options.config);
   if (!options.method.empty()) {
@@ -59,6 +72,7 @@ void run_replay(const ReplayOptions& options) {
     if (!method) throw UsageError("--method: \"" + options.method + "\" is none of " + method_names());
     config.method = *method;
   }
+  prepare_folder(options);
   Progress progress("replaying");
   const ReplaySummary summary =
       replay(options.recording, config, options.out, [&](double fraction) { progress.update(fraction); });
@@ -78,6 +92,7 @@ void add_replay_command(CLI::App& app) {
   command
       .add_option("--out", options.out, "folder for trajectory.tum, map.ply, map/, status.csv, settings.toml")
       ->required();
+  command.add_flag("--replace", options.replace, "delete the run that is in the folder");
 }
 
 }  // namespace isobar::tools

@@ -40,6 +40,7 @@ class LocalMap {
 
   /// Changes settings for the next updates, but not the cells' edge and the matcher, which the map has.
   void configure(const MapConfig& config);
+  [[nodiscard]] const MapConfig& config() const { return config_; }
 
   /// Newest snapshot, never null, to be published by a SnapshotExchange.
   [[nodiscard]] const std::shared_ptr<const MapSnapshot>& snapshot() const { return snapshot_; }

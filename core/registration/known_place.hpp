@@ -11,7 +11,9 @@ struct KnownPlace {
   std::uint32_t session = 1;  ///< number of the map frame
   std::int64_t stamp_ns = 0;  ///< time of the pose, robot clock
   Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
-  bool has_height = false;  ///< the prior will continue the height of this map: the search waits for it
+  double overlap = 0.0;         ///< of the last scans that matched the map; 0: unknown
+  double residual_rms_m = 0.0;  ///< the same
+  bool has_height = false;      ///< the prior will continue the height of this map: the search waits for it
   Eigen::Vector3d v_map_m_s = Eigen::Vector3d::Zero();  ///< velocity at that time
 };
 

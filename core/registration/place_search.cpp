@@ -28,14 +28,19 @@ constexpr double kHypothesisRad = 0.2;
 constexpr double kFoundM = 0.15;
 constexpr double kFoundRad = 0.05;
 // Share of the scan's points that match the map at the right place: 0.7 … 1 in known places, less where
-// the robot sees past the edge of the map.
+// the robot sees past the edge of the map. Where that of the last scans is known, this share of it: people and
+// doors have moved since.
 constexpr double kLeastOverlap = 0.6;
+constexpr double kShareOfOverlap = 0.8;
 // Overlap that leaves no doubt: the other hypotheses are not tried.
 constexpr double kCertainOverlap = 0.85;
+constexpr double kCertainShare = 0.95;
 // Residual at the right place: noise of lidar and map; at a wrong one planes of other walls are 0.1 m away.
 constexpr double kLargestResidualM = 0.08;
+constexpr double kTimesResidual = 1.5;
+constexpr double kMoreResidualM = 0.01;
 // Sampled points of a scan that can be judged: the first revolution may be incomplete.
-constexpr std::uint32_t kLeastPoints = 300;
+constexpr std::uint32_t kLeastPoints = 150;
 constexpr int kConfirmingScans = 3;
 constexpr int kMaxRefusals = 2;
 // The hypotheses are tried twice: the robot may have driven into a place that it knows better.
@@ -50,9 +55,9 @@ Prediction with_error(Prediction prediction, double translation_m, double yaw_ra
 
 }  // namespace
 
-bool PlaceSearch::fits(const MatchResult& result) {
-  return result.solved && result.sampled_points >= kLeastPoints && result.overlap >= kLeastOverlap &&
-         result.residual_rms_m <= kLargestResidualM;
+bool PlaceSearch::fits(const MatchResult& result) const {
+  return result.solved && result.sampled_points >= kLeastPoints && result.overlap >= least_overlap_ &&
+         result.residual_rms_m <= largest_residual_m_;
 }
 
 Eigen::Isometry3d PlaceSearch::expected_pose(const KnownPlace& place, std::int64_t now_ns) {
@@ -88,6 +93,12 @@ void PlaceSearch::begin(const KnownPlace& place, std::int64_t now_ns) {
   };
   std::stable_sort(hypotheses_.begin(), hypotheses_.end(),
                    [&](const Hypothesis& a, const Hypothesis& b) { return size(a) < size(b); });
+  const bool known = place.overlap > 0.0;
+  least_overlap_ = known ? kShareOfOverlap * place.overlap : kLeastOverlap;
+  certain_overlap_ = known ? kCertainShare * place.overlap : kCertainOverlap;
+  largest_residual_m_ =
+      known ? std::min(kTimesResidual * place.residual_rms_m + kMoreResidualM, kLargestResidualM)
+            : kLargestResidualM;
   rounds_ = 0;
   active_ = true;
   restart_round();
@@ -118,7 +129,7 @@ void PlaceSearch::judge(const Prediction& expected, const MatchResult& result) {
 
 PlaceVerdict PlaceSearch::end_of_scan() {
   const bool all_tried = next_ >= hypotheses_.size();
-  if (best_overlap_ >= kCertainOverlap || (all_tried && best_overlap_ > 0.0)) {
+  if (best_overlap_ >= certain_overlap_ || (all_tried && best_overlap_ > 0.0)) {
     found_ = true;
     return PlaceVerdict::kFound;
   }

@@ -52,7 +52,7 @@ class PlaceSearch {
   /// Rigid motion in the map from the expected to the found pose.
   [[nodiscard]] const Eigen::Isometry3d& correction() const { return best_correction_; }
   /// The match is that of the right place.
-  [[nodiscard]] static bool fits(const MatchResult& result);
+  [[nodiscard]] bool fits(const MatchResult& result) const;
   /// `expected` with the errors of a robot that has just been found.
   [[nodiscard]] static Prediction near(const Prediction& expected);
 
@@ -69,6 +69,9 @@ class PlaceSearch {
   void restart_round();
 
   std::vector<Hypothesis> hypotheses_;
+  double least_overlap_ = 0.0;
+  double certain_overlap_ = 1.0;
+  double largest_residual_m_ = 0.0;
   std::size_t next_ = 0;
   double best_overlap_ = 0.0;
   Eigen::Isometry3d best_correction_ = Eigen::Isometry3d::Identity();

@@ -63,6 +63,13 @@ void Registration::search_place(const MapSnapshot& map, const Prior& end, const 
   out.point_count = 0;
   pose.T_map_base = expected.T_map_base;
   pose.covariance = unknown_covariance();
+  // A dropped scan has no points and says nothing about the place.
+  if (sampler_.sample().empty()) {
+    state_.motion.keep_prediction(end, expected);
+    pose.T_map_odom = pose.T_map_base * end.T_odom_base.inverse();
+    state_.last = pose;
+    return;
+  }
   const PlaceVerdict verdict = state_.search.confirming() ? confirm_place(map, end, expected, traits, pose)
                                                           : try_hypotheses(map, end, expected, traits);
   if (verdict == PlaceVerdict::kUnknown) {
@@ -100,7 +107,7 @@ PlaceVerdict Registration::confirm_place(const MapSnapshot& map, const Prior& en
   const MatchResult result =
       knows(map) ? match(map, end, PlaceSearch::near(expected), traits) : MatchResult{};
   const PlaceVerdict verdict = state_.search.confirm(result);
-  if (!PlaceSearch::fits(result)) {
+  if (!state_.search.fits(result)) {
     state_.motion.keep_prediction(end, expected);
     return verdict;
   }

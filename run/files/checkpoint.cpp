@@ -46,7 +46,9 @@ struct Record {
   double variance_m2 = 0.0;
   double offset_m = 0.0;
   std::array<double, HeightDatum::kStations> station_offset_log{};
-  std::array<double, 6> reserved{};
+  double overlap = 0.0;
+  double residual_rms_m = 0.0;
+  std::array<double, 4> reserved{};
   std::uint32_t reserved_word = 0;
   std::uint32_t crc = 0;
 };
@@ -79,7 +81,9 @@ const char* broken_rule(const Record& record) {
                          all_within(record.velocity_m_s, kLargestSpeedMS) &&
                          within(record.height_m, kLargestM) &&
                          within(record.variance_m2, kLargestVarianceM2) && record.variance_m2 >= 0.0 &&
-                         within(record.offset_m, kLargestM) && all_within(record.station_offset_log, 10.0);
+                         within(record.offset_m, kLargestM) && within(record.overlap, 1.0) &&
+                         record.overlap >= 0.0 && within(record.residual_rms_m, 1.0) &&
+                         record.residual_rms_m >= 0.0 && all_within(record.station_offset_log, 10.0);
   return plausible ? nullptr : "a value is implausible";
 }
 
@@ -96,6 +100,8 @@ CheckpointBytes encode(const Checkpoint& checkpoint) {
     record.position_m[i] = checkpoint.T_map_base.translation()[static_cast<Eigen::Index>(i)];
     record.velocity_m_s[i] = checkpoint.v_map_m_s[static_cast<Eigen::Index>(i)];
   }
+  record.overlap = checkpoint.overlap;
+  record.residual_rms_m = checkpoint.residual_rms_m;
   const HeightDatum& datum = checkpoint.datum;
   record.datum_known = datum.known ? 1 : 0;
   record.step_open = datum.step_open ? 1 : 0;
@@ -127,6 +133,8 @@ std::optional<Checkpoint> decode(std::span<const std::byte> bytes, const char*& 
   checkpoint.T_map_base.linear() = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
   checkpoint.T_map_base.translation() = Eigen::Vector3d(record.position_m.data());
   checkpoint.v_map_m_s = Eigen::Vector3d(record.velocity_m_s.data());
+  checkpoint.overlap = record.overlap;
+  checkpoint.residual_rms_m = record.residual_rms_m;
   HeightDatum& datum = checkpoint.datum;
   datum.known = record.datum_known == 1;
   datum.step_open = record.step_open == 1;

@@ -25,6 +25,8 @@ Checkpoint example() {
   checkpoint.T_map_base = Eigen::Translation3d(1.5, -200.25, 7.0) *
                           Eigen::AngleAxisd(2.1, Eigen::Vector3d(0.1, -0.05, 0.99).normalized());
   checkpoint.v_map_m_s = {0.5, -0.25, 0.0};
+  checkpoint.overlap = 0.875;
+  checkpoint.residual_rms_m = 0.0625;
   checkpoint.datum = {.known = true,
                       .height_m = 7.0,
                       .variance_m2 = 0.01,
@@ -55,6 +57,8 @@ TEST_CASE("a checkpoint survives the way to the disk and back") {
   CHECK(read->clock_ns == example().clock_ns);
   CHECK(read->T_map_base.matrix().isApprox(example().T_map_base.matrix(), 1e-14));
   CHECK(read->v_map_m_s == example().v_map_m_s);
+  CHECK(read->overlap == 0.875);
+  CHECK(read->residual_rms_m == 0.0625);
   CHECK(read->datum.known);
   CHECK(read->datum.step_open);
   CHECK(read->datum.height_m == 7.0);
@@ -86,6 +90,7 @@ TEST_CASE("a checkpoint with impossible values is refused, whatever its checksum
   };
   CHECK_FALSE(refused([](Checkpoint&) {}));
   CHECK(refused([](Checkpoint& c) { c.session = 0; }));
+  CHECK(refused([](Checkpoint& c) { c.overlap = 1.5; }));
   CHECK(refused([&](Checkpoint& c) { c.T_map_base.translation().x() = nan; }));
   CHECK(refused([&](Checkpoint& c) { c.T_map_base.linear().setConstant(nan); }));
   CHECK(refused([](Checkpoint& c) { c.v_map_m_s.y() = 1e6; }));
