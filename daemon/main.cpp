@@ -18,6 +18,7 @@
 #include "core/errors.hpp"
 #include "daemon/barometer_source.hpp"
 #include "daemon/base_station.hpp"
+#include "daemon/broker_patience.hpp"
 #include "daemon/configuration.hpp"
 #include "daemon/graph.hpp"
 #include "daemon/health.hpp"
@@ -156,6 +157,7 @@ int main_with_errors(int argc, char** argv) {
   }
   // Before the first thread, so that all threads inherit the blocked signals.
   Service service;
+  wait_for_shared_memory(service);
   Configuration configuration(options.config_file, [&options](Config& config) {
     if (!options.output_directory.empty()) config.output.directory = options.output_directory;
   });
