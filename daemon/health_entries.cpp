@@ -137,6 +137,12 @@ void add_refusals(HealthReport& report, const std::vector<std::string>& realtime
   }
 }
 
+void add_missing_files(HealthReport& report, const std::string& missing) {
+  if (missing.empty()) return;
+  add_entry(report, "shared_memory", HealthLevel::kError,
+            "no program can attach until isobard restarts; poses go on; removed: " + missing, 0.0);
+}
+
 void add_library_faults(HealthReport& report, std::uint64_t now, std::uint64_t before) {
   add_count(report, "shared_memory/faults", now, before,
             "faults that the shared-memory library reported and survived");

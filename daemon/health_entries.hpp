@@ -66,6 +66,10 @@ void add_input(ipc::HealthReport& report, const SampleThreadStatus& now, const S
 /// One entry for each refused real-time setting, numbered because LevelChanges identifies entries by name.
 void add_refusals(ipc::HealthReport& report, const std::vector<std::string>& realtime_refusals);
 
+/// Error while files of shared memory are missing: no program can attach. Absent otherwise.
+/// @param missing names, see ipc::check_broker_files()
+void add_missing_files(ipc::HealthReport& report, const std::string& missing);
+
 /// Entry of the faults that the shared-memory library reported and survived, see ipc::library_fault_count().
 void add_library_faults(ipc::HealthReport& report, std::uint64_t now, std::uint64_t before);
 

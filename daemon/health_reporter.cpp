@@ -20,6 +20,7 @@ bool HealthReporter::fill(std::int64_t now_ns, ipc::HealthReport& report) {
   // Threads first: a full report drops the entries that come last.
   graph_.workers().fill(report);
   add_library_faults(report, faults, last_faults_);
+  add_missing_files(report, ipc::check_broker_files());
   graph_.fill_health(now_ns, report);
   for (const HealthSource& source : graph_.health_sources()) source(now_ns, report);
   add_refusals(report, refusals_);

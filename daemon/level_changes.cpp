@@ -23,6 +23,10 @@ bool is_fault(HealthLevel level, bool was_ok) {
 
 std::optional<LevelChange> LevelChanges::note(const std::string& name, HealthLevel level,
                                               const std::string& message, std::int64_t now_ns, double value) {
+  // That a count is stale says its sensor's or stage's own entry.
+  if (level == HealthLevel::kStale && name.find('/') != std::string::npos && !name.starts_with("bridge/")) {
+    return std::nullopt;
+  }
   const auto [place, is_new] = entries_.try_emplace(name);
   Entry& entry = place->second;
   const bool is_counter = name.find('/') != std::string::npos;

@@ -19,6 +19,7 @@
 #include "daemon/barometer_source.hpp"
 #include "daemon/base_station.hpp"
 #include "daemon/black_box.hpp"
+#include "daemon/broker_patience.hpp"
 #include "daemon/configuration.hpp"
 #include "daemon/graph.hpp"
 #include "daemon/health.hpp"
@@ -174,6 +175,7 @@ int main_with_errors(int argc, char** argv) {
   // Before the first thread, so that all threads inherit the blocked signals.
   Service service;
   black_box::block_save_signal();
+  wait_for_shared_memory(service);
   Configuration configuration(options.config_file, [&options](Config& config) {
     if (!options.output_directory.empty()) config.output.directory = options.output_directory;
   });

@@ -69,6 +69,7 @@ void Service::ready(const std::string& status) {
   sd_notify(0, status.empty() ? "READY=1" : ("READY=1\nSTATUS=" + status).c_str());
 }
 void Service::set_status(const std::string& status) { sd_notify(0, ("STATUS=" + status).c_str()); }
+void Service::extend_start() { sd_notify(0, "EXTEND_TIMEOUT_USEC=10000000"); }
 void Service::feed_watchdog() { sd_notify(0, "WATCHDOG=1"); }
 
 }  // namespace isobar

@@ -38,6 +38,8 @@ class Service {
   /// True once after each SIGHUP: `systemctl reload`, or the end of the terminal.
   [[nodiscard]] bool take_reload_request();
   void set_status(const std::string& status);
+  /// A start that takes longer: the service manager waits another ten seconds for ready().
+  void extend_start();
   void feed_watchdog();
 
  private:

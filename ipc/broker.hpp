@@ -4,7 +4,9 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <string>
 
 namespace isobar::ipc {
 
@@ -17,11 +19,23 @@ namespace isobar::ipc {
 using FatalAction = void (*)();
 void set_fatal_action(FatalAction action) noexcept;
 
+/// What a Broker does while files or locks of another user are in its way. Called about once a second with the
+/// reason, one sentence with the remedy; it waits, and returns false to give up. Default: gives up at once.
+using BrokerPatience = std::function<bool(const std::string& reason)>;
+void set_broker_patience(BrokerPatience patience);
+
+/// Checks the files by which other processes find the Broker of this process, and makes its lock file again if
+/// somebody has removed it. Call once a second; costs a few system calls.
+/// @return names of the files that were removed and cannot be made again, so that no process can attach any
+///         more until the Broker is made anew; empty: all are there. Attached processes keep their connection.
+[[nodiscard]] std::string check_broker_files();
+
 /// Creates the shared memory and serves the attached processes, in threads of its own.
 class Broker {
  public:
   /// @throws ServiceError when another isobard runs on this machine, when /dev/shm is too small (the text
-  ///         gives the MB needed and available), or when the system refuses shared memory
+  ///         gives the MB needed and available), when the system refuses shared memory, or when files of
+  ///         another user are in the way and the patience has ended, see set_broker_patience()
   Broker();
   /// Attached processes keep running but receive nothing more. Waits up to 2 s for them to detach.
   ~Broker();

@@ -13,17 +13,20 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "core/errors.hpp"
+#include "ipc/leftovers.hpp"
+#include "ipc/lock_table.hpp"
 
 namespace isobar::ipc {
 namespace {
 
-constexpr const char* kLockPath = "/dev/shm/isobar.lock";
-/// iceoryx's own lock file, held by any program that runs RouDi.
-constexpr const char* kLibraryLockPath = "/tmp/iox-unique-roudi.lock";
+constexpr const char* kLockPath = Rendezvous::kLock;
+/// Only the owner's group may attach.
+constexpr mode_t kLockMode = 0640;
 
 /// Byte ranges of the lock file: the owner has an exclusive lock on the first byte, each attached process a
 /// shared lock on the second.
@@ -41,16 +44,42 @@ struct flock lock_of(short type, off_t byte) {
 
 std::string errno_text() { return std::strerror(errno); }  // NOLINT(concurrency-mt-unsafe)
 
-/// Whether another program runs RouDi on this machine. Starting a second one would end this process inside
-/// the library.
-bool library_lock_is_held() {
-  const int descriptor = ::open(kLibraryLockPath, O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) {
-    return false;
+/// Owner of a file descriptor.
+class Descriptor {
+ public:
+  explicit Descriptor(int value) : value_(value) {}
+  ~Descriptor() {
+    if (value_ >= 0) {
+      ::close(value_);
+    }
   }
-  const bool held = ::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  ::close(descriptor);
-  return held;
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int get() const { return value_; }
+
+ private:
+  int value_;
+};
+
+std::string process_text(const HeldLock& held) {
+  return held.pid > 0 ? "process " + std::to_string(held.pid) : "another process";
+}
+
+/// Refuses to start beside another program that runs RouDi, which would end this process inside the library.
+/// A lock without a broker behind it is an obstacle that another user made.
+void require_free_library_lock() {
+  const char* path = Rendezvous::kLibraryLock;
+  std::optional<HeldLock> held = find_lock(path, /*is_flock=*/true);
+  if (!held) {
+    const Descriptor file(::open(path, O_RDONLY | O_CLOEXEC));
+    if (file.get() < 0 || ::flock(file.get(), LOCK_SH | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    held.emplace();
+  }
+  if (has_broker_of_owner(path)) {
+    throw ServiceError("another program serves iceoryx on this machine (it holds " + std::string(path) +
+                       "); stop it first: iox-roudi or a second isobard");
+  }
+  remove_obstacle(path, "is locked by " + process_text(*held));
 }
 
 bool read_instance(int descriptor, std::uint64_t& instance) noexcept {
@@ -71,6 +100,7 @@ bool has_attached(int descriptor) noexcept { return conflicts(descriptor, lock_o
 int open_announced(std::uint64_t& instance) {
   const int descriptor = ::open(kLockPath, O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) {
+    if (errno == EACCES) throw ServiceError(not_a_member(kLockPath));
     return -1;
   }
   // Lock first, then number: a number read while the lock is held belongs to the live owner.
@@ -83,23 +113,66 @@ int open_announced(std::uint64_t& instance) {
   return -1;
 }
 
-/// Opens the lock file and takes the owner's lock.
-/// @throws ServiceError when another process has it, or when the file cannot be opened
-int open_and_lock() {
-  // First without O_CREAT: fs.protected_regular, which Debian sets, refuses O_CREAT on a file that a killed
-  // isobard of another user left behind.
-  int descriptor = ::open(kLockPath, O_RDWR | O_CLOEXEC);
-  if (descriptor < 0 && errno == ENOENT) {
-    descriptor = ::open(kLockPath, O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+bool is_held(const char* path) {
+  if (find_lock(path, /*is_flock=*/false)) return true;
+  const Descriptor file(::open(path, O_RDONLY | O_CLOEXEC));  // where /proc/locks is hidden
+  return file.get() >= 0 && has_owner(file.get());
+}
+
+ServiceError another_isobard() {
+  return ServiceError("another isobard is running on this machine, of " + owner_text(kLockPath) +
+                      " (it holds " + kLockPath + "); stop it first");
+}
+
+/// Clears the place of the lock file, at which there is a file of another user.
+/// @throws ServiceError when an isobard of that user runs
+/// @throws ObstructedError when the file cannot be removed
+void clear_foreign_lock_file() {
+  if (!is_held(kLockPath)) {
+    require_free_library_lock();
+    remove_leftovers();
+    return;
   }
-  if (descriptor < 0) {
+  if (has_broker_of_owner(kLockPath)) throw another_isobard();
+  const auto held = find_lock(kLockPath, /*is_flock=*/false);
+  remove_obstacle(kLockPath, "is locked by " + process_text(held.value_or(HeldLock{})));
+}
+
+bool is_own(int descriptor) noexcept {
+  struct stat status {};
+  return ::fstat(descriptor, &status) == 0 && status.st_uid == ::geteuid();
+}
+
+/// Opens the lock file for writing; creates it if there is none.
+/// @return descriptor; -1: the file of another user was in the way and is gone
+int open_lock_file() {
+  // Without O_CREAT on a file that exists: fs.protected_regular, which Debian sets, refuses it in /dev/shm.
+  int descriptor = ::open(kLockPath, O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+  if (descriptor < 0 && errno == ENOENT) {
+    descriptor = ::open(kLockPath, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kLockMode);
+  }
+  if (descriptor < 0 && errno != EACCES && errno != ELOOP && errno != EEXIST) {
     throw ServiceError(std::string(kLockPath) + ": cannot be opened: " + errno_text());
   }
+  if (descriptor >= 0 && is_own(descriptor)) {
+    static_cast<void>(::fchmod(descriptor, kLockMode) == 0);  // whatever the umask
+    return descriptor;
+  }
+  if (descriptor >= 0) ::close(descriptor);
+  clear_foreign_lock_file();
+  return -1;
+}
+
+/// Opens the lock file and takes the owner's lock.
+/// @throws ServiceError when another isobard has it, or when the file cannot be opened
+/// @throws ObstructedError when a file or a lock of another user is in the way
+int open_and_lock() {
+  int descriptor = open_lock_file();
+  while (descriptor < 0) descriptor = open_lock_file();
   struct flock request = lock_of(F_WRLCK, kOwnerByte);
   if (::fcntl(descriptor, F_OFD_SETLK, &request) != 0) {
     ::close(descriptor);
-    throw ServiceError("another isobard is running on this machine (it holds " + std::string(kLockPath) +
-                       "); stop it first");
+    throw another_isobard();
   }
   return descriptor;
 }
@@ -112,23 +185,6 @@ bool is_in_place(int descriptor) noexcept {
          opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
 }
 
-/// Owner of a file descriptor.
-class Descriptor {
- public:
-  explicit Descriptor(int value) : value_(value) {}
-  ~Descriptor() {
-    if (value_ >= 0) {
-      ::close(value_);
-    }
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  [[nodiscard]] int get() const { return value_; }
-
- private:
-  int value_;
-};
-
 }  // namespace
 
 BrokerLock BrokerLock::acquire() {
@@ -138,10 +194,8 @@ BrokerLock BrokerLock::acquire() {
     descriptor = open_and_lock();
   }
   BrokerLock lock(descriptor);
-  if (library_lock_is_held()) {
-    throw ServiceError("another program serves iceoryx on this machine (it holds " +
-                       std::string(kLibraryLockPath) + "); stop it first: iox-roudi or a second isobard");
-  }
+  require_free_library_lock();
+  remove_leftovers();
   if (::ftruncate(descriptor, 0) != 0) {
     throw ServiceError(std::string(kLockPath) + ": cannot be written: " + errno_text());
   }
@@ -162,22 +216,44 @@ void BrokerLock::announce() {
 
 void BrokerLock::withdraw(std::chrono::milliseconds timeout) noexcept {
   static_cast<void>(::ftruncate(descriptor_, 0) == 0);
+  for (const int file : removed_) static_cast<void>(::ftruncate(file, 0) == 0);
+  const auto any_attached = [this] {
+    return has_attached(descriptor_) || std::any_of(removed_.begin(), removed_.end(), has_attached);
+  };
   const auto deadline = std::chrono::steady_clock::now() + timeout;
   // Polling, because fcntl(2) has no lock wait with a timeout. Only at the end of the program.
-  while (has_attached(descriptor_) && std::chrono::steady_clock::now() < deadline) {
+  while (any_attached() && std::chrono::steady_clock::now() < deadline) {
     ::poll(nullptr, 0, 10);
   }
 }
 
-BrokerLock::BrokerLock(BrokerLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+void BrokerLock::put_back() {
+  if (is_in_place(descriptor_)) return;
+  const int descriptor = ::open(kLockPath, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kLockMode);
+  struct flock request = lock_of(F_WRLCK, kOwnerByte);
+  std::uint64_t instance = 0;
+  if (descriptor < 0 || ::fcntl(descriptor, F_OFD_SETLK, &request) != 0 ||
+      !read_instance(descriptor_, instance) ||
+      ::pwrite(descriptor, &instance, sizeof(instance), 0) != static_cast<ssize_t>(sizeof(instance))) {
+    if (descriptor >= 0) ::close(descriptor);
+    return;
+  }
+  static_cast<void>(::fchmod(descriptor, kLockMode) == 0);
+  // The old file lives on: attached processes hold their locks on it.
+  removed_.push_back(std::exchange(descriptor_, descriptor));
+}
+
+BrokerLock::BrokerLock(BrokerLock&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)), removed_(std::move(other.removed_)) {}
 
 BrokerLock::~BrokerLock() {
   if (descriptor_ >= 0) {
     // Unlinked while locked, so that an isobard of another user can start next. If unlinking fails, the stale
     // instance number is harmless without the lock.
     static_cast<void>(::ftruncate(descriptor_, 0) == 0);
-    static_cast<void>(::unlink(kLockPath) == 0);
+    if (is_in_place(descriptor_)) static_cast<void>(::unlink(kLockPath) == 0);
     ::close(descriptor_);
+    for (const int file : removed_) ::close(file);
   }
 }
 

@@ -6,13 +6,16 @@
 
 #include <chrono>
 #include <cstdint>
+#include <vector>
 
 namespace isobar::ipc {
 
 /// The owner's side.
 class BrokerLock {
  public:
+  /// Removes what killed programs of whatever user left, as far as this user may.
   /// @throws ServiceError when another process owns the shared memory, or when the file cannot be written
+  /// @throws ObstructedError when files or locks of another user are in the way
   [[nodiscard]] static BrokerLock acquire();
   ~BrokerLock();
   BrokerLock(BrokerLock&& other) noexcept;
@@ -24,6 +27,10 @@ class BrokerLock {
   /// @throws ServiceError when the file cannot be written
   void announce();
 
+  /// Makes the lock file again if somebody has removed it: attaching finds a live owner, and no second owner
+  /// can start. Attached processes keep the old one.
+  void put_back();
+
   /// Clears the instance number, then waits until every attached process has detached: removing shared memory
   /// that is in use can crash both sides.
   /// @param timeout longest wait
@@ -32,6 +39,7 @@ class BrokerLock {
  private:
   explicit BrokerLock(int descriptor) : descriptor_(descriptor) {}
   int descriptor_;
+  std::vector<int> removed_;  // lock files that were removed by somebody
 };
 
 /// The side of an attached process. While it exists, the owner counts this process as attached.
@@ -39,7 +47,7 @@ class BrokerWatch {
  public:
   /// Waits until an owner has announced itself.
   /// @param timeout longest wait; 0: one attempt
-  /// @throws ServiceError when there is none within the timeout
+  /// @throws ServiceError when there is none within the timeout, or at once when this user may not attach
   [[nodiscard]] static BrokerWatch find(std::chrono::milliseconds timeout);
   ~BrokerWatch();
   BrokerWatch(BrokerWatch&& other) noexcept;

@@ -3,6 +3,7 @@
 
 #include <sys/stat.h>
 #include <sys/statvfs.h>
+#include <unistd.h>
 
 #include <iceoryx_hoofs/posix_wrapper/posix_access_rights.hpp>
 #include <iceoryx_posh/roudi/iceoryx_roudi_components.hpp>
@@ -10,11 +11,13 @@
 #include <iostream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/errors.hpp"
 #include "ipc/broker_lock.hpp"
 #include "ipc/iceoryx/library_errors.hpp"
 #include "ipc/iceoryx/roudi.hpp"
+#include "ipc/leftovers.hpp"
 #include "ipc/topics.hpp"
 
 namespace isobar::ipc {
@@ -88,6 +91,25 @@ iox::RouDiConfig_t memory_config() {
 
 }  // namespace
 
+namespace {
+
+// Of the one Broker of this process; main thread.
+BrokerPatience g_patience;            // NOLINT(cert-err58-cpp)
+BrokerLock* g_broker_lock = nullptr;  // null: no Broker
+std::vector<std::string> g_files;     // that other processes need to attach
+
+BrokerLock acquire_patiently() {
+  for (;;) {
+    try {
+      return BrokerLock::acquire();
+    } catch (const ObstructedError& error) {
+      if (!g_patience || !g_patience(error.what())) throw;
+    }
+  }
+}
+
+}  // namespace
+
 struct Broker::Impl {
   BrokerLock lock;
   iox::roudi::IceOryxRouDiComponents components;
@@ -103,14 +125,35 @@ struct Broker::Impl {
 
 Broker::Broker() {
   prepare_library();
-  BrokerLock lock = BrokerLock::acquire();
+  BrokerLock lock = acquire_patiently();
   require_space();
   const MutedStreams muted;
   impl_ = std::make_unique<Impl>(std::move(lock));
   impl_->lock.announce();
+  g_broker_lock = &impl_->lock;
+  for (const char* path : {Rendezvous::kManagement, "/tmp/roudi", Rendezvous::kLibraryLock}) {
+    g_files.push_back(path);
+  }
+  g_files.push_back("/dev/shm/" + std::string(group_of_process()));
 }
 
-Broker::~Broker() { impl_->lock.withdraw(kDetachTimeout); }
+Broker::~Broker() {
+  g_broker_lock = nullptr;
+  g_files.clear();
+  impl_->lock.withdraw(kDetachTimeout);
+}
+
+void set_broker_patience(BrokerPatience patience) { g_patience = std::move(patience); }
+
+std::string check_broker_files() {
+  if (g_broker_lock == nullptr) return {};
+  g_broker_lock->put_back();
+  std::string missing;
+  for (const std::string& path : g_files) {
+    if (::access(path.c_str(), F_OK) != 0) missing += (missing.empty() ? "" : ", ") + path;
+  }
+  return missing;
+}
 
 std::uint64_t Broker::needed_bytes() noexcept {
   std::uint64_t bytes = kManagementBytes;

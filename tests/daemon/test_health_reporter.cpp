@@ -80,6 +80,28 @@ TEST_CASE(
   CHECK(find(later, "shared_memory/faults")->level == ipc::HealthLevel::kOk);
 }
 
+TEST_CASE("removed files of shared memory are an error that names them; without any there is no entry") {
+  ipc::HealthReport report;
+  add_missing_files(report, "");
+  CHECK(report.entry_count == 0);
+  add_missing_files(report, "/dev/shm/iceoryx_mgmt");
+  REQUIRE(find(report, "shared_memory") != nullptr);
+  CHECK(find(report, "shared_memory")->level == ipc::HealthLevel::kError);
+  CHECK(std::string(find(report, "shared_memory")->message).ends_with("removed: /dev/shm/iceoryx_mgmt"));
+}
+
+TEST_CASE("parts of the program add entries of their own") {
+  TalkativeGraph graph(0);
+  graph.add_health([](std::int64_t, ipc::HealthReport& report) {
+    add_entry(report, "disk", ipc::HealthLevel::kError, "full", 0.0);
+  });
+  HealthReporter reporter(graph, {});
+  ipc::HealthReport report;
+  CHECK(reporter.fill(1'000'000'000, report));
+  REQUIRE(find(report, "disk") != nullptr);
+  CHECK(std::string(report.entries[0].message) == "disk: full");
+}
+
 TEST_CASE("health is reported once a second, and at once when the barometer fails or recovers") {
   ReportSchedule schedule;
   std::int64_t now_ns = 5'000'000'000;

@@ -40,6 +40,7 @@ TEST_CASE("the log gets a line when a level changes, without level words, and no
   CHECK(text("imu", HealthLevel::kOk, "200.0 per second", 3) == "recovered: 200.0 per second");
   CHECK(text("lidar/lost", HealthLevel::kOk, "ok from the start", 0) == "nothing");
   CHECK(text("lidar/garbage", HealthLevel::kWarning, "17", 0) == "17");
+  CHECK(text("lidar/deadline", HealthLevel::kStale, "no scans for 2 s", 0) == "nothing");
 }
 
 TEST_CASE("data that never came is awaited, data that no longer comes is a fault") {

@@ -9,9 +9,12 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <thread>
 #include <vector>
 
+#include "core/errors.hpp"
 #include "drivers/clock/robot_clock.hpp"
+#include "ipc/service_view.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar::tools {
@@ -27,11 +30,24 @@ struct HealthReader::Impl {
   ipc::Subscriber<ipc::HealthReport> reports{ipc::topics::kHealth};
   ipc::Waiter waiter{{&reports.raw()}};
 
-  Impl(const char* program, std::chrono::milliseconds timeout) : attachment(program, timeout) {}
+  explicit Impl(const char* program) : attachment(program, std::chrono::milliseconds(0)) {}
 };
 
-HealthReader::HealthReader(const char* program, std::chrono::milliseconds timeout)
-    : impl_(std::make_unique<Impl>(program, timeout)) {}
+HealthReader::HealthReader(const char* program, std::chrono::milliseconds timeout) {
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  bool said = false;
+  while (!impl_) {
+    try {
+      impl_ = std::make_unique<Impl>(program);
+    } catch (const ServiceError& error) {
+      if (std::chrono::steady_clock::now() >= deadline) throw;
+      if (!said) std::fprintf(stderr, "isobar: %s; waiting\n", error.what());
+      said = true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+      ipc::enter_service_view();
+    }
+  }
+}
 
 HealthReader::~HealthReader() = default;
 

@@ -107,16 +107,17 @@ std::string estimate_rows(const ipc::ServiceStatus& status) {
     out +=
         row("pose", fmt::format("x {:.3f}  y {:.3f}  z {:.3f} m   yaw {:.1f}  pitch {:.1f}  roll {:.1f} deg",
                                 pose.x_m, pose.y_m, pose.z_m, pose.yaw_deg, pose.pitch_deg, pose.roll_deg));
-    out += row("", fmt::format("{} ({}), overlap {:.2f}; sd xy {:.3f} m, z {:.3f} m, yaw {:.2f} deg; {} old",
-                               pose.mode, pose.method, pose.overlap, pose.xy_sd_m, pose.z_sd_m,
-                               pose.yaw_sd_deg, duration(pose.age_s)));
+    out += row("", fmt::format("{} ({}), overlap {:.2f}, {} old", pose.mode, pose.method, pose.overlap,
+                               duration(std::max(0.0, pose.age_s))));
+    out += row("", fmt::format("sd xy {:.3f} m, z {:.3f} m, yaw {:.2f} deg", pose.xy_sd_m, pose.z_sd_m,
+                               pose.yaw_sd_deg));
   }
   if (height.source[0] == '\0') {
     out += row("height", "none yet");
   } else {
-    out += row("height", fmt::format("{:.3f} m, sd {:.3f} m; {}; bias {:.3f} m, sd {:.3f} m; {} old",
-                                     height.height_m, height.sd_m, height.source, height.bias_m,
-                                     height.bias_sd_m, duration(height.age_s)));
+    out += row("height", fmt::format("{:.3f} m, sd {:.3f} m; {}, {} old", height.height_m, height.sd_m,
+                                     height.source, duration(std::max(0.0, height.age_s))));
+    out += row("", fmt::format("bias {:.3f} m, sd {:.3f} m", height.bias_m, height.bias_sd_m));
   }
   const std::string disk = map.on_disk ? fmt::format("{} tiles, {:.1f} MB on disk", map.tiles,
                                                      static_cast<double>(map.disk_bytes) * 1e-6)
