@@ -25,5 +25,6 @@ void add_metrics_command(CLI::App& app);    ///< the same for Prometheus
 void add_record_command(CLI::App& app);     ///< running isobard -> recording
 void add_black_box_command(CLI::App& app);  ///< orders to the black box of the running isobard
 void add_echo_command(CLI::App& app);       ///< prints what a DDS subscriber receives
+void add_keys_command(CLI::App& app);       ///< keys that sign base-station pressure
 
 }  // namespace isobar::tools
