@@ -7,6 +7,7 @@
 #include "config/setting_rules.hpp"
 #include "config/value_text.hpp"
 #include "core/errors.hpp"
+#include "ipc/keys/limits.hpp"
 
 namespace isobar {
 namespace {
@@ -127,6 +128,9 @@ void check_together(const Config& config, const PlaceOfKey& place_of, Problems& 
   check_topic_names(config.dds.topics, rules);
   rules.require(config.dds.second_base_station != config.dds.base_station, "dds.second_base_station",
                 "must differ from dds.base_station");
+  rules.require(config.dds.keys_directory.empty() || config.dds.domain_id <= keys::kLastDomain,
+                "dds.domain_id",
+                "must be at most 230 with dds.keys_directory: DDS security knows no higher one");
   if (config.role == Role::kRobot) check_frames(config.dds, rules);
   problems.attempt([&] {
     check_compensation(config.prior.compensation,

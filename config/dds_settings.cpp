@@ -122,6 +122,10 @@ void add_dds_settings(dds::DdsConfig& dds, std::vector<Setting>& settings) {
          "Name of the base station, whose topics are NAME/fluid_pressure and NAME/temperature. A robot "
          "listens to it; a base station bears it, also as its frame.")
       .basic();
+  s.text(
+      "keys_directory", dds.keys_directory, TextRule::kAny,
+      "Folder with the keys of this machine, made by `isobar keys`; customary is /etc/isobar/keys. A base "
+      "station signs its pressure with them, a robot then accepts none that is not signed. Empty: unsigned.");
   s.used_by(UsedBy::kRobot);
   add_frames(dds, s);
   add_outputs(dds, s);

@@ -112,6 +112,8 @@ void add_input(HealthReport& report, const SampleThreadStatus& now, const Sample
             "baro lines refused: barometer.source is not input");
   add_count(report, "input/not_of_this_role", now.not_of_this_role, before.not_of_this_role,
             "IMU, wheel and base samples, which a base station does not use");
+  add_count(report, "input/unsigned_base", now.unsigned_base, before.unsigned_base,
+            "base lines refused: they carry no signature, and dds.keys_directory is set");
   add_count(report, "input/clock_steps", now.clock_steps, before.clock_steps,
             "times that a sender's clock was set");
   add_count(report, "input/dropped_by_kernel", now.dropped_by_kernel, before.dropped_by_kernel,

@@ -59,7 +59,8 @@ class RobotGraph final : public Graph {
                       scheduling_.registration),
         prior_(stages_.prior, scheduling_.prior),
         barometer_(make_barometer_thread(config.barometer, scheduling_.barometer)),
-        samples_(config.input.address, config.input.port, {.barometer = barometer_ == nullptr},
+        samples_(config.input.address, config.input.port,
+                 {.barometer = barometer_ == nullptr, .unsigned_base = config.dds.keys_directory.empty()},
                  config.input.senders, scheduling_.inertial),
         lidar_(stages_.lidar, config.lidar, scheduling_.lidar),
         output_(files_.checkpoint_file().empty()

@@ -51,7 +51,11 @@ datagram::Admission SampleInput::admission(const datagram::Sample& sample,
     ++(is_barometer ? status_.refused_pressure : status_.not_of_this_role);
     return Admission::kSkip;
   }
-  if (sample.kind == datagram::Kind::kBasePressure) return base_admission();
+  if (sample.kind == datagram::Kind::kBasePressure) {
+    if (takes_.unsigned_base) return base_admission();
+    ++status_.unsigned_base;
+    return Admission::kSkip;
+  }
   SenderLock& sender = streams_[static_cast<std::size_t>(sample.kind)].sender;
   if (status != datagram::LineStatus::kOk) {
     // Only a good line makes a sender known.

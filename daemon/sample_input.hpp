@@ -20,6 +20,7 @@ struct SampleInputStatus {
   std::uint64_t clock_steps = 0;  ///< times that a sender's clock was set, other than with the system clock
   std::uint64_t refused_pressure = 0;  ///< pressure datagrams while this machine reads the barometer itself
   std::uint64_t not_of_this_role = 0;  ///< IMU, wheel and base samples received by a base station
+  std::uint64_t unsigned_base = 0;     ///< base samples while dds.keys_directory is set
   std::uint64_t not_allowed = 0;       ///< datagrams of senders that input.senders does not name
   std::uint32_t not_allowed_ipv4 = 0;  ///< the newest of these senders
   std::array<SenderStatus, datagram::kKinds> senders;  ///< by Kind; base stations: see `base`
@@ -40,6 +41,8 @@ class SampleInput {
   struct Takes {
     bool barometer = true;  ///< false where a BarometerThread writes the barometer topic
     bool others = true;     ///< false on a base station
+    /// Base-station pressure, which in a datagram is not signed; false where dds.keys_directory is set.
+    bool unsigned_base = true;
   };
   SampleInput(Takes takes, std::vector<std::uint32_t> allowed);
 

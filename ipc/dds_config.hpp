@@ -73,6 +73,8 @@ struct DdsConfig {
   std::string base_station = "base";
   /// Name of a second base station that a robot listens to; empty: none.
   std::string second_base_station;
+  /// Folder with the keys of this machine (ipc/keys); empty: base-station pressure is neither signed nor checked.
+  std::string keys_directory;
   /// Receive the base stations' pressure over DDS.
   bool receive_base_pressure = true;
   /// Receive the robot's own sensors from imu/data and wheel/odom, for robots whose drivers are ROS 2 nodes.

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "daemon/base_station_health.hpp"
+#include "daemon/bridge/key_health.hpp"
 #include "daemon/logging.hpp"
 #include "drivers/clock/robot_clock.hpp"
 
@@ -137,6 +138,8 @@ std::string Forwarding::configuration() const {
 
 void Forwarding::put_received(const ReceivedCounts& counts) noexcept { received_.put(counts); }
 
+void Forwarding::put_keys(const KeyStatus& status) noexcept { keys_.put(status); }
+
 void Forwarding::forward_health() {
   const auto report = health_in_.take_latest();
   if (!report && steady_ns() - last_report_ns_ < kMissingReportNs) {
@@ -217,6 +220,8 @@ void Forwarding::add_own_health() {
   add_count("bridge/shared_memory_faults", ipc::library_fault_count(), "errors in the iceoryx library");
   add_count("bridge/received_too_early", received.too_early, "received before isobard could take it");
   add_station_health(received);
+  add_key_health(keys_.get(), [this](const std::string& name, HealthLevel level, const std::string& message,
+                                     double number) { add(name, level, message, number); });
 }
 
 void Forwarding::add_station_health(const ReceivedCounts& received) {

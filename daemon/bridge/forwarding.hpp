@@ -17,6 +17,7 @@
 #include "daemon/bridge/network.hpp"
 #include "daemon/bridge/outputs.hpp"
 #include "daemon/bridge/receiving.hpp"
+#include "daemon/bridge/station_keys.hpp"
 #include "daemon/health_summary.hpp"
 #include "daemon/level_changes.hpp"
 #include "daemon/seq_lock.hpp"
@@ -49,6 +50,8 @@ class Forwarding {
   [[nodiscard]] std::string configuration() const;
   /// Passes on the counts of the opposite direction, for the diagnostics. One thread.
   void put_received(const ReceivedCounts& counts) noexcept;
+  /// Passes on the status of the keys, for the diagnostics. One thread.
+  void put_keys(const KeyStatus& status) noexcept;
   [[nodiscard]] const IsobardClock& clock() const noexcept { return clock_; }
   /// Rounds of the pose thread: constant only while that thread hangs.
   [[nodiscard]] std::uint64_t rounds() const noexcept { return rounds_.load(std::memory_order_relaxed); }
@@ -95,6 +98,7 @@ class Forwarding {
   std::atomic<std::uint64_t> clouds_dropped_{0};
   std::atomic<std::uint64_t> cloud_failures_{0};
   SeqLock<ReceivedCounts> received_;
+  SeqLock<KeyStatus> keys_;
   ReceivedCounts last_received_;                      ///< pose thread
   std::map<std::string, std::uint64_t> last_counts_;  ///< pose thread, as all below
   ipc::HealthReport own_;                             ///< entries of the bridge

@@ -25,6 +25,7 @@
 #include "daemon/logging.hpp"
 #include "daemon/service.hpp"
 #include "ipc/dds/library_log.hpp"
+#include "ipc/dds/refused_members.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar::bridge {
@@ -53,6 +54,7 @@ std::int64_t library_clock_ns() {
 }
 
 void log_library_line(bool is_error, std::string_view line) noexcept {
+  if (dds::note_refusal(line)) return;
   const auto text = g_library_lines.note(line, library_clock_ns());
   if (text) spdlog::log(is_error ? spdlog::level::err : spdlog::level::warn, "Cyclone DDS: {}", *text);
 }
@@ -82,6 +84,7 @@ class Connection {
   /// @return true when the pose thread has completed a round since the last call
   bool check() {
     if (receiving_) forwarding_.put_received(receiving_->counts());
+    forwarding_.put_keys(network_.keys().status());
     if (const auto reason = reason_to_restart()) {
       spdlog::warn("{}; restarting", *reason);
       // No detaching from shared memory: that blocks without isobard, and the restarted program does not need
@@ -110,7 +113,7 @@ class Connection {
   void receive() {
     forwarding_.put_network(network_.state());
     if (!network_.is_up()) return;
-    receiving_.emplace(network_.participant(), settings_, forwarding_.clock());
+    receiving_.emplace(network_.participant(), network_.keys().participant(), settings_, forwarding_.clock());
     network_.announce(receiving_->readers());
   }
 

@@ -46,7 +46,10 @@ dds::ParticipantSettings participant_settings(const Settings& settings) {
 }  // namespace
 
 Network::Network(const Settings& settings, Outputs& outputs)
-    : settings_(settings), outputs_(outputs), participant_settings_(participant_settings(settings)) {
+    : settings_(settings),
+      outputs_(outputs),
+      participant_settings_(participant_settings(settings)),
+      keys_(settings) {
   for (const std::string& note : settings.environment.notes) spdlog::info("{}", note);
 }
 
@@ -65,7 +68,7 @@ bool Network::is_due() {
   const bool has_changed = is_stable && !(choice == chosen_);
   last_seen_ = std::move(choice);
   remind(now_ns);
-  return has_changed || (!participant_ && now_ns >= next_attempt_ns_);
+  return has_changed || (participant_ && keys_.is_due()) || (!participant_ && now_ns >= next_attempt_ns_);
 }
 
 void Network::renew() {
@@ -80,7 +83,8 @@ void Network::renew() {
       throw ServiceError("no network interface is up, not even loopback (ip link set lo up)");
     }
     participant_.emplace(participant_settings_, chosen_);
-    outputs_.open(participant_->get());
+    keys_.open(participant_settings_, chosen_.used, participant_->get());
+    outputs_.open(participant_->get(), keys_.participant());
     announcement_.emplace(participant_->get(), settings_.dds.ros_gid_bytes);
     announce({});
   } catch (const ServiceError& error) {
@@ -94,10 +98,12 @@ void Network::renew() {
 void Network::close() noexcept {
   announcement_.reset();
   outputs_.close();
+  keys_.close();
   participant_.reset();
 }
 
 void Network::leave() noexcept {
+  keys_.leave();
   if (participant_) dds_delete(participant_->get());
 }
 

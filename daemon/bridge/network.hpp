@@ -9,6 +9,7 @@
 
 #include "daemon/bridge/outputs.hpp"
 #include "daemon/bridge/settings.hpp"
+#include "daemon/bridge/station_keys.hpp"
 #include "ipc/dds/discovery.hpp"
 #include "ipc/dds/participant.hpp"
 #include "ipc/topics.hpp"
@@ -32,8 +33,9 @@ class Network {
   Network(const Network&) = delete;
   Network& operator=(const Network&) = delete;
 
-  /// Looks at the interfaces, twice a second. Logs what is waited for, at once and then every minute.
-  /// @return true when renew() is due: the interfaces have changed, or DDS is down
+  /// Looks at the interfaces, twice a second, and at the keys. Logs what is waited for, at once and then every
+  /// minute.
+  /// @return true when renew() is due: interfaces or keys have changed, or DDS is down
   bool is_due();
   /// Closes the outputs, makes the participant anew and opens them again. Logs the interfaces, or why there
   /// are none; then is_up() is false, and another attempt is due a second later. Entities of others in the
@@ -50,6 +52,7 @@ class Network {
   /// @throws ServiceError when the message cannot be written
   void announce(const std::vector<dds_entity_t>& readers);
   [[nodiscard]] NetworkState state() const;
+  [[nodiscard]] StationKeys& keys() noexcept { return keys_; }
 
   /// Tells the other participants that this one ends, without waiting.
   void leave() noexcept;
@@ -69,6 +72,7 @@ class Network {
   dds::InterfaceChoice chosen_;     ///< of the last renew()
   dds::InterfaceChoice last_seen_;  ///< of the last look
   std::optional<dds::Participant> participant_;
+  StationKeys keys_;  ///< opened and closed with the participant
   std::optional<dds::NodeAnnouncement> announcement_;
   std::string failure_;  ///< of the last renew(); empty: none
   std::string logged_;   ///< last line about the interfaces

@@ -27,12 +27,13 @@ struct Outputs {
     if (settings.dds.publish_clouds) clouds.emplace(settings.dds);
   }
 
+  /// @param for_station participant of the base station's topics; 0: these stay closed
   /// @throws ServiceError when a DDS entity cannot be created
-  void open(dds_entity_t participant) {
+  void open(dds_entity_t participant, dds_entity_t for_station) {
     diagnostics.emplace(participant, dds::topics::kDiagnostics, "", diagnostics_name_);
     if (poses) poses->open(participant);
     if (clouds) clouds->open(participant);
-    if (station) station->open(participant);
+    if (station && for_station != 0) station->open(for_station);
   }
   void close() noexcept {
     diagnostics.reset();

@@ -20,24 +20,26 @@ std::int64_t IsobardClock::now_ns() const noexcept {
   return monotonic_ns() + offset_ns_.load(std::memory_order_relaxed);
 }
 
-Receiving::Receiving(dds_entity_t participant, const Settings& settings, const IsobardClock& clock)
+Receiving::Receiving(dds_entity_t participant, dds_entity_t of_stations, const Settings& settings,
+                     const IsobardClock& clock)
     : clock_(clock) {
   const dds::DdsConfig& config = settings.dds;
   const auto open = [&](auto& stream, const auto& from, const std::string& name, const auto& to) {
     stream.emplace(participant, from, config.ros_namespace, name, to);
   };
-  if (config.receive_base_pressure && !settings.is_base_station) {
+  if (config.receive_base_pressure && !settings.is_base_station && of_stations != 0) {
     base_pressure_.emplace(ipc::topics::kBaseBarometer);
-    stations_.push_back(std::make_unique<StationInput>(participant, config, config.base_station, 0));
+    stations_.push_back(std::make_unique<StationInput>(of_stations, config, config.base_station, 0));
     if (!config.second_base_station.empty()) {
-      stations_.push_back(std::make_unique<StationInput>(participant, config, config.second_base_station, 1));
+      stations_.push_back(std::make_unique<StationInput>(of_stations, config, config.second_base_station, 1));
     }
   }
   if (config.receive_sensors && !settings.is_base_station) {
     open(imu_, dds::topics::kImu, config.topics.imu, ipc::topics::kImu);
     open(wheel_, dds::topics::kWheel, config.topics.wheel, ipc::topics::kWheel);
   }
-  waitset_ = dds::checked(dds_create_waitset(participant), "wait set");
+  // Not of a participant: such a wait set would refuse the readers of the other one.
+  waitset_ = dds::checked(dds_create_waitset(DDS_CYCLONEDDS_HANDLE), "wait set");
   stop_ = dds::checked(dds_create_guardcondition(participant), "guard condition");
   dds_waitset_attach(waitset_.get(), stop_.get(), 0);
   const auto attach = [this](const auto& stream) {

@@ -51,8 +51,10 @@ struct ReceivedCounts {
 /// Readers of the configured topics, and the thread that forwards their samples.
 class Receiving {
  public:
+  /// @param of_stations participant of the base stations' topics; 0: they are not received
   /// @throws ServiceError when a DDS entity cannot be created
-  Receiving(dds_entity_t participant, const Settings& settings, const IsobardClock& clock);
+  Receiving(dds_entity_t participant, dds_entity_t of_stations, const Settings& settings,
+            const IsobardClock& clock);
   ~Receiving();
   Receiving(const Receiving&) = delete;
   Receiving& operator=(const Receiving&) = delete;

@@ -29,7 +29,8 @@ struct Inputs {
   std::uint64_t taken = 0;
   datagram::Sample newest;
 
-  explicit Inputs(std::vector<std::uint32_t> allowed = {}) : input({}, std::move(allowed)) {}
+  explicit Inputs(std::vector<std::uint32_t> allowed = {}, SampleInput::Takes takes = {})
+      : input(takes, std::move(allowed)) {}
 
   [[nodiscard]] std::int64_t robot_ns() const { return monotonic_ns + kStart; }
   [[nodiscard]] std::int64_t system_ns() const { return robot_ns() + set_by_ns; }
@@ -129,6 +130,17 @@ TEST_CASE("A sender that falls silent is followed by another one, whose sequence
   CHECK(status.senders[0].takeovers == 1);
   CHECK(status.counters.lost[0] == 0);
   CHECK(status.counters.duplicated[0] == 0);
+}
+
+TEST_CASE("With keys, base-station pressure in datagrams is refused and counted, and nothing else") {
+  Inputs inputs({}, {.unsigned_base = false});
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    CHECK(inputs.give(pressure_line("base", i, inputs.system_ns(), 98'000.0 + i)) == 0);
+    CHECK(inputs.give(pressure_line("baro", i, inputs.system_ns(), 97'000.0 + i)) == 1);
+    CHECK(inputs.give(imu_line(i, inputs.system_ns())) == 1);
+  }
+  CHECK(inputs.input.status().unsigned_base == 100);
+  CHECK_FALSE(inputs.input.status().base.heard());
 }
 
 TEST_CASE("Only senders that input.senders names are taken") {

@@ -133,10 +133,34 @@ class Robot {
     return diagnostics_.receive(
         1, [&](const auto& message) { return test::says(message, "isobar: " + entry, level); });
   }
+  /// Whether the bridge still is the process that was started.
+  bool is_same_bridge() {
+    return bridge_.running() && !bridge_.read_until("restarting", std::chrono::milliseconds(100));
+  }
+  /// The diagnostics' text of the entry; empty: none.
+  std::string text(const std::string& entry) {
+    std::string found;
+    diagnostics_.receive(1, [&](const auto& message) {
+      found = text_of(message, "isobar: " + entry);
+      return !found.empty();
+    });
+    return found;
+  }
   /// Waits for the next samples that isobard receives, up to 20 s.
-  std::vector<Got> receive(std::size_t wanted) {
+  std::vector<Got> receive(std::size_t wanted) { return receive(wanted, std::chrono::seconds(20)); }
+  /// The samples that isobard receives in this time.
+  std::vector<Got> receive_for(std::chrono::milliseconds time) { return receive(SIZE_MAX, time); }
+  /// Discards the samples that isobard has received so far.
+  void forget() {
+    std::string line;
+    while (stand_in_.read_line(line, std::chrono::milliseconds(0))) {
+    }
+  }
+
+ private:
+  std::vector<Got> receive(std::size_t wanted, std::chrono::milliseconds limit) {
     std::vector<Got> samples;
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    const auto deadline = std::chrono::steady_clock::now() + limit;
     std::string line;
     while (samples.size() < wanted && std::chrono::steady_clock::now() < deadline) {
       Got got;
@@ -148,14 +172,7 @@ class Robot {
     }
     return samples;
   }
-  /// Discards the samples that isobard has received so far.
-  void forget() {
-    std::string line;
-    while (stand_in_.read_line(line, std::chrono::milliseconds(0))) {
-    }
-  }
 
- private:
   std::shared_ptr<dds::Participant> participant_;
   Listener<dds::DiagnosticsMessage> diagnostics_;
   ChildProcess stand_in_;
