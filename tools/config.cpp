@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `isobar config`: checks a configuration, prints the settings.
+// `isobar config`: checks a configuration, prints the settings, proposes a file.
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,10 +13,13 @@
 #include "config/end_mark.hpp"
 #include "config/problems.hpp"
 #include "config/setting.hpp"
+#include "core/errors.hpp"
 #include "daemon/stage_settings.hpp"
 #include "run/recording/manifest.hpp"
 #include "run/text/small_file.hpp"
 #include "tools/commands.hpp"
+#include "tools/config_proposal.hpp"
+#include "tools/machine_survey.hpp"
 
 namespace isobar::tools {
 namespace {
@@ -59,6 +64,50 @@ void add_seal(CLI::App& command) {
   });
 }
 
+/// What `isobar config init` is asked for.
+struct InitOptions {
+  std::string file;
+  std::string root = "/";
+  double listen_s = 2.0;
+};
+
+/// Writes a new file; an existing one stays.
+void write_new(const std::string& file, const std::string& text) {
+  std::FILE* out = std::fopen(file.c_str(), "wxe");
+  if (out == nullptr) {
+    throw ServiceError(file + (errno == EEXIST
+                                   ? ": exists; `isobar config init` overwrites nothing"
+                                   : std::string(": cannot be written: ") + std::strerror(errno)));
+  }
+  const bool written = std::fwrite(text.data(), 1, text.size(), out) == text.size();
+  if (std::fclose(out) != 0 || !written) throw ServiceError(file + ": cannot be written");
+}
+
+void add_init(CLI::App& command) {
+  CLI::App* init = command.add_subcommand(
+      "init",
+      "Look at this machine (I2C, kernel drivers, serial lines, lidars that send) and propose a file");
+  const auto options = std::make_shared<InitOptions>();
+  init->add_option("FILE", options->file, "new file to write; without it the proposal is printed");
+  init->add_option("--listen", options->listen_s, "time to listen for lidars [s]")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
+  init->add_option("--root", options->root, "folder with dev and sys, to look at another machine's")
+      ->capture_default_str();
+  init->callback([options] {
+    Survey survey;
+    survey_devices(options->root, survey);
+    if (options->listen_s > 0.0) survey_lidars(options->listen_s, survey);
+    const std::string text = proposal(survey);
+    if (options->file.empty()) {
+      print(text);
+    } else {
+      write_new(options->file, text);
+      std::printf("%s: written; check the mounts\n", options->file.c_str());
+    }
+  });
+}
+
 /// What `isobar config show` is asked for.
 struct ShowOptions {
   std::string file;
@@ -100,11 +149,13 @@ void add_show(CLI::App& command) {
 }  // namespace
 
 void add_config_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("config", "Check a configuration or print the settings");
+  CLI::App* command =
+      app.add_subcommand("config", "Check a configuration, print the settings, propose a file");
   command->require_subcommand(1);
   add_check(*command);
   add_show(*command);
   add_seal(*command);
+  add_init(*command);
 }
 
 }  // namespace isobar::tools

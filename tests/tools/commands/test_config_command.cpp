@@ -35,4 +35,23 @@ TEST_CASE("isobar config ends with 0 for a valid file, 78 for a bad one and 64 f
   CHECK(config({}) == 64);
 }
 
+TEST_CASE("isobar config check lists every error; seal makes a file that shows when it is cut") {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "a.toml").string();
+  files::write_text_file(file, "dds.domain_id = 7\n");
+  CHECK(config({"seal", file}) == 0);
+  CHECK(config({"seal", (folder.path() / "none").string()}) == 78);
+  files::write_text_file(file, "dds.domain_id = 233\nlidar.port = 0\n");
+  CHECK(config({"check", file}) == 78);
+}
+
+TEST_CASE("isobar config init writes a file that checks, and overwrites nothing") {
+  const TemporaryFolder folder;
+  const std::string root = folder.path().string();
+  const std::string file = (folder.path() / "isobar.toml").string();
+  CHECK(config({"init", file, "--root", root, "--listen", "0"}) == 0);
+  CHECK(config({"check", file}) == 0);
+  CHECK(config({"init", file, "--root", root, "--listen", "0"}) == 69);
+}
+
 }  // namespace isobar::test::test_config_command

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `isobar config init`: what is looked at, and what is proposed.
+#include "tools/config_proposal.hpp"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "config/config_io.hpp"
+#include "drivers/udp/udp.hpp"
+#include "drivers/velodyne/packet_format.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tools/machine_survey.hpp"
+
+namespace isobar::test::test_config_proposal {
+
+namespace {
+
+namespace fs = std::filesystem;
+using tools::proposal;
+using tools::Survey;
+
+/// A machine's dev and sys.
+class Machine {
+ public:
+  void add(const std::string& file, const std::string& text = "") const {
+    fs::create_directories((root() / file).parent_path());
+    std::ofstream(root() / file) << text;
+  }
+  [[nodiscard]] fs::path root() const { return folder_.path(); }
+  [[nodiscard]] Survey survey() const {
+    Survey survey;
+    survey_devices(root(), survey);
+    return survey;
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+std::size_t settings_in(const std::string& text) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(" = "); at != std::string::npos; at = text.find(" = ", at + 1)) ++count;
+  return count;
+}
+
+bool has(const std::string& text, const std::string& words) {
+  CAPTURE(text);
+  return text.find(words) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a machine with nothing gets a file of ten lines that says what was not found") {
+  const std::string text = proposal(Machine().survey());
+  CHECK_NOTHROW(parse_config(text, "c.toml"));
+  CHECK(settings_in(text) <= 10);
+  CHECK(has(text, "# No lidar was heard on UDP port 2368"));
+  CHECK(has(text, "# No barometer was found (I2C buses: none)"));
+  CHECK(has(text, "# Serial lines: none. GPIO chips: none."));
+}
+
+TEST_CASE("a barometer with a kernel driver is proposed; other devices with a driver are not") {
+  const Machine machine;
+  machine.add("sys/bus/iio/devices/iio:device0/name", "ads1115\n");
+  machine.add("sys/bus/iio/devices/iio:device0/in_voltage0_raw", "1\n");
+  machine.add("sys/bus/iio/devices/iio:device1/name", "bmp280\n");
+  machine.add("sys/bus/iio/devices/iio:device1/in_pressure_input", "101.3\n");
+  const std::string text = proposal(machine.survey());
+  const Config config = parse_config(text, "c.toml");
+  CHECK(config.barometer.source == "iio");
+  CHECK(fs::path(config.barometer.iio.folder).filename() == "iio:device1");
+  CHECK(has(text, "# Found bmp280 with a kernel driver"));
+}
+
+TEST_CASE("serial lines that exist and GPIO chips are named; a bus that is none is noted") {
+  const Machine machine;
+  machine.add("dev/ttyUSB0");
+  machine.add("dev/ttyS0");
+  machine.add("dev/ttyS1");
+  machine.add("sys/class/tty/ttyS1/type", "4\n");
+  machine.add("sys/class/tty/ttyS0/type", "0\n");
+  machine.add("dev/gpiochip0");
+  machine.add("dev/i2c-1");
+  const Survey survey = machine.survey();
+  CHECK(survey.serial == std::vector<std::string>{(machine.root() / "dev/ttyS1").string(),
+                                                  (machine.root() / "dev/ttyUSB0").string()});
+  CHECK(survey.gpio.size() == 1);
+  CHECK(survey.i2c_buses.size() == 1);
+  CHECK(survey.i2c.empty());
+  REQUIRE(survey.notes.size() == 1);
+  CHECK(has(proposal(survey), "# Not looked at: " + (machine.root() / "dev/i2c-1").string()));
+}
+
+TEST_CASE("a DPS310 at its address is preferred to a kernel driver, other chips are only named") {
+  Survey survey;
+  survey.i2c = {{"/dev/i2c-0", 0x76, false}, {"/dev/i2c-3", 0x76, true}};
+  survey.iio = {{"/sys/bus/iio/devices/iio:device1", "bmp280"}};
+  const Config config = parse_config(proposal(survey), "c.toml");
+  CHECK(config.barometer.source == "dps310");
+  CHECK(config.barometer.dps310.bus == "/dev/i2c-3");
+  CHECK(config.barometer.dps310.address == "0x76");
+  CHECK(has(proposal(survey), "# Found a device that is no DPS310 at /dev/i2c-0, address 0x76."));
+}
+
+TEST_CASE("a lidar that sends is found with its address, model and rate") {
+  Survey survey;
+  std::thread sender([] {
+    UdpSender out("127.0.0.1", 2368);
+    std::vector<std::uint8_t> packet(velodyne::kDataPacketBytes, 0);
+    packet[velodyne::kProductIdOffset] = 0x21;  // HDL-32E
+    for (int i = 0; i < 50; ++i) {
+      (void)out.send(packet);
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  });
+  survey_lidars(0.8, survey);
+  sender.join();
+  if (survey.lidars.empty() && !survey.notes.empty()) {
+    MESSAGE("port 2368 of this machine is in use: " << survey.notes.front());
+    return;
+  }
+  REQUIRE(survey.lidars.size() == 1);
+  CHECK(survey.lidars[0].sender == "127.0.0.1");
+  CHECK(survey.lidars[0].model == "HDL-32E");
+  CHECK(survey.lidars[0].packets_per_s > 10.0);
+  const std::string text = proposal(survey);
+  CHECK(parse_config(text, "c.toml").lidar.model == "HDL-32E");
+  CHECK(has(text, "packets a second from 127.0.0.1 to UDP port 2368"));
+}
+
+TEST_CASE("of two lidars the first with a driver is proposed with its address") {
+  Survey survey;
+  survey.lidars = {{"10.0.0.2", 2368, "", 0x28, 1500.0}, {"10.0.0.3", 2368, "VLP-16", 0x22, 754.0}};
+  CHECK(parse_config(proposal(survey), "c.toml").lidar.sender == "10.0.0.3");
+}
+
+TEST_CASE("a lidar without a driver is named by its product id, and not proposed") {
+  Survey survey;
+  survey.lidars = {{"10.0.0.2", 2368, "", 0x28, 1500.0}};
+  const std::string text = proposal(survey);
+  CHECK(has(text, "# Found a lidar without a driver, product id 0x28: 1500 packets a second from 10.0.0.2"));
+  CHECK(parse_config(text, "c.toml").lidar.model == "VLP-16");
+}
+
+}  // namespace isobar::test::test_config_proposal
