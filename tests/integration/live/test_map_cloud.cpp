@@ -52,7 +52,8 @@ TEST_CASE("the map cloud is every point of the local map, in pieces that follow 
   ipc::Subscriber<ipc::MapCloud> clouds(ipc::topics::kMapCloud);
   MapConfig config;
   config.see_through_limit = 0;
-  MapThread map(config, Eigen::Isometry3d::Identity(), 8.0, nullptr, {.name = "map"});
+  MapStores no_stores{Config{}};
+  MapThread map(config, Eigen::Isometry3d::Identity(), 8.0, no_stores, RunStart{}, {.name = "map"});
   map.worker().start();
   std::uint32_t complete_maps = 0;
   std::uint32_t expected_first = 0;
