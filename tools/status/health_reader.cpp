@@ -28,7 +28,7 @@ volatile std::sig_atomic_t g_exit_code = 0;
 struct HealthReader::Impl {
   ipc::Attachment attachment;
   ipc::Subscriber<ipc::HealthReport> reports{ipc::topics::kHealth};
-  ipc::Waiter waiter{{&reports.raw()}};
+  ipc::Waiter waiter{&reports.raw()};
 
   explicit Impl(const char* program) : attachment(program, std::chrono::milliseconds(0)) {}
 };
