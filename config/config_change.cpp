@@ -42,9 +42,9 @@ ConfigChange change_to(const Config& running, const Config& next, const ApplyOf&
     copy_value(theirs[i], ours[i]);
   }
   Problems problems;
-  const std::string words = source + ": beside the running values, which change at the next start";
+  std::string words = source + ": beside the running values, which change at the next start";
   check_together(
-      change.running, [&](const std::string& /*key*/) { return words; }, problems);
+      change.running, [&words](const std::string& /*key*/) { return words; }, problems);
   problems.throw_if_any();
   return change;
 }

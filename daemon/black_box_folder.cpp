@@ -56,9 +56,8 @@ std::string utc_stamp(std::time_t utc_s) {
 
 fs::path memory_folder() {
   const fs::path runtime = service_folder("RUNTIME_DIRECTORY");
-  const fs::path folder = runtime.empty()
-                              ? fs::path("/dev/shm/isobar-blackbox-" + std::to_string(::geteuid()))
-                              : runtime / "blackbox";
+  fs::path folder = runtime.empty() ? fs::path("/dev/shm/isobar-blackbox-" + std::to_string(::geteuid()))
+                                    : runtime / "blackbox";
   make_private(folder);
   return folder;
 }
@@ -79,6 +78,7 @@ std::vector<fs::path> left_over_rings(const fs::path& memory) {
   }
   std::sort(found.begin(), found.end());
   std::vector<fs::path> rings;
+  rings.reserve(found.size());
   for (const auto& [time, path] : found) rings.push_back(path);
   return rings;
 }

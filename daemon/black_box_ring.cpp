@@ -38,6 +38,7 @@ std::vector<OpenSegment> open_segments(const std::filesystem::path& folder) {
   }
   std::sort(paths.begin(), paths.end());
   std::vector<OpenSegment> segments;
+  segments.reserve(paths.size());
   for (const auto& path : paths) segments.push_back(open_segment(path));
   return segments;
 }

@@ -17,7 +17,7 @@
 namespace isobar::keys {
 namespace {
 
-constexpr std::size_t kMaxBytes = 64 * 1024;
+constexpr std::size_t kMaxBytes = std::size_t{64} * 1024;
 
 /// File descriptor that closes itself.
 class Descriptor {

@@ -110,12 +110,15 @@ void check_permitted(const KeyFolder& keys, const std::vector<std::string>& writ
   const std::string file = (keys.folder / kPermissions).string();
   for (const std::string& topic : writes) {
     if (covers(keys.write, topic)) continue;
-    throw DataError(file + ": must permit to write " + topic +
-                    ": make keys by isobar keys add DIR NAME --base-station STATION");
+    std::string rule = file + ": must permit to write ";
+    rule += topic + ": make keys by isobar keys add DIR NAME --base-station STATION";
+    throw DataError(rule);
   }
   for (const std::string& topic : reads) {
     if (covers(keys.read, topic)) continue;
-    throw DataError(file + ": must permit to read " + topic + ": make keys by isobar keys add DIR NAME");
+    std::string rule = file + ": must permit to read ";
+    rule += topic + ": make keys by isobar keys add DIR NAME";
+    throw DataError(rule);
   }
 }
 

@@ -94,7 +94,7 @@ fs::path add_member(const fs::path& store, const Member& member, int years) {
   const std::string subject = subject_of(*made.certificate);
   const Permissions granted = member.station.empty() ? robot_permissions(subject, validity)
                                                      : station_permissions(subject, member.station, validity);
-  const fs::path place = store / member.name;
+  fs::path place = store / member.name;
   NewFolder folder(place);
   folder.write(kIdentityAuthority, pem_of(*identity.certificate));
   folder.write(kPermissionsAuthority, pem_of(*permissions.certificate));

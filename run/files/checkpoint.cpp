@@ -160,7 +160,7 @@ std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file, error)) return std::nullopt;
   const std::string content = read_text_file(file, 2 * kCheckpointBytes);
   const char* rule = nullptr;
-  const auto checkpoint = decode(std::as_bytes(std::span(content)), rule);
+  auto checkpoint = decode(std::as_bytes(std::span(content)), rule);
   if (!checkpoint) throw DataError(file.string() + ": " + rule);
   return checkpoint;
 }

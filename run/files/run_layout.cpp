@@ -86,8 +86,9 @@ void refuse_foreign_folder(const fs::path& directory, const char* own, const std
   if (is_own) return;
   for (const std::string& name : names) {
     if (name.starts_with('.') || name == "lost+found" || name == "lock" || name == "blackbox") continue;
-    throw ConfigError(key + ": " + directory.string() + " holds files of others (" + name +
-                      "); name a new or empty folder, or one that isobard has written");
+    std::string rule = key + ": " + directory.string() + " holds files of others (";
+    rule += name + "); name a new or empty folder, or one that isobard has written";
+    throw ConfigError(rule);
   }
 }
 

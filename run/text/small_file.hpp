@@ -9,8 +9,8 @@ namespace isobar::text {
 
 /// Size limits of the TOML files [bytes]. A configuration with all keys and comments takes 60 kB; a manifest
 /// may hold a description of any length that a person writes.
-inline constexpr std::size_t kMostConfigBytes = 64 * 1024;
-inline constexpr std::size_t kMostManifestBytes = 1024 * 1024;
+inline constexpr std::size_t kMostConfigBytes = std::size_t{64} * 1024;
+inline constexpr std::size_t kMostManifestBytes = std::size_t{1024} * 1024;
 
 /// Content of a file, or why it was refused.
 struct SmallFile {

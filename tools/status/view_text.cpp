@@ -33,7 +33,7 @@ std::string duration(double s) {
   if (s < 60.0) return fmt::format("{:.{}f} s", s, s < 9.95 ? 2 : 1);
   const auto minutes = static_cast<long>(s / 60.0);
   if (minutes < 60) return fmt::format("{} min", minutes);
-  if (minutes < 48 * 60) return fmt::format("{} h {} min", minutes / 60, minutes % 60);
+  if (minutes < 48L * 60) return fmt::format("{} h {} min", minutes / 60, minutes % 60);
   return fmt::format("{} d {} h", minutes / 1440, minutes / 60 % 24);
 }
 
