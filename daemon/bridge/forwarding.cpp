@@ -6,6 +6,7 @@
 
 #include "daemon/base_station_health.hpp"
 #include "daemon/bridge/key_health.hpp"
+#include "daemon/bridge/steady_time.hpp"
 #include "daemon/logging.hpp"
 #include "drivers/clock/robot_clock.hpp"
 
@@ -19,10 +20,6 @@ using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
 constexpr auto kMaxWait = 250ms;
 /// Time without a health report after which the diagnostics report its absence [ns]: three periods of 1 s.
 constexpr std::int64_t kMissingReportNs = 3'000'000'000;
-
-std::int64_t steady_ns() {
-  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
-}
 
 /// Stamp of diagnostics without a health report of isobard to take it from.
 std::int64_t wall_ns() {

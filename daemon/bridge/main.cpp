@@ -2,8 +2,8 @@
 // isobar-dds: the bridge between isobard's shared memory and DDS.
 //
 // A process of its own, so that a fault in a network parser cannot reach the estimator. Waits for isobard and
-// for the network without limit. Restarts itself in place when isobard ends, because a process can attach to shared memory
-// only once.
+// for the network without limit. Restarts itself in place when isobard ends, because a process can attach to
+// shared memory only once.
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
@@ -22,6 +22,7 @@
 #include "daemon/bridge/receiving.hpp"
 #include "daemon/bridge/repeated_lines.hpp"
 #include "daemon/bridge/settings.hpp"
+#include "daemon/bridge/steady_time.hpp"
 #include "daemon/logging.hpp"
 #include "daemon/service.hpp"
 #include "ipc/dds/library_log.hpp"
@@ -39,8 +40,6 @@ constexpr auto kAttachTimeout = 400ms;
 /// second. After a longer one this process is no longer connected, for instance because iceoryx
 /// unregistered it while it was stopped.
 constexpr auto kMaxSilence = 5s;
-/// Time between two log lines about something that is still waited for.
-constexpr auto kReminder = 60s;
 /// Time limit for attaching: milliseconds, but it blocks for ever when isobard ends in the middle of it.
 constexpr auto kAttachLimit = 10s;
 /// Time limit for detaching: less than a second, but it blocks for ever when isobard hangs.
@@ -49,18 +48,14 @@ constexpr auto kDetachLimit = 4s;
 /// The log of Cyclone DDS, thinned: a lost address or a stranger's datagrams would give a line each.
 RepeatedLines g_library_lines;
 
-std::int64_t library_clock_ns() {
-  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
-}
-
 void log_library_line(bool is_error, std::string_view line) noexcept {
   if (dds::note_refusal(line)) return;
-  const auto text = g_library_lines.note(line, library_clock_ns());
+  const auto text = g_library_lines.note(line, steady_ns());
   if (text) spdlog::log(is_error ? spdlog::level::err : spdlog::level::warn, "Cyclone DDS: {}", *text);
 }
 
 void log_library_counts() {
-  for (const std::string& line : g_library_lines.due(library_clock_ns())) {
+  for (const std::string& line : g_library_lines.due(steady_ns())) {
     spdlog::warn("Cyclone DDS: {}", line);
   }
 }
@@ -144,11 +139,11 @@ class Connector {
     try {
       return std::make_unique<ipc::Attachment>("isobar-dds", kAttachTimeout);
     } catch (const ServiceError& error) {
-      const std::int64_t now_ns = library_clock_ns();
+      const std::int64_t now_ns = steady_ns();
       if (now_ns >= next_line_ns_) {
         spdlog::info("{}; waiting for it (systemctl status isobard)", error.what());
         service.set_status("waiting for isobard");
-        next_line_ns_ = now_ns + kReminder / std::chrono::nanoseconds(1);
+        next_line_ns_ = now_ns + kReminderNs;
       }
       report_absence(outputs_, builder_);
       return nullptr;

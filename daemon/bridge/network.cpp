@@ -8,6 +8,7 @@
 
 #include "core/errors.hpp"
 #include "core/text_list.hpp"
+#include "daemon/bridge/steady_time.hpp"
 
 namespace isobar::bridge {
 namespace {
@@ -17,14 +18,8 @@ namespace {
 constexpr std::int64_t kLookPeriodNs = 500'000'000;
 /// Time between two attempts to create the participant [ns].
 constexpr std::int64_t kRetryNs = 1'000'000'000;
-/// Time between two log lines about something that is still waited for [ns].
-constexpr std::int64_t kReminderNs = 60'000'000'000;
 /// Longest wait for readers [ms]: discovery on loopback takes 10 ms.
 constexpr int kMostReaderWaitMs = 100;
-
-std::int64_t network_clock_ns() {
-  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
-}
 
 std::string joined_names(const std::vector<std::string>& names) {
   std::string text;
@@ -60,7 +55,7 @@ dds::InterfaceChoice Network::choose() const {
 }
 
 bool Network::is_due() {
-  const std::int64_t now_ns = network_clock_ns();
+  const std::int64_t now_ns = steady_ns();
   if (now_ns < next_look_ns_) return false;
   next_look_ns_ = now_ns + kLookPeriodNs;
   dds::InterfaceChoice choice = choose();
@@ -74,7 +69,7 @@ bool Network::is_due() {
 void Network::renew() {
   readers_before_ = reader_count();
   close();
-  const std::int64_t now_ns = network_clock_ns();
+  const std::int64_t now_ns = steady_ns();
   next_attempt_ns_ = now_ns + kRetryNs;
   chosen_ = last_seen_ = choose();
   failure_.clear();
