@@ -94,7 +94,9 @@ class PoseCount {
   [[nodiscard]] std::size_t count() const { return stamps_ns_.size(); }
   [[nodiscard]] long missing() const {
     constexpr std::int64_t kPeriodNs = stand_in::kPriorPeriodNs * stand_in::kPriorsPerScan;
-    return (stamps_ns_.back() - stamps_ns_.front()) / kPeriodNs + 1 - static_cast<long>(stamps_ns_.size());
+    // Rounded: published stamps follow the system clock, so that a period may be microseconds shorter.
+    const std::int64_t span_ns = stamps_ns_.back() - stamps_ns_.front();
+    return (span_ns + kPeriodNs / 2) / kPeriodNs + 1 - static_cast<long>(stamps_ns_.size());
   }
   [[nodiscard]] std::chrono::milliseconds largest_gap() const {
     return std::chrono::duration_cast<std::chrono::milliseconds>(largest_gap_);
