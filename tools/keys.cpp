@@ -42,6 +42,15 @@ void run_add(const KeysOptions& options) {
       folder.c_str(), options.member.name.c_str());
 }
 
+void run_revoke(const KeysOptions& options) {
+  const keys::Revocation done = keys::revoke_member(options.store, options.member.name);
+  std::printf(
+      "revoked: %s; its folder is now %s\nMachines refuse it from 2 s after they have the new list. Copy %s "
+      "to each, "
+      "there as root:\n  install -o isobar -g isobar -m 600 revoked.pem /etc/isobar/keys\n",
+      options.member.name.c_str(), done.moved.c_str(), done.list.c_str());
+}
+
 void run_show(const KeysOptions& options) {
   const std::int64_t now_s = keys::unix_now_s();
   std::string faults;
@@ -88,6 +97,11 @@ void add_keys_command(CLI::App& app) {
           "without: it is a robot and reads that of all")
       ->type_name("STATION");
   add_years(add);
+
+  auto revoke = add_subcommand<KeysOptions>(
+      *command, "revoke", "Revoke the keys of a machine that was stolen, sold or replaced", run_revoke);
+  revoke.command.add_option("DIR", revoke.options.store, "folder of `isobar keys init`")->required();
+  revoke.command.add_option("NAME", revoke.options.member.name, "name of the machine")->required();
 
   auto show =
       add_subcommand<KeysOptions>(*command, "show", "List names, uses and ends of validity", run_show);

@@ -42,6 +42,9 @@ constexpr std::array kKeyFiles{
     KeyFile{"dds.sec.access.permissions", keys::kPermissions},
 };
 
+/// Cyclone's own property: certificates that the authority has revoked.
+constexpr const char* kRevocationsProperty = "org.eclipse.cyclonedds.sec.auth.crl";
+
 /// Path of a plugin: in the private folder of Debian's package beside the library, or beside it. The
 /// loader would find it by name in neither.
 std::filesystem::path plugin_path(const char* name) {
@@ -58,7 +61,7 @@ std::filesystem::path plugin_path(const char* name) {
                      " is missing; it belongs to the package libddsc0debian");
 }
 
-QosPointer secure_qos(const std::filesystem::path& keys) {
+QosPointer secure_qos(const std::filesystem::path& folder) {
   QosPointer qos = make_qos();
   for (const Plugin& plugin : kPlugins) {
     const std::string prefix = std::string("dds.sec.") + plugin.property + ".library.";
@@ -67,7 +70,12 @@ QosPointer secure_qos(const std::filesystem::path& keys) {
     dds_qset_prop(qos.get(), (prefix + "finalize").c_str(), plugin.finalize);
   }
   for (const KeyFile& file : kKeyFiles) {
-    dds_qset_prop(qos.get(), file.property, ("file:" + (keys / file.name).string()).c_str());
+    dds_qset_prop(qos.get(), file.property, ("file:" + (folder / file.name).string()).c_str());
+  }
+  const std::filesystem::path revocations = folder / keys::kRevocations;
+  std::error_code error;
+  if (std::filesystem::exists(revocations, error)) {
+    dds_qset_prop(qos.get(), kRevocationsProperty, ("file:" + revocations.string()).c_str());
   }
   return qos;
 }

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <linux/fs.h>
+#include <pwd.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -46,13 +47,36 @@ void refuse_existing(const std::filesystem::path& path) {
   }
 }
 
+std::string remedy_for(int reason) {
+  if (reason != EACCES) return {};
+  const passwd* user = ::getpwuid(::geteuid());
+  return user == nullptr ? std::string() : std::string("; it must belong to user ") + user->pw_name;
+}
+
+/// Writes a new file with mode 0600, down to the disk: a key that exists twice after a power cut, or not at
+/// all, is found by nobody.
+void write_new(const std::filesystem::path& file, std::string_view text) {
+  const Descriptor descriptor(
+      ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600));
+  if (descriptor.get() < 0) fail(file, "cannot be made");
+  for (std::size_t written = 0; written < text.size();) {
+    const ssize_t count = ::write(descriptor.get(), text.data() + written, text.size() - written);
+    if (count < 0) fail(file, "cannot be written");
+    written += static_cast<std::size_t>(count);
+  }
+  if (::fsync(descriptor.get()) != 0) fail(file, "cannot be written");
+}
+
 }  // namespace
 
 std::string read_key_file(const std::filesystem::path& file) {
   const std::string path = file.string();
   // Not blocking: a FIFO of that name would wait for a writer for ever.
   const Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (descriptor.get() < 0) throw DataError(path + ": cannot be read: " + std::strerror(errno));
+  if (descriptor.get() < 0) {
+    const int reason = errno;
+    throw DataError(path + ": cannot be read: " + std::strerror(reason) + remedy_for(reason));
+  }
   struct stat status {};
   if (::fstat(descriptor.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
     throw DataError(path + ": must be a file");
@@ -70,6 +94,12 @@ std::string read_key_file(const std::filesystem::path& file) {
   return text;
 }
 
+void replace_key_file(const std::filesystem::path& file, std::string_view text) {
+  const std::filesystem::path beside = file.string() + ".new-" + std::to_string(::getpid());
+  write_new(beside, text);
+  if (::rename(beside.c_str(), file.c_str()) != 0) fail(file, "cannot be replaced");
+}
+
 NewFolder::NewFolder(std::filesystem::path final_place)
     : final_place_(std::move(final_place)),
       place_(final_place_.string() + ".new-" + std::to_string(::getpid())) {
@@ -82,19 +112,7 @@ NewFolder::~NewFolder() {
   if (!place_.empty()) std::filesystem::remove_all(place_, ignored);
 }
 
-void NewFolder::write(const char* name, std::string_view text) const {
-  const std::filesystem::path file = place_ / name;
-  const Descriptor descriptor(
-      ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600));
-  if (descriptor.get() < 0) fail(file, "cannot be made");
-  for (std::size_t written = 0; written < text.size();) {
-    const ssize_t count = ::write(descriptor.get(), text.data() + written, text.size() - written);
-    if (count < 0) fail(file, "cannot be written");
-    written += static_cast<std::size_t>(count);
-  }
-  // A key that exists twice after a power cut, or not at all, is found by nobody.
-  if (::fsync(descriptor.get()) != 0) fail(file, "cannot be written");
-}
+void NewFolder::write(const char* name, std::string_view text) const { write_new(place_ / name, text); }
 
 void NewFolder::make_folder(const char* name) const {
   const std::filesystem::path folder = place_ / name;

@@ -15,6 +15,8 @@ inline constexpr const char* kGovernance = "governance.p7s";
 inline constexpr const char* kCertificate = "certificate.pem";
 inline constexpr const char* kPrivateKey = "key.pem";
 inline constexpr const char* kPermissions = "permissions.p7s";
+/// Only when a certificate was revoked.
+inline constexpr const char* kRevocations = "revoked.pem";
 
 /// Folder of the authorities, beside those of the machines, and their private keys in it.
 inline constexpr const char* kAuthorities = "authorities";
@@ -24,6 +26,10 @@ inline constexpr const char* kPermissionsAuthorityKey = "permissions_ca_key.pem"
 /// The content of a file of at most 64 KiB.
 /// @throws DataError "path: rule" when it is missing, cannot be read, or is larger
 [[nodiscard]] std::string read_key_file(const std::filesystem::path& file);
+
+/// Writes a file in place of its older version, mode 0600: at each moment one of the two is there, whole.
+/// @throws ServiceError naming the path
+void replace_key_file(const std::filesystem::path& file, std::string_view text);
 
 /// A folder under construction beside its final place, so that a folder with half of its files never has the
 /// final name. Removed unless finish() was called.

@@ -12,6 +12,7 @@
 #include "ipc/keys/access.hpp"
 #include "ipc/keys/certificate.hpp"
 #include "ipc/keys/key_files.hpp"
+#include "ipc/keys/revocation.hpp"
 #include "ipc/keys/signed_document.hpp"
 
 namespace isobar::keys {
@@ -19,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kFiles{kIdentityAuthority, kPermissionsAuthority, kGovernance,
-                            kCertificate,       kPrivateKey,           kPermissions};
+constexpr std::array kFiles{kIdentityAuthority, kPermissionsAuthority, kGovernance, kCertificate,
+                            kPrivateKey,        kPermissions,          kRevocations};
 
 void check_mode(const fs::path& file) {
   struct stat status {};
@@ -31,6 +32,16 @@ void check_mode(const fs::path& file) {
 
 CertificatePointer read_certificate(const fs::path& file) {
   return certificate_of(read_key_file(file), file.string());
+}
+
+void check_revocations(const fs::path& folder, const X509& certificate, const X509& authority) {
+  const fs::path file = folder / kRevocations;
+  std::error_code error;
+  if (fs::symlink_status(file, error).type() == fs::file_type::not_found) return;
+  if (is_revoked(*revocations_of(read_key_file(file), authority, file.string()), certificate)) {
+    throw DataError((folder / kCertificate).string() +
+                    ": is revoked by revoked.pem beside it: make new keys by isobar keys add");
+  }
 }
 
 /// @return end of validity
@@ -45,6 +56,7 @@ std::int64_t check_identity(const fs::path& folder, const X509& certificate, std
   if (const std::string rule = broken_rule(certificate, *authority, now_s); !rule.empty()) {
     throw DataError((folder / kCertificate).string() + ": " + rule);
   }
+  check_revocations(folder, certificate, *authority);
   return std::min(validity_of(certificate).until_s, validity_of(*authority).until_s);
 }
 

@@ -23,7 +23,8 @@ struct KeyFolder {
   [[nodiscard]] std::string station() const;
 };
 
-/// Checks that the six files are there, belong together, and are valid now.
+/// Checks that the six files are there, belong together, and are valid now, and that the certificate is not in
+/// the list of revoked ones, if there is one.
 /// @param now_s seconds since 1970 (UTC), see unix_now_s()
 /// @throws DataError "path: rule" for the first rule that is broken
 [[nodiscard]] KeyFolder check_key_folder(const std::filesystem::path& folder, std::int64_t now_s);

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <system_error>
 
 #include "core/errors.hpp"
 #include "ipc/keys/access.hpp"
 #include "ipc/keys/certificate.hpp"
 #include "ipc/keys/key_files.hpp"
 #include "ipc/keys/key_folder.hpp"
+#include "ipc/keys/revocation.hpp"
 #include "ipc/keys/signed_document.hpp"
 
 namespace isobar::keys {
@@ -48,10 +50,47 @@ Identity read_authority(const fs::path& folder, const char* certificate, const c
           private_key_of(read_key_file(key_file), key_file.string())};
 }
 
-StoreEntry entry_of(const fs::path& folder, std::int64_t now_s) {
+/// The list of revoked certificates; null: none was revoked yet.
+RevocationsPointer read_revocations(const fs::path& store, const X509& authority) {
+  const fs::path file = store / kAuthorities / kRevocations;
+  std::error_code error;
+  if (fs::symlink_status(file, error).type() == fs::file_type::not_found) return nullptr;
+  return revocations_of(read_key_file(file), authority, file.string());
+}
+
+CertificatePointer read_certificate_of(const fs::path& machine) {
+  const fs::path file = machine / kCertificate;
+  return certificate_of(read_key_file(file), file.string());
+}
+
+/// @throws DataError when the folder has no authorities
+void require_store(const fs::path& store) {
+  std::error_code error;
+  if (fs::is_directory(store / kAuthorities, error)) return;
+  throw DataError((store / kAuthorities).string() +
+                  ": is missing; make a folder of keys by isobar keys init " + store.string());
+}
+
+/// Folders of the machines, by name.
+std::vector<fs::path> machines_of(const fs::path& store) {
+  std::vector<fs::path> folders;
+  for (const auto& entry : fs::directory_iterator(store)) {
+    if (entry.is_directory() && entry.path().filename() != kAuthorities) folders.push_back(entry.path());
+  }
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
+StoreEntry entry_of(const fs::path& folder, const X509_CRL* revocations, std::int64_t now_s) {
   StoreEntry entry;
   entry.name = folder.filename().string();
   try {
+    const CertificatePointer certificate = read_certificate_of(folder);
+    if (revocations != nullptr && is_revoked(*revocations, *certificate)) {
+      entry.use = "revoked";
+      entry.until_s = validity_of(*certificate).until_s;
+      return entry;
+    }
     const KeyFolder keys = check_key_folder(folder, now_s);
     entry.use = keys.is_station() ? "base station " + keys.station() : "robot";
     entry.until_s = keys.until_s;
@@ -84,6 +123,7 @@ void make_key_store(const fs::path& store, int years) {
 
 fs::path add_member(const fs::path& store, const Member& member, int years) {
   check(member);
+  require_store(store);
   const fs::path authorities = store / kAuthorities;
   const Identity identity = read_authority(authorities, kIdentityAuthority, kIdentityAuthorityKey);
   const Identity permissions = read_authority(authorities, kPermissionsAuthority, kPermissionsAuthorityKey);
@@ -102,21 +142,44 @@ fs::path add_member(const fs::path& store, const Member& member, int years) {
   folder.write(kCertificate, pem_of(*made.certificate));
   folder.write(kPrivateKey, pem_of(*made.key));
   folder.write(kPermissions, sign_document(permissions_text(member.name, granted), permissions));
+  if (read_revocations(store, *identity.certificate)) {
+    folder.write(kRevocations, read_key_file(authorities / kRevocations));
+  }
   folder.finish();
   return place;
 }
 
+Revocation revoke_member(const fs::path& store, const std::string& name) {
+  check({name, ""});
+  require_store(store);
+  const fs::path authorities = store / kAuthorities;
+  const fs::path machine = store / name;
+  const Identity identity = read_authority(authorities, kIdentityAuthority, kIdentityAuthorityKey);
+  const CertificatePointer certificate = read_certificate_of(machine);
+  const RevocationsPointer former = read_revocations(store, *identity.certificate);
+  const std::string list = with_revoked(identity, former.get(), *certificate);
+  Revocation done{authorities / kRevocations, machine.string() + ".revoked"};
+  std::error_code error;
+  for (int i = 2; fs::exists(fs::symlink_status(done.moved, error)); ++i) {
+    done.moved = machine.string() + ".revoked-" + std::to_string(i);
+  }
+  replace_key_file(done.list, list);
+  fs::rename(machine, done.moved, error);
+  if (error) throw ServiceError(machine.string() + ": cannot be renamed: " + error.message());
+  for (const fs::path& other : machines_of(store)) replace_key_file(other / kRevocations, list);
+  return done;
+}
+
 std::vector<StoreEntry> list_store(const fs::path& store) {
+  require_store(store);
   const fs::path authority = store / kAuthorities / kIdentityAuthority;
   const CertificatePointer certificate = certificate_of(read_key_file(authority), authority.string());
   std::vector<StoreEntry> entries{{kAuthorities, "authorities", validity_of(*certificate).until_s, {}}};
-  std::vector<fs::path> folders;
-  for (const auto& entry : fs::directory_iterator(store)) {
-    if (entry.is_directory() && entry.path().filename() != kAuthorities) folders.push_back(entry.path());
-  }
-  std::sort(folders.begin(), folders.end());
+  const RevocationsPointer revocations = read_revocations(store, *certificate);
   const std::int64_t now_s = unix_now_s();
-  for (const fs::path& folder : folders) entries.push_back(entry_of(folder, now_s));
+  for (const fs::path& folder : machines_of(store)) {
+    entries.push_back(entry_of(folder, revocations.get(), now_s));
+  }
   return entries;
 }
 

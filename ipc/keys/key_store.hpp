@@ -28,10 +28,22 @@ struct Member {
 /// @throws ServiceError naming the path when the folder exists or cannot be made
 std::filesystem::path add_member(const std::filesystem::path& store, const Member& member, int years);
 
+/// What revoke_member() made.
+struct Revocation {
+  std::filesystem::path list;   ///< all revoked certificates, to be copied to every machine
+  std::filesystem::path moved;  ///< the machine's folder, under its new name
+};
+
+/// Revokes the keys of one machine: its certificate is added to the list of revoked ones, in the store and in
+/// the folders of the other machines, and its folder gets another name, so that its name is free.
+/// @throws DataError "path: rule" when the store's or the machine's files are missing or unusable
+/// @throws ServiceError naming the path when a file cannot be written
+Revocation revoke_member(const std::filesystem::path& store, const std::string& name);
+
 /// One line of the list of a store.
 struct StoreEntry {
   std::string name;
-  std::string use;           ///< "robot", "base station roof", "authority"
+  std::string use;           ///< "robot", "base station roof", "authorities", "revoked"
   std::int64_t until_s = 0;  ///< end of validity, seconds since 1970 (UTC)
   std::string fault;         ///< why it cannot be used: "path: rule"; empty: it can
 };

@@ -225,6 +225,33 @@ TEST_CASE(
   CHECK(robot.is_same_bridge());
 }
 
+TEST_CASE(
+    "a base station that is revoked is refused as soon as the robot has the list, and the others are not") {
+  const Site site;
+  keys::add_member(site.store, {"new_roof", "roof"}, 10);
+  const fs::path folder = site.folder.path() / "robot";
+  fs::copy(site.robot, folder);
+  Robot robot(robot_with(folder));
+  std::optional<dds::SecureParticipant> stolen(std::in_place, dds::ParticipantSettings{}, site.roof);
+  Base base;
+  base.name = "roof";
+  auto sender = std::make_unique<Sender>(stolen->get(), base);
+  REQUIRE(robot.receive(20).size() == 20);
+  fs::copy_file(keys::revoke_member(site.store, "roof").list, folder / "revoked.pem");
+  CHECK(robot.says("bridge/keys/refused", kWarning));
+  robot.forget();
+  CHECK(robot.receive_for(1s).empty());
+  CHECK(robot.is_same_bridge());
+  sender.reset();
+  stolen.reset();
+  const dds::SecureParticipant member({}, site.store / "new_roof");
+  base.pressure_pa = 97'500.0;
+  const Sender replacement(member.get(), base);
+  const std::vector<Got> got = robot.receive(20);
+  CHECK(got.size() == 20);
+  for (const Got& sample : got) CHECK(sample.pressure_pa == 97'500.0);
+}
+
 TEST_CASE("a base station signs: members receive it, others do not; with a robot's keys it sends nothing") {
   const Site site;
   const auto config_with = [](const fs::path& keys) {

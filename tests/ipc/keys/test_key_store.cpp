@@ -110,9 +110,58 @@ TEST_CASE("without authorities nothing is made, and the error names the missing 
   const TemporaryFolder folder;
   CHECK(message_of([&] {
           keys::add_member(folder.path(), {"robot", ""}, 10);
-        }) == (folder.path() / "authorities/identity_ca.pem").string() +
-                  ": cannot be read: No such file or directory");
+        }) == (folder.path() / "authorities").string() +
+                  ": is missing; make a folder of keys by isobar keys init " + folder.path().string());
   CHECK_THROWS_AS(static_cast<void>(keys::list_store(folder.path())), DataError);
+}
+
+TEST_CASE(
+    "revoked keys are refused by every machine that has the list, and their name is free for new ones") {
+  const Site site;
+  const auto fault_of = [](const fs::path& folder) {
+    return message_of([&] { static_cast<void>(keys::check_key_folder(folder, keys::unix_now_s())); });
+  };
+  const keys::Revocation done = keys::revoke_member(site.store, "roof");
+  CHECK(done.list == site.store / "authorities/revoked.pem");
+  CHECK(done.moved == site.store / "roof.revoked");
+  CHECK(fault_of(done.moved) ==
+        (done.moved / "certificate.pem").string() +
+            ": is revoked by revoked.pem beside it: make new keys by isobar keys add");
+  CHECK(fault_of(site.robot) == "no error");
+  CHECK(content_of(site.robot / "revoked.pem") == content_of(done.list));
+  CHECK(mode_of(done.list) == 0600U);
+  // New keys of the same name, made and revoked: the list keeps both.
+  keys::add_member(site.store, {"roof", "roof"}, 10);
+  CHECK(fault_of(site.roof) == "no error");
+  CHECK(content_of(site.roof / "revoked.pem") == content_of(done.list));
+  CHECK(keys::revoke_member(site.store, "roof").moved == site.store / "roof.revoked-2");
+  const std::vector<keys::StoreEntry> entries = keys::list_store(site.store);
+  REQUIRE(entries.size() == 4);
+  CHECK(entries[1].use == "robot");
+  CHECK(entries[2].use == "revoked");
+  CHECK(entries[3].use == "revoked");
+  CHECK(entries[3].fault.empty());
+  CHECK(message_of([&] { keys::revoke_member(site.store, "nobody"); }) ==
+        (site.store / "nobody/certificate.pem").string() + ": cannot be read: No such file or directory");
+}
+
+TEST_CASE(
+    "a list of revoked keys that was changed or comes from another authority is an error, not an empty one") {
+  const Site site;
+  const Site other;
+  static_cast<void>(keys::revoke_member(other.store, "roof"));
+  const fs::path list = site.robot / "revoked.pem";
+  const auto fault = [&] {
+    return message_of([&] { static_cast<void>(keys::check_key_folder(site.robot, keys::unix_now_s())); });
+  };
+  fs::copy_file(other.store / "authorities/revoked.pem", list);
+  CHECK(fault() == list.string() +
+                       ": must be signed by identity_ca.pem; it was changed or comes from another authority");
+  std::ofstream(list) << "";
+  CHECK(fault().starts_with(list.string() + ": must be a list of revoked certificates (X.509 CRL) in PEM"));
+  fs::remove(list);
+  fs::create_symlink("nowhere", list);
+  CHECK(fault().starts_with(list.string() + ": cannot be read"));
 }
 
 }  // namespace
