@@ -3,7 +3,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <utility>
@@ -35,9 +34,8 @@ MapThread::MapThread(const MapConfig& config, const Eigen::Isometry3d& T_base_li
       map_(loaded_map(config, T_base_lidar, maps, start)),
       snapshots_(map_->snapshot()),
       scans_(ipc::topics::kRegisteredScan),
-      clouds_(ipc::topics::kMapCloud),
+      cloud_(cloud_interval_s),
       waiter_({&scans_.raw()}),
-      cloud_interval_ns_(static_cast<std::int64_t>(cloud_interval_s * 1e9)),
       deadline_(settings.deadline_ms),
       worker_(std::move(settings), waiter_, [this] { loop(); }) {}
 
@@ -54,7 +52,7 @@ void MapThread::drain() noexcept {
   changes_.take([this](const Change& change) {
     map_->configure(change.config);
     config_ = map_->config();
-    cloud_interval_ns_ = static_cast<std::int64_t>(change.cloud_interval_s * 1e9);
+    cloud_.set_interval(change.cloud_interval_s);
     deadline_.set_limit(change.deadline_ms);
   });
   auto newest = scans_.take();
@@ -84,7 +82,7 @@ void MapThread::add(const RegisteredScan& scan) noexcept {
     draft_status_.update_ms = timer.elapsed_ms();
   }
   deadline_.note(scan.handed_over_ns, RobotClock::now_ns());
-  publish_cloud(scan.pose.stamp_ns);
+  cloud_.step(*map_, maps_.current(), scan.pose);
 }
 
 // The old map is kept as it is; the new one begins empty, with a folder of its own.
@@ -97,8 +95,7 @@ void MapThread::begin_session(std::uint32_t session) noexcept {
     spdlog::error("{}; the new map is not written", error.what());
   }
   logged_ = {};
-  points_.clear();  // of a cloud of the old map that is on its way
-  cloud_points_sent_ = 0;
+  cloud_.start_over();
   map_ = std::make_unique<LocalMap>(config_, T_base_lidar_, store, session);
   snapshots_.publish(map_->snapshot());
 }
@@ -149,32 +146,6 @@ void MapThread::log_tile_losses() noexcept {
     spdlog::warn("map: map.max_disk_gb is reached; from now on the oldest stored tiles are deleted");
   }
   logged_ = {now.refused > 0, now.damaged > 0, now.forgotten > 0};
-}
-
-void MapThread::publish_cloud(std::int64_t stamp_ns) noexcept {
-  if (cloud_points_sent_ >= points_.size()) {  // no map is on its way
-    if (stamp_ns - last_cloud_ns_ < cloud_interval_ns_ || !clouds_.has_subscribers()) return;
-    points_.clear();
-    map_->append_points(points_);
-    last_cloud_ns_ = stamp_ns;
-    cloud_points_sent_ = 0;
-    ++cloud_sequence_;
-  }
-  // One piece a scan: a large map fills neither the shared memory nor the time of one update.
-  ipc::MapCloud* piece = points_.empty() ? nullptr : clouds_.loan();
-  if (piece == nullptr) return;
-  piece->stamp_ns = last_cloud_ns_;
-  piece->sequence = cloud_sequence_;
-  piece->session = map_->session();
-  piece->first_point = static_cast<std::uint32_t>(cloud_points_sent_);
-  piece->total_points = static_cast<std::uint32_t>(points_.size());
-  piece->point_count = std::min(ipc::MapCloud::kMaxPoints, piece->total_points - piece->first_point);
-  for (std::uint32_t i = 0; i < piece->point_count; ++i) {
-    const MapPoint& point = points_[cloud_points_sent_++];
-    const Eigen::Vector3f p_map = point.p_map.cast<float>();
-    piece->points[i] = {p_map.x(), p_map.y(), p_map.z(), 0, 0, point.intensity};
-  }
-  clouds_.publish(piece);
 }
 
 }  // namespace isobar

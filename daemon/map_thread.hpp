@@ -3,12 +3,12 @@
 
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 #include "core/map/local_map.hpp"
 #include "core/map/snapshot_exchange.hpp"
 #include "daemon/deadline.hpp"
 #include "daemon/handover.hpp"
+#include "daemon/map_cloud.hpp"
 #include "daemon/map_stores.hpp"
 #include "daemon/run_start.hpp"
 #include "daemon/seq_lock.hpp"
@@ -69,7 +69,6 @@ class MapThread {
   void write_tiles() noexcept;
   void follow_folder();
   void log_tile_losses() noexcept;
-  void publish_cloud(std::int64_t stamp_ns) noexcept;
 
   MapConfig config_;
   Eigen::Isometry3d T_base_lidar_;
@@ -77,16 +76,11 @@ class MapThread {
   std::unique_ptr<LocalMap> map_;  ///< never null
   SnapshotExchange<MapSnapshot> snapshots_;
   ipc::Subscriber<RegisteredScan> scans_;
-  ipc::Publisher<ipc::MapCloud> clouds_;
+  MapCloudPublisher cloud_;
   ipc::Waiter waiter_;
   LoggedLosses logged_;
-  std::int64_t written_ns_ = 0;  ///< last write_tiles(), robot clock
-  std::int64_t cloud_interval_ns_;
-  std::int64_t last_cloud_ns_ = 0;
-  std::uint32_t cloud_sequence_ = 0;
-  std::vector<MapPoint> points_;       ///< of the map cloud
-  std::size_t cloud_points_sent_ = 0;  ///< of points_
-  std::uint64_t superseded_ = 0;       ///< scans dropped for a newer one
+  std::int64_t written_ns_ = 0;   ///< last write_tiles(), robot clock
+  std::uint64_t superseded_ = 0;  ///< scans dropped for a newer one
   Deadline deadline_;
   Handover<Change> changes_;
   MapStatus draft_status_;

@@ -65,6 +65,8 @@ class LocalMap {
   [[nodiscard]] std::uint32_t session() const { return session_; }
   [[nodiscard]] std::size_t cell_count() const;
   [[nodiscard]] std::size_t tile_count() const { return tiles_.size(); }
+  /// True if the tile is in memory.
+  [[nodiscard]] bool has_tile(const TileKey& key) const { return tiles_.contains(key); }
   /// Cells removed because rays passed through them, since the start.
   [[nodiscard]] std::uint64_t seen_through_count() const { return seen_through_count_; }
 

@@ -55,9 +55,7 @@ void log_library_line(bool is_error, std::string_view line) noexcept {
 }
 
 void log_library_counts() {
-  for (const std::string& line : g_library_lines.due(steady_ns())) {
-    spdlog::warn("Cyclone DDS: {}", line);
-  }
+  if (const auto line = g_library_lines.due(steady_ns())) spdlog::warn("Cyclone DDS: {}", *line);
 }
 
 /// The shared-memory side and both directions of forwarding, from attaching to isobard until the end.
