@@ -67,6 +67,19 @@ sleep 3
 for topic in pose odom; do near $topic $(($(date +%s) - 3 * 86400)); done
 ok "pose and odom follow the system clock three days back"
 
+# Futex waits until a time of the system clock (FUTEX_CLOCK_REALTIME, 0x100): after a step back they sleep for days.
+if [ "$(uname -m)" = x86_64 ]; then
+  for _ in $(seq 20); do
+    for pid in "${pids[@]:0:2}"; do
+      asleep=$(cat /proc/"$pid"/task/*/syscall 2>/dev/null | awk '$1 == 202 && $3 ~ /^0x1..$/ && $5 != "0x0"')
+      [ -z "$asleep" ] || fail "threads of process $pid wait for a time of the system clock: $asleep"
+      [ "$(cat /proc/"$pid"/task/*/syscall | wc -l)" -gt 5 ] || fail "the threads of process $pid are not seen"
+    done
+    sleep 0.05
+  done
+  ok "no thread waits for a time of the system clock"
+fi
+
 wait "$play" || fail "play"
 kill -TERM "$daemon"
 wait "$daemon" || fail "isobard did not stop with code 0"
