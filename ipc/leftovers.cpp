@@ -114,6 +114,13 @@ void remove_obstacle(const std::string& path, const std::string& reason) {
   }
 }
 
+void remove_files_of(const std::string& name) noexcept {
+  if (!name.starts_with("isobar-") || name.find('/') != std::string::npos) return;  // the process chose it
+  for (const char* ending : {"", ".lock"}) {
+    static_cast<void>(::unlink(("/tmp/" + name + ending).c_str()) == 0);
+  }
+}
+
 void remove_leftovers() {
   const auto management = status_at(Rendezvous::kManagement);
   std::vector<std::string> old;

@@ -30,6 +30,10 @@ struct Rendezvous {
 /// @throws ObstructedError naming all files that this user may not remove
 void remove_leftovers();
 
+/// Removes the socket and the lock of an attached process that has ended.
+/// @param name of its runtime, "isobar-dds-1234"
+void remove_files_of(const std::string& name) noexcept;
+
 /// Removes a file that another user made in the way of this one.
 /// @param reason what it is, "is locked by process 1234"
 /// @throws ObstructedError when this user may not remove it

@@ -7,6 +7,8 @@
 
 #include <cstdint>
 
+#include "ipc/leftovers.hpp"
+
 namespace isobar::ipc {
 
 AttachedProcesses::~AttachedProcesses() {
@@ -60,6 +62,7 @@ void PidfdRouDi::processMessage(const iox::runtime::IpcMessage& message,
 void PidfdRouDi::cyclicUpdateHook() noexcept {
   for (const iox::RuntimeName_t& name : remove_ended()) {
     static_cast<void>(m_prcMgr->unregisterProcess(name));
+    remove_files_of({name.c_str(), name.size()});
   }
 }
 

@@ -48,7 +48,7 @@ int run_broker() {
 }
 
 int run_reader(int wanted, bool watch) {
-  const ipc::Attachment attachment("peer", 5000ms);
+  const ipc::Attachment attachment("isobar-peer", 5000ms);
   ipc::Subscriber<Prior> priors(ipc::topics::kPrior);
   ipc::Waiter waiter({&priors.raw()});
   double last = -1.0;

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <thread>
@@ -22,6 +23,7 @@ namespace {
 
 using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
 using test::ChildProcess;
+namespace fs = std::filesystem;
 
 TEST_CASE("a small message arrives unchanged") {
   const Broker broker;
@@ -187,11 +189,18 @@ TEST_CASE("a killed subscriber does not block the publisher") {
     static_cast<void>(pause.wait_for(5ms));
   }
   REQUIRE(priors.has_subscribers());
+  const std::string socket = "/tmp/isobar-peer-" + std::to_string(reader.pid());
+  CHECK(fs::exists(socket));
   reader.signal(SIGKILL);
   CHECK(reader.wait(5s) == 128 + SIGKILL);
   for (int i = 0; i < 10'000; ++i) {  // many times the queue's depth and the pool's size
     REQUIRE(priors.send(prior));
   }
+  for (int i = 0; i < 100 && (fs::exists(socket) || fs::exists(socket + ".lock")); ++i) {
+    static_cast<void>(pause.wait_for(20ms));
+  }
+  CHECK_FALSE(fs::exists(socket));
+  CHECK_FALSE(fs::exists(socket + ".lock"));
 }
 
 TEST_CASE("attached processes notice a killed broker, and the next broker starts despite its leftovers") {
