@@ -35,6 +35,9 @@ std::string show_config(const Config& config, Shown shown = Shown::kAll);
 /// The same with the file and line from which each value comes, and the hash of the configuration.
 std::string show_config(const LoadedConfig& loaded, Shown shown = Shown::kAll);
 
+/// The settings of show_config() without comments and marks, one a line.
+std::string settings_in_force(const Config& config);
+
 /// Reads a calibration that show_compensation() has printed.
 /// @throws ConfigError as load_config() does
 CompensationConfig load_compensation(const std::filesystem::path& file);

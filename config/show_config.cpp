@@ -117,6 +117,18 @@ std::string show_config(const LoadedConfig& loaded, Shown shown) {
   return show(loaded.config, loaded.origins, shown, source + "\n");
 }
 
+std::string settings_in_force(const Config& config) {
+  const std::string shown = show_config(config);
+  std::string settings;
+  std::string_view rest = shown;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size() - 1) + 1;
+    if (rest.front() != '#' && rest.front() != '\n') settings += rest.substr(0, end);
+    rest.remove_prefix(end);
+  }
+  return settings;
+}
+
 std::string show_compensation(const CompensationConfig& compensation, const std::string& comment) {
   CompensationConfig copy = compensation;
   std::vector<Setting> settings;

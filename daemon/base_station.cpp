@@ -14,10 +14,10 @@
 
 namespace isobar {
 
-BaseStationGraph::BaseStationGraph(const Config& config)
+BaseStationGraph::BaseStationGraph(const Config& config, const std::string& configuration)
     : config_(config),
       scheduling_(base_station_scheduling(config.realtime)),
-      description_(config),
+      description_(config, configuration),
       station_(config.prior.altimeter, config.prior.compensation, scheduling_.station),
       barometer_(make_barometer_thread(config.barometer, scheduling_.barometer)),
       input_(config.input.address, config.input.port, {.barometer = barometer_ == nullptr, .others = false},
@@ -43,6 +43,11 @@ std::vector<std::string> BaseStationGraph::waiting_for() const {
 
 BarometerState BaseStationGraph::barometer_state() const {
   return barometer_ ? barometer_->status().device.state : BarometerState{};
+}
+
+void BaseStationGraph::apply(const ConfigChange& change) {
+  config_ = change.running;
+  description_.publish(config_);
 }
 
 void BaseStationGraph::fill_health(std::int64_t now_ns, ipc::HealthReport& report) {

@@ -21,7 +21,8 @@ namespace isobar {
 class BaseStationGraph final : public Graph {
  public:
   /// @throws ServiceError when the port cannot be bound or shared memory is refused
-  explicit BaseStationGraph(const Config& config);
+  /// @param configuration its name in the description of the run
+  BaseStationGraph(const Config& config, const std::string& configuration);
 
   void start() override { workers_.start(); }
   void stop() override { workers_.stop(); }
@@ -32,15 +33,17 @@ class BaseStationGraph final : public Graph {
   [[nodiscard]] BarometerState barometer_state() const override;
   [[nodiscard]] std::vector<std::string> waiting_for() const override;
   void fill_health(std::int64_t now_ns, ipc::HealthReport& report) override;
-  /// A base station starts in a second and has no state to lose.
-  [[nodiscard]] Apply apply_of(const Setting& /*setting*/) const override { return Apply::kRestart; }
-  void apply(const ConfigChange& /*change*/) override {}
+  /// isobar-dds follows at once. All else waits: a base station starts in a second and has no state to lose.
+  [[nodiscard]] Apply apply_of(const Setting& setting) const override {
+    return setting.key.starts_with("dds.") ? setting.apply : Apply::kRestart;
+  }
+  void apply(const ConfigChange& change) override;
 
  private:
   Config config_;
   BaseStationScheduling scheduling_;
   ipc::Broker broker_;
-  RunDescriptionPublisher description_;  // for recorders
+  RunDescriptionPublisher description_;
   StationThread station_;
   std::unique_ptr<BarometerThread> barometer_;
   SampleThread input_;

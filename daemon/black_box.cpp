@@ -14,6 +14,7 @@
 #include <system_error>
 #include <utility>
 
+#include "config/config_io.hpp"
 #include "core/errors.hpp"
 #include "daemon/black_box_folder.hpp"
 #include "daemon/health_entry.hpp"

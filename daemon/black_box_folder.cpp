@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdlib>
 #include <system_error>
 
 #include "core/errors.hpp"
+#include "daemon/service_folder.hpp"
 #include "run/recording/record_session.hpp"
 #include "run/tile_store/file_descriptor.hpp"
 
@@ -22,14 +22,6 @@ namespace {
 
 constexpr std::string_view kRingPrefix = "ring-";
 constexpr std::size_t kStampLength = 16;  // "20261128T202117Z"
-
-/// First folder of a variable that the service manager sets; empty without it.
-fs::path service_folder(const char* variable) {
-  const char* value = std::getenv(variable);
-  if (value == nullptr) return {};
-  const std::string_view folders(value);
-  return folders.substr(0, folders.find(':'));
-}
 
 void make_private(const fs::path& folder) {
   if (::mkdir(folder.c_str(), S_IRWXU) != 0 && errno != EEXIST) {

@@ -4,14 +4,19 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
-#include "config/problems.hpp"
+#include <algorithm>
+#include <ctime>
+
+#include "core/errors.hpp"
 #include "daemon/graph.hpp"
 #include "daemon/health_entry.hpp"
 #include "daemon/service.hpp"
+#include "run/files/run_layout.hpp"
 
 namespace isobar {
 namespace {
 
+namespace fs = std::filesystem;
 using ipc::HealthLevel;
 
 /// "a, b, c and 4 more"
@@ -31,23 +36,115 @@ std::string effects(const ConfigChange& change) {
   return text;
 }
 
+/// Refuses folders that hold files of others, as the next start would. Those in use are not looked at.
+/// @throws ConfigErrors
+void check_folders(const Config& wanted, const Config& running, const KeyOrigins& origins) {
+  Problems problems;
+  const auto check = [&](const std::string& key, const std::string& folder, const std::string& used,
+                         const char* own) {
+    if (folder.empty() || folder == used) return;
+    const auto origin = origins.find(key);
+    const std::string place = origin == origins.end() ? "" : origin->second.place + ": ";
+    problems.attempt([&] { files::refuse_foreign_folder(folder, own, place + key); });
+  };
+  check("output.directory", wanted.output.directory, running.output.directory, "");
+  check("map.directory", wanted.map_files.directory, running.map_files.directory, "map.toml");
+  problems.throw_if_any();
+}
+
+std::int64_t utc_s() { return static_cast<std::int64_t>(std::time(nullptr)); }
+
 }  // namespace
 
-Configuration::Configuration(const std::string& file, CommandLine command_line)
-    : file_(file), command_line_(std::move(command_line)), accepted_(Clock::now()), watch_(file) {
-  LoadedConfig loaded;
-  if (!file.empty()) loaded = load_layers(file);
-  hash_ = config_hash(loaded.config);
-  for (const std::string& note : loaded.notes) spdlog::warn("{}", note);
-  notes_ = loaded.notes;
-  command_line_(loaded.config);
-  running_ = loaded.config;
+Configuration::Configuration(const std::string& file, CommandLine command_line, const fs::path& state_folder)
+    : file_(file),
+      command_line_(std::move(command_line)),
+      kept_file_(file.empty() || state_folder.empty() ? fs::path() : state_folder / kKeptConfigFile),
+      accepted_(Clock::now()),
+      accepted_utc_s_(utc_s()),
+      watch_(file) {
+  start();
   if (!file.empty() && !watch_.works()) {
     spdlog::warn("{}: the kernel refuses to watch its folder; only SIGHUP reloads it", file);
   }
 }
 
+std::string Configuration::name() const { return file_.empty() ? "" : config_identity(file_); }
+
+void Configuration::start() {
+  try {
+    LoadedConfig loaded = file_.empty() ? LoadedConfig{} : load();
+    for (const std::string& note : loaded.notes) spdlog::warn("{}", note);
+    notes_ = std::move(loaded.notes);
+    accepted_config_ = loaded.config;
+    hash_ = config_hash(accepted_config_);
+    if (const auto before = kept(); before && kept_hash_ == hash_) begin_at(before->since_s);
+  } catch (const ConfigErrors& errors) {
+    start_with_kept(errors);
+  }
+  running_ = accepted_config_;
+  command_line_(running_);
+}
+
+void Configuration::start_with_kept(const ConfigErrors& errors) {
+  const auto before = kept();
+  if (!before) throw errors;
+  accepted_config_ = before->config;
+  hash_ = kept_hash_;
+  begin_at(before->since_s);
+  runs_kept_ = true;
+  refuse(errors.all());
+}
+
+/// Goes on counting the age of a configuration that earlier runs had.
+void Configuration::begin_at(std::int64_t since_s) {
+  if (since_s <= 0) return;
+  accepted_utc_s_ = since_s;
+  age_before_s_ = std::max(0.0, static_cast<double>(utc_s() - since_s));
+}
+
+LoadedConfig Configuration::load() const {
+  LoadedConfig loaded = load_layers(file_);
+  Config wanted = loaded.config;
+  command_line_(wanted);
+  check_folders(wanted, running_, loaded.origins);
+  return loaded;
+}
+
+/// The configuration in the state folder; says why it cannot be used.
+std::optional<KeptConfig> Configuration::kept() {
+  if (kept_file_.empty()) return std::nullopt;
+  try {
+    auto kept = read_kept_config(kept_file_, file_);
+    if (kept) kept_hash_ = config_hash(kept->config);
+    return kept;
+  } catch (const ConfigError& error) {
+    spdlog::warn("the kept configuration is not used: {}", error.what());
+    return std::nullopt;
+  }
+}
+
+// Only once the program runs with it: a start that fails leaves the former one.
+void Configuration::keep() {
+  if (kept_file_.empty() || kept_hash_ == hash_ || Clock::now() < next_keep_) return;
+  next_keep_ = Clock::now() + std::chrono::minutes(1);
+  try {
+    keep_config(kept_file_, file_, {accepted_config_, accepted_utc_s_});
+    kept_hash_ = hash_;
+    next_keep_ = {};
+    keep_failure_.clear();
+  } catch (const Error& error) {
+    if (keep_failure_ != error.what()) {
+      spdlog::warn(
+          "the configuration cannot be kept for a start with bad files: {}; trying again every minute",
+          error.what());
+    }
+    keep_failure_ = error.what();
+  }
+}
+
 void Configuration::poll(Graph& graph, Service& service) {
+  keep();
   const bool asked = service.take_reload_request();
   const bool changed = !file_.empty() && watch_.changed(Clock::now());
   if (!asked && !changed) return;
@@ -62,7 +159,7 @@ void Configuration::poll(Graph& graph, Service& service) {
 
 void Configuration::reload(Graph& graph) {
   try {
-    take(load_layers(file_), graph);
+    take(load(), graph);
   } catch (const ConfigErrors& errors) {
     refuse(errors.all());
   } catch (const std::exception& error) {
@@ -72,6 +169,7 @@ void Configuration::reload(Graph& graph) {
 
 void Configuration::take(LoadedConfig loaded, Graph& graph) {
   const std::string hash = config_hash(loaded.config);
+  const Config of_files = loaded.config;
   command_line_(loaded.config);
   ConfigChange change = change_to(
       running_, loaded.config, [&graph](const Setting& setting) { return graph.apply_of(setting); }, file_);
@@ -84,8 +182,14 @@ void Configuration::take(LoadedConfig loaded, Graph& graph) {
   if (hash != hash_ || change.at_start != at_start_ || !last_refusal_.empty()) {
     spdlog::info("configuration {} in force{}", hash, effects(change));
   }
-  if (hash != hash_) accepted_ = Clock::now();
+  if (hash != hash_) {
+    accepted_ = Clock::now();
+    accepted_utc_s_ = utc_s();
+    age_before_s_ = 0.0;
+  }
+  accepted_config_ = of_files;
   hash_ = hash;
+  runs_kept_ = false;
   at_start_ = std::move(change.at_start);
   last_refusal_.clear();
 }
@@ -99,7 +203,14 @@ void Configuration::refuse(const std::vector<std::string>& problems) {
     spdlog::error("configuration refused: {}", problems[i]);
   }
   if (problems.size() > kMostLines) spdlog::error("… and {} more", problems.size() - kMostLines);
-  spdlog::warn("configuration {} stays in force", hash_);
+  if (runs_kept_) {
+    spdlog::warn(
+        "configuration {} of an earlier run is in force, kept in {}; the files are taken as soon as they "
+        "are right",
+        hash_, kept_file_.string());
+  } else {
+    spdlog::warn("configuration {} stays in force", hash_);
+  }
   last_refusal_ = problems;
 }
 
@@ -111,11 +222,17 @@ std::string Configuration::status() const {
   return fmt::format("configuration {} in force{}", hash_, waits);
 }
 
+double Configuration::age_s() const {
+  return age_before_s_ + std::chrono::duration<double>(Clock::now() - accepted_).count();
+}
+
 void Configuration::fill(ipc::HealthReport& report) const {
   ipc::copy_text(hash_, report.status.configuration, sizeof report.status.configuration);
-  const double age_s = std::chrono::duration<double>(Clock::now() - accepted_).count();
+  const double age_s = this->age_s();
   add_entry(report, "configuration", last_refusal_.empty() ? HealthLevel::kOk : HealthLevel::kWarning,
-            fmt::format("hash {}, for {:.0f} s, {} reloads refused", hash_, age_s, refused_), age_s);
+            fmt::format("hash {}, for {:.0f} s, {} reloads refused{}", hash_, age_s, refused_,
+                        runs_kept_ ? "; kept from an earlier run, as the files are bad" : ""),
+            age_s);
   if (!last_refusal_.empty()) {
     add_entry(report, "configuration/refused", HealthLevel::kWarning, last_refusal_.front(),
               static_cast<double>(last_refusal_.size()));

@@ -39,7 +39,7 @@ void supervise(Graph& graph, Service& service, Configuration& configuration,
   LevelChanges known;
   WaitingLog waiting;
   ipc::Publisher<ipc::HealthReport> publisher(ipc::topics::kHealth);
-  service.ready();
+  service.ready(configuration.status());
   service.supervise([&] {
     const std::int64_t now_ns = RobotClock::now_ns();
     if (const std::int64_t step_ns = system_clock.note(read_clocks()); step_ns != 0) {

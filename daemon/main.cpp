@@ -35,6 +35,7 @@
 #include "daemon/run_files.hpp"
 #include "daemon/sample_thread.hpp"
 #include "daemon/scheduling.hpp"
+#include "daemon/service_folder.hpp"
 #include "daemon/stage_settings.hpp"
 #include "drivers/clock/robot_clock.hpp"
 
@@ -46,11 +47,12 @@ namespace {
 class RobotGraph final : public Graph {
  public:
   /// @throws ConfigError, ServiceError when a port, a device, shared memory or a folder is refused
-  explicit RobotGraph(const Config& config)
+  /// @param configuration its name in the description of the run
+  RobotGraph(const Config& config, const std::string& configuration)
       : config_(config),
         stages_(stage_settings(config)),
         scheduling_(robot_scheduling(config.realtime)),
-        description_(config),
+        description_(config, configuration),
         black_box_(black_box::BlackBox::make(config)),
         files_(config),
         map_(stages_.map, stages_.T_base_lidar, config.output.cloud_interval_s, files_.maps(), files_.start(),
@@ -148,7 +150,7 @@ class RobotGraph final : public Graph {
   StageSettings stages_;
   RobotScheduling scheduling_;
   ipc::Broker broker_;
-  RunDescriptionPublisher description_;  // for recorders
+  RunDescriptionPublisher description_;
   std::unique_ptr<black_box::BlackBox> black_box_;
   RunFiles files_;
   MapThread map_;
@@ -177,17 +179,20 @@ int main_with_errors(int argc, char** argv) {
   Service service;
   black_box::block_save_signal();
   wait_for_shared_memory(service);
-  Configuration configuration(options.config_file, [&options](Config& config) {
-    if (!options.output_directory.empty()) config.output.directory = options.output_directory;
-  });
+  Configuration configuration(
+      options.config_file,
+      [&options](Config& config) {
+        if (!options.output_directory.empty()) config.output.directory = options.output_directory;
+      },
+      service_folder("STATE_DIRECTORY"));
   const Config& config = configuration.config();
   if (config.role == Role::kBaseStation) {
     if (!options.output_directory.empty()) throw UsageError("--output: a base station writes no run");
-    BaseStationGraph graph(config);
+    BaseStationGraph graph(config, configuration.name());
     run(graph, service, configuration);
     return 0;
   }
-  RobotGraph graph(config);
+  RobotGraph graph(config, configuration.name());
   run(graph, service, configuration);
   return 0;
 }

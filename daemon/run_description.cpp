@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/run_description.hpp"
 
-#include <string_view>
+#include <string>
+#include <utility>
 
 #include "config/config_io.hpp"
 #include "drivers/clock/robot_clock.hpp"
@@ -25,20 +26,8 @@ recording::Manifest manifest_of(const Config& config) {
   return manifest;
 }
 
-std::string settings_in_force(const Config& config) {
-  const std::string shown = show_config(config);
-  std::string settings;
-  std::string_view rest = shown;
-  while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size() - 1) + 1;
-    if (rest.front() != '#' && rest.front() != '\n') settings += rest.substr(0, end);
-    rest.remove_prefix(end);
-  }
-  return settings;
-}
-
-RunDescriptionPublisher::RunDescriptionPublisher(const Config& config)
-    : publisher_(ipc::topics::kRunDescription) {
+RunDescriptionPublisher::RunDescriptionPublisher(const Config& config, std::string configuration)
+    : configuration_(std::move(configuration)), publisher_(ipc::topics::kRunDescription) {
   publish(config);
 }
 
@@ -48,6 +37,7 @@ void RunDescriptionPublisher::publish(const Config& config) {
   const std::string manifest = recording::manifest_text(manifest_of(config));
   const std::string settings = settings_in_force(config);
   const bool fits = manifest.size() + settings.size() <= ipc::RunDescription::kMaxBytes;
+  ipc::copy_to_field(configuration_, message->configuration);
   message->robot_clock_offset_ns = RobotClock::offset_ns();
   manifest.copy(message->text, manifest.size());
   message->manifest_bytes = static_cast<std::uint32_t>(manifest.size());

@@ -13,18 +13,17 @@ namespace isobar {
 /// Manifest of a recording of this configuration's inputs: every sensor that may deliver.
 [[nodiscard]] recording::Manifest manifest_of(const Config& config);
 
-/// Settings in force, without comments: the settings.toml of a recording.
-[[nodiscard]] std::string settings_in_force(const Config& config);
-
-/// Publishes the description of the running isobard. Belongs to one thread; must live as long as recorders
-/// are to find it.
+/// Publishes the description of the running isobard, for recorders and for isobar-dds. Belongs to one thread;
+/// must live as long as they are to find it.
 class RunDescriptionPublisher {
  public:
-  explicit RunDescriptionPublisher(const Config& config);
+  /// @param configuration config_identity() of the configuration's main file; empty: defaults
+  RunDescriptionPublisher(const Config& config, std::string configuration);
   /// Replaces the description: after a change of the configuration.
   void publish(const Config& config);
 
  private:
+  std::string configuration_;
   ipc::Publisher<ipc::RunDescription> publisher_;
 };
 

@@ -32,14 +32,18 @@ struct LidarPackets {
   LidarPackets() {}  // NOLINT: user-provided, so that a loan does not zero 18 KiB
 };
 
-/// The running isobard, for recorders. Published at the start and after each change.
+/// The running isobard, for recorders, and for isobar-dds, which follows its settings. Published at the start
+/// and after each change.
 struct RunDescription {
   static constexpr std::size_t kMaxBytes = 60'000;
+  static constexpr std::size_t kNameBytes = 512;
 
   std::int64_t robot_clock_offset_ns = 0;  ///< robot clock minus CLOCK_MONOTONIC
   std::uint32_t manifest_bytes = 0;        ///< recording.toml of a recording made now
   std::uint32_t settings_bytes = 0;        ///< all settings in force, TOML; 0: they do not fit
-  char text[kMaxBytes];                    // NOLINT(modernize-avoid-c-arrays): first manifest, then settings
+  /// Main file of the configuration; empty: isobard runs with defaults.
+  char configuration[kNameBytes];  // NOLINT(modernize-avoid-c-arrays): null-terminated
+  char text[kMaxBytes];            // NOLINT(modernize-avoid-c-arrays): first manifest, then settings
 
   RunDescription() {}  // NOLINT: user-provided, so that a loan does not zero 60 kB
 

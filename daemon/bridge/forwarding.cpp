@@ -50,34 +50,41 @@ Forwarding::CloudsIn::CloudsIn()
 
 Forwarding::Forwarding(Outputs& outputs, const dds::DdsConfig& config)
     : outputs_(outputs),
-      station_topics_{
-          dds::dds_name(dds::topics::kBasePressure, config.base_station, config.topics.base_pressure)
-              .substr(3),
-          dds::dds_name(dds::topics::kBasePressure, config.second_base_station, config.topics.base_pressure)
-              .substr(3)},
       prior_in_(ipc::topics::kPrior),
       pose_in_(ipc::topics::kPose),
       station_in_(ipc::topics::kBaseBarometer),
       health_in_(ipc::topics::kHealth),
       pose_waiter_({&prior_in_.raw(), &pose_in_.raw(), &station_in_.raw(), &health_in_.raw()}),
-      diagnostics_(config.node_name),
       last_report_ns_(steady_ns()) {
-  if (outputs.clouds) {
-    clouds_in_.emplace();
-  }
+  configure(config);
   pose_thread_ = std::thread([this] { forward_poses(); });
-  if (clouds_in_) {
-    cloud_thread_ = std::thread([this] { forward_clouds(); });
-  }
+  set_clouds(outputs.clouds.has_value());
 }
 
 Forwarding::~Forwarding() {
   pose_waiter_.stop();
   pose_thread_.join();
-  if (clouds_in_) {
-    clouds_in_->waiter.stop();
-    cloud_thread_.join();
+  set_clouds(false);
+}
+
+void Forwarding::configure(const dds::DdsConfig& config) {
+  const auto topic = [&config](const std::string& station) {
+    return dds::dds_name(dds::topics::kBasePressure, station, config.topics.base_pressure).substr(3);
+  };
+  station_topics_ = {topic(config.base_station), topic(config.second_base_station)};
+  diagnostics_.emplace(config.node_name);
+}
+
+void Forwarding::set_clouds(bool are_published) {
+  if (are_published == clouds_in_.has_value()) return;
+  if (are_published) {
+    clouds_in_.emplace();
+    cloud_thread_ = std::thread([this] { forward_clouds(); });
+    return;
   }
+  clouds_in_->waiter.stop();
+  cloud_thread_.join();
+  clouds_in_.reset();
 }
 
 std::chrono::nanoseconds Forwarding::silence() const noexcept {
@@ -128,11 +135,6 @@ void Forwarding::put_network(NetworkState state) {
   network_ = std::move(state);
 }
 
-std::string Forwarding::configuration() const {
-  const std::lock_guard lock(pose_mutex_);
-  return configuration_;
-}
-
 void Forwarding::put_received(const ReceivedCounts& counts) noexcept { received_.put(counts); }
 
 void Forwarding::put_keys(const KeyStatus& status) noexcept { keys_.put(status); }
@@ -149,16 +151,14 @@ void Forwarding::forward_health() {
     clock_.set_offset_ns(report->robot_clock_offset_ns);
     if (!system_clock_) system_clock_.emplace(report->robot_clock_offset_ns);
     follow_system_clock();
-    diagnostics_.start(report->stamp_ns + stamp_shift_ns_.load(std::memory_order_relaxed));
-    const char* hash = report->status.configuration;
-    configuration_.assign(hash, strnlen(hash, sizeof report->status.configuration));
+    diagnostics_->start(report->stamp_ns + stamp_shift_ns_.load(std::memory_order_relaxed));
     const bool has_summary =
         report->entry_count > 0 && ipc::HealthReport::kSummaryName == report->entries[0].name;
     if (!has_summary) reserve_summary(all_);
     append(*report, all_);
     last_entries_.assign(all_.entries + 1, all_.entries + all_.entry_count);  // without the summary
   } else {
-    diagnostics_.start(wall_ns());
+    diagnostics_->start(wall_ns());
     reserve_summary(all_);
     static_cast<void>(all_.add("bridge/isobard", HealthLevel::kStale, "isobard sends no health report", 0.0));
     // What was said last is no longer known: a name that only vanished would stay green in many a display.
@@ -175,9 +175,9 @@ void Forwarding::forward_health() {
   fill_summary(all_);
   for (std::uint32_t i = 0; i < all_.entry_count; ++i) {
     const ipc::HealthEntry& entry = all_.entries[i];
-    diagnostics_.add(entry.name, entry.level, entry.message, entry.value);
+    diagnostics_->add(entry.name, entry.level, entry.message, entry.value);
   }
-  if (outputs_.diagnostics) outputs_.diagnostics->write(diagnostics_.message());
+  if (outputs_.diagnostics) outputs_.diagnostics->write(diagnostics_->message());
 }
 
 void Forwarding::add(const std::string& name, HealthLevel level, const std::string& message, double value) {

@@ -44,10 +44,13 @@ class Forwarding {
     std::unique_lock<std::mutex> clouds;
   };
   [[nodiscard]] Pause pause() { return {std::unique_lock(pose_mutex_), std::unique_lock(cloud_mutex_)}; }
+  /// Takes other settings, during a pause().
+  void configure(const dds::DdsConfig& config);
+  /// Starts or stops the thread of the clouds, outside of a pause(). Requires outputs for clouds while it runs.
+  void set_clouds(bool are_published);
+  [[nodiscard]] bool has_clouds() const noexcept { return clouds_in_.has_value(); }
   /// Passes on the state of the network, for the diagnostics.
   void put_network(NetworkState state);
-  /// Hash of the configuration that isobard has in force; empty before its first health report.
-  [[nodiscard]] std::string configuration() const;
   /// Passes on the counts of the opposite direction, for the diagnostics. One thread.
   void put_received(const ReceivedCounts& counts) noexcept;
   /// Passes on the status of the keys, for the diagnostics. One thread.
@@ -87,12 +90,11 @@ class Forwarding {
   ipc::Subscriber<ipc::HealthReport> health_in_;
   ipc::Waiter pose_waiter_;
   std::optional<CloudsIn> clouds_in_;
-  mutable std::mutex pose_mutex_;  ///< held by the pose thread while it uses the outputs
-  std::mutex cloud_mutex_;         ///< likewise
-  NetworkState network_;           ///< guarded by pose_mutex_
-  std::string configuration_;      ///< likewise
-  dds::DiagnosticsBuilder diagnostics_;
-  std::vector<ipc::HealthEntry> last_entries_;  ///< of isobard; pose thread
+  std::mutex pose_mutex_;                               ///< held by the pose thread while it uses the outputs
+  std::mutex cloud_mutex_;                              ///< likewise
+  NetworkState network_;                                ///< guarded by pose_mutex_
+  std::optional<dds::DiagnosticsBuilder> diagnostics_;  ///< likewise; never empty
+  std::vector<ipc::HealthEntry> last_entries_;          ///< of isobard; pose thread
   std::atomic<std::uint64_t> rounds_{0};
   std::atomic<std::int64_t> last_data_ns_{0};  ///< steady clock, 0: never
   std::atomic<std::uint64_t> clouds_dropped_{0};

@@ -9,19 +9,21 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
+#include "config/problems.hpp"
 #include "core/errors.hpp"
-#include "daemon/bridge/forwarding.hpp"
+#include "daemon/bridge/connection.hpp"
 #include "daemon/bridge/network.hpp"
-#include "daemon/bridge/outputs.hpp"
 #include "daemon/bridge/process.hpp"
-#include "daemon/bridge/receiving.hpp"
 #include "daemon/bridge/repeated_lines.hpp"
 #include "daemon/bridge/settings.hpp"
+#include "daemon/bridge/settings_source.hpp"
 #include "daemon/bridge/steady_time.hpp"
 #include "daemon/logging.hpp"
 #include "daemon/service.hpp"
@@ -34,12 +36,8 @@ namespace {
 
 using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
 
-/// Longest wait for isobard in one round of the supervise loop; stop signals are seen between two rounds.
-constexpr auto kAttachTimeout = 400ms;
-/// Longest silence of a running isobard: it sends hundreds of priors a second and its health once a
-/// second. After a longer one this process is no longer connected, for instance because iceoryx
-/// unregistered it while it was stopped.
-constexpr auto kMaxSilence = 5s;
+/// Longest wait for isobard in a start with bad files.
+constexpr auto kFirstAttachTimeout = 3s;
 /// Time limit for attaching: milliseconds, but it blocks for ever when isobard ends in the middle of it.
 constexpr auto kAttachLimit = 10s;
 /// Time limit for detaching: less than a second, but it blocks for ever when isobard hangs.
@@ -58,119 +56,23 @@ void log_library_counts() {
   if (const auto line = g_library_lines.due(steady_ns())) spdlog::warn("Cyclone DDS: {}", *line);
 }
 
-/// The shared-memory side and both directions of forwarding, from attaching to isobard until the end.
-class Connection {
- public:
-  Connection(std::unique_ptr<ipc::Attachment> attachment, Network& network, Outputs& outputs,
-             const Settings& settings)
-      : attachment_(std::move(attachment)),
-        network_(network),
-        settings_(settings),
-        forwarding_(outputs, settings.dds) {
-    receive();
-  }
-
-  /// Hash of the configuration that isobard has in force; empty: not known yet.
-  [[nodiscard]] std::string configuration() const { return forwarding_.configuration(); }
-
-  /// One round of the supervise loop. Restarts the process when the connection has become useless.
-  /// @return true when the pose thread has completed a round since the last call
-  bool check() {
-    if (receiving_) forwarding_.put_received(receiving_->counts());
-    forwarding_.put_keys(network_.keys().status());
-    if (const auto reason = reason_to_restart()) {
-      spdlog::warn("{}; restarting", *reason);
-      // No detaching from shared memory: that blocks without isobard, and the restarted program does not need
-      // it.
-      network_.leave();
-      replace_process();
-    }
-    const std::uint64_t rounds_before = rounds_;
-    rounds_ = forwarding_.rounds();
-    return rounds_ != rounds_before;
-  }
-
-  /// Makes the DDS side anew. Messages of isobard wait meanwhile and are then forwarded: none is lost.
-  void renew_network() {
-    {
-      const auto pause = forwarding_.pause();
-      receiving_.reset();
-      network_.renew();
-      network_.wait_for_readers();
-    }
-    receive();
-  }
-
- private:
-  /// Makes the readers, while there is a network.
-  void receive() {
-    forwarding_.put_network(network_.state());
-    if (!network_.is_up()) return;
-    receiving_.emplace(network_.participant(), network_.keys().participant(), settings_, forwarding_.clock());
-    network_.announce(receiving_->readers());
-  }
-
-  [[nodiscard]] std::optional<std::string> reason_to_restart() const {
-    if (!attachment_->broker_alive()) return "isobard has ended";
-    if (forwarding_.silence() > kMaxSilence) {
-      return "no message from isobard for " + std::to_string(kMaxSilence.count()) + " s";
-    }
-    return std::nullopt;
-  }
-
-  std::unique_ptr<ipc::Attachment> attachment_;
-  Network& network_;
-  const Settings& settings_;
-  Forwarding forwarding_;
-  std::optional<Receiving> receiving_;  ///< while there is a network
-  std::uint64_t rounds_ = 0;
-};
-
-/// Attaches to isobard, and publishes its absence in the diagnostics until it runs.
-class Connector {
- public:
-  Connector(Outputs& outputs, const std::string& node_name) : outputs_(outputs), builder_(node_name) {}
-
-  /// Waits kAttachTimeout for isobard. Logs what it waits for, at once and then every minute.
-  /// @return null while isobard does not run
-  std::unique_ptr<ipc::Attachment> attach(Service& service) {
-    try {
-      return std::make_unique<ipc::Attachment>("isobar-dds", kAttachTimeout);
-    } catch (const ServiceError& error) {
-      const std::int64_t now_ns = steady_ns();
-      if (now_ns >= next_line_ns_) {
-        spdlog::info("{}; waiting for it (systemctl status isobard)", error.what());
-        service.set_status("waiting for isobard");
-        next_line_ns_ = now_ns + kReminderNs;
-      }
-      report_absence(outputs_, builder_);
-      return nullptr;
-    }
-  }
-
- private:
-  Outputs& outputs_;
-  dds::DiagnosticsBuilder builder_;
-  std::int64_t next_line_ns_ = 0;
-};
-
 /// The supervise loop's work.
 class Bridge {
  public:
-  Bridge(Service& service, const Options& options, const Settings& settings)
+  Bridge(Service& service, SettingsSource& source, std::unique_ptr<ipc::Attachment> attachment)
       : service_(service),
-        options_(options),
-        settings_(settings),
-        outputs_(settings),
-        network_(settings, outputs_),
-        connector_(outputs_, settings.dds.node_name) {
+        source_(source),
+        settings_(source.settings()),
+        outputs_(settings_),
+        network_(settings_, outputs_),
+        connector_(outputs_, settings_.dds.node_name, std::move(attachment)) {
     network_.renew();
   }
 
   /// @return true when no thread hangs
   bool tick() {
     log_library_counts();
-    follow_configuration();
+    follow_settings();
     if (network_.is_due()) renew_network();
     if (connection_) return connection_->check();
     const TimeLimit limit(kAttachLimit, &replace_process);
@@ -197,43 +99,80 @@ class Bridge {
       network_.renew();
     }
   }
-  /// isobard decides which configuration is in force; the bridge follows when it changes, and after SIGHUP.
-  void follow_configuration() {
-    const bool asked = service_.take_reload_request();
-    const std::string configuration = connection_ ? connection_->configuration() : "";
-    const bool changed = !configuration.empty() && !configuration_.empty() && configuration != configuration_;
-    if (!configuration.empty()) configuration_ = configuration;
-    if (!asked && !changed) return;
-    service_.reloading();
-    try {
-      if (load_settings(options_).values != settings_.values) {
-        spdlog::info("the settings of DDS have changed; restarting");
-        network_.leave();
-        replace_process();
-      }
-    } catch (const Error& error) {
-      spdlog::error("configuration refused, the former one stays in force: {}", error.what());
+  /// isobard decides which settings are in force; without it, SIGHUP reads the files.
+  void follow_settings() {
+    bool changed = false;
+    if (connection_) {
+      if (const auto isobard = connection_->description()) changed = source_.follow(*isobard);
     }
-    service_.ready("forwarding; " + network_.state().message);
+    const bool asked = service_.take_reload_request();
+    if (asked) service_.reloading();
+    if (asked) changed = source_.reload() || changed;
+    if (changed) change_settings();
+    if (asked) service_.ready(status());
   }
-  void tell_status() { service_.set_status("forwarding; " + network_.state().message); }
+  void change_settings() {
+    const auto change = [this] { settings_ = source_.settings(); };
+    if (connection_) {
+      connection_->change_settings(source_.settings(), change);
+      tell_status();
+    } else {
+      network_.change(change);
+    }
+    connector_.set_node_name(settings_.dds.node_name);
+  }
+  [[nodiscard]] std::string status() const {
+    return (connection_ ? "forwarding; " : "waiting for isobard; ") + network_.state().message;
+  }
+  void tell_status() { service_.set_status(status()); }
 
   Service& service_;
-  const Options& options_;
-  const Settings& settings_;
-  std::string configuration_;  ///< hash of isobard's configuration in force; empty: not known yet
+  SettingsSource& source_;
+  Settings settings_;  ///< to which the others refer
   Outputs outputs_;
   Network network_;
   Connector connector_;
   std::optional<Connection> connection_;
 };
 
+/// A start with bad files of which nothing is kept: the settings of an isobard that runs.
+/// @return null when none runs, or when it runs with other files
+std::unique_ptr<SettingsSource> settings_of_isobard(const Options& options,
+                                                    std::unique_ptr<ipc::Attachment>& attachment) {
+  try {
+    const TimeLimit limit(kAttachLimit, &replace_process);
+    attachment = std::make_unique<ipc::Attachment>(kProgram, kFirstAttachTimeout);
+    ipc::Subscriber<ipc::RunDescription> descriptions(ipc::topics::kRunDescription);
+    ipc::Waiter waiter({&descriptions.raw()});
+    static_cast<void>(waiter.wait_for(1s));
+    const auto isobard = descriptions.take_latest();
+    return isobard ? std::make_unique<SettingsSource>(options, *isobard) : nullptr;
+  } catch (const Error& error) {
+    spdlog::warn("no settings of isobard either: {}", error.what());
+    return nullptr;
+  }
+}
+
+std::unique_ptr<SettingsSource> first_source(const Options& options,
+                                             std::unique_ptr<ipc::Attachment>& attachment) {
+  try {
+    return std::make_unique<SettingsSource>(options);
+  } catch (const ConfigErrors& errors) {
+    auto source = settings_of_isobard(options, attachment);
+    if (!source) throw;
+    for (const std::string& problem : errors.all()) spdlog::error("configuration refused: {}", problem);
+    spdlog::warn("the settings that isobard has in force are used");
+    return source;
+  }
+}
+
 int run(const Options& options) {
-  const Settings settings = load_settings(options);
   Service service;  // first, so that every thread inherits the blocked signals
   ipc::set_fatal_action(&replace_process_later);
+  std::unique_ptr<ipc::Attachment> attachment;
+  const auto source = first_source(options, attachment);
   dds::set_library_log(&log_library_line);
-  Bridge bridge(service, options, settings);
+  Bridge bridge(service, *source, std::move(attachment));
   service.ready("started");
   service.supervise([&] { return bridge.tick(); });
   bridge.stop();
@@ -257,6 +196,9 @@ int main(int argc, char** argv) {
   }
   try {
     return isobar::bridge::run(options);
+  } catch (const isobar::ConfigErrors& errors) {
+    for (const std::string& problem : errors.all()) spdlog::error("{}", problem);
+    return errors.exit_code();
   } catch (const isobar::Error& error) {
     spdlog::error("{}", error.what());
     return error.exit_code();

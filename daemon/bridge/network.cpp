@@ -69,6 +69,20 @@ bool Network::is_due() {
 void Network::renew() {
   readers_before_ = reader_count();
   close();
+  open();
+}
+
+void Network::change(const std::function<void()>& change_settings) {
+  readers_before_ = reader_count();
+  close();
+  change_settings();
+  participant_settings_ = participant_settings(settings_);
+  keys_ = StationKeys(settings_);
+  outputs_.configure(settings_);
+  open();
+}
+
+void Network::open() {
   const std::int64_t now_ns = steady_ns();
   next_attempt_ns_ = now_ns + kRetryNs;
   chosen_ = last_seen_ = choose();

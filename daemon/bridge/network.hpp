@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,7 +28,7 @@ struct NetworkState {
 /// among the interfaces, so that subscribers of this machine depend on no network. Main thread.
 class Network {
  public:
-  /// `outputs` are opened and closed with the participant.
+  /// `outputs` are opened and closed with the participant. Both must outlive the object.
   Network(const Settings& settings, Outputs& outputs);
   ~Network();
   Network(const Network&) = delete;
@@ -41,6 +42,9 @@ class Network {
   /// are none; then is_up() is false, and another attempt is due a second later. Entities of others in the
   /// participant must be gone.
   void renew();
+  /// renew() with other settings.
+  /// @param change_settings changes the settings that the constructor was given, while all is closed
+  void change(const std::function<void()>& change_settings);
   /// Waits until as many readers are matched as before renew(), up to 0.1 s: what is sent earlier is lost to
   /// them. The last participant's remote readers may never come back.
   void wait_for_readers() const;
@@ -58,6 +62,7 @@ class Network {
   void leave() noexcept;
 
  private:
+  void open();
   void close() noexcept;
   [[nodiscard]] std::uint64_t reader_count() const;
   [[nodiscard]] dds::InterfaceChoice choose() const;

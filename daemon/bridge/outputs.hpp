@@ -10,6 +10,11 @@
 
 namespace isobar::bridge {
 
+/// Whether scans and maps are published with these settings.
+[[nodiscard]] inline bool publishes_clouds(const Settings& settings) {
+  return !settings.is_base_station && settings.dds.publish_clouds;
+}
+
 /// All DDS outputs of this machine: pose and clouds on a robot, pressure on a base station, diagnostics on
 /// both.
 struct Outputs {
@@ -18,13 +23,14 @@ struct Outputs {
   std::optional<dds::CloudOutputs> clouds;                          ///< robot only, with dds.publish_clouds
   std::optional<dds::StationOutputs> station;                       ///< base station only
 
-  explicit Outputs(const Settings& settings) : diagnostics_name_(settings.dds.topics.diagnostics) {
-    if (settings.is_base_station) {
-      station.emplace(settings.dds);
-      return;
-    }
-    poses.emplace(settings.dds, settings.mounts);
-    if (settings.dds.publish_clouds) clouds.emplace(settings.dds);
+  explicit Outputs(const Settings& settings) { configure(settings); }
+
+  /// Takes other settings while closed. What is still published keeps what it has gathered.
+  void configure(const Settings& settings) {
+    diagnostics_name_ = settings.dds.topics.diagnostics;
+    configure(station, settings.is_base_station, settings.dds);
+    configure(poses, !settings.is_base_station, settings.dds, settings.mounts);
+    configure(clouds, publishes_clouds(settings), settings.dds);
   }
 
   /// @param for_station participant of the base station's topics; 0: these stay closed
@@ -56,6 +62,16 @@ struct Outputs {
   }
 
  private:
+  template <class Output, class... Settings>
+  static void configure(std::optional<Output>& output, bool is_wanted, const Settings&... settings) {
+    if (!is_wanted) {
+      output.reset();
+    } else if (output) {
+      output->configure(settings...);
+    } else {
+      output.emplace(settings...);
+    }
+  }
   std::string diagnostics_name_;
 };
 

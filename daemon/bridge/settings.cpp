@@ -46,7 +46,10 @@ void add_options(CLI::App& app, Options& options) {
 }
 
 Settings load_settings(const Options& options) {
-  Config config = options.config_file.empty() ? Config{} : load_config(options.config_file);
+  return settings_of(options.config_file.empty() ? Config{} : load_config(options.config_file), options);
+}
+
+Settings settings_of(Config config, const Options& options) {
   if (options.domain) {
     config.dds.domain_id = *options.domain;
   }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "config/config.hpp"
 #include "daemon/bridge/environment.hpp"
 #include "ipc/dds_config.hpp"
 
@@ -34,7 +35,13 @@ struct Settings {
 /// Adds description, version and options of the bridge to its command line; parsing fills `options`.
 void add_options(CLI::App& app, Options& options);
 
-/// @throws ConfigError when the file, an option on the command line or the environment breaks a rule
+/// Settings of a configuration.
+/// @throws ConfigError when an option on the command line or the environment breaks a rule
+[[nodiscard]] Settings settings_of(Config config, const Options& options);
+
+/// Settings of the files, without any: of the defaults.
+/// @throws ConfigErrors for every error of the files
+/// @throws ConfigError when an option on the command line or the environment breaks a rule
 [[nodiscard]] Settings load_settings(const Options& options);
 
 }  // namespace isobar::bridge

@@ -9,6 +9,11 @@
 namespace isobar::dds {
 namespace {
 
+bool equal(const PosePropagatorConfig& a, const PosePropagatorConfig& b) {
+  return a.slew_time_s == b.slew_time_s && a.max_slew_m_s == b.max_slew_m_s &&
+         a.max_slew_rad_s == b.max_slew_rad_s && a.max_extrapolation_s == b.max_extrapolation_s;
+}
+
 TfMessage message_over(TransformStampedMessage* transforms, std::size_t count) {
   TfMessage message{};
   message.transforms._buffer = transforms;
@@ -36,6 +41,16 @@ PoseOutputs::PoseOutputs(const DdsConfig& config, const SensorMounts& mounts)
       propagator_(config.propagator),
       odom_rate_(config.odom_rate_hz),
       altitude_rate_(config.altitude_rate_hz) {}
+
+void PoseOutputs::configure(const DdsConfig& config, const SensorMounts& mounts) {
+  if (!equal(config.propagator, config_.propagator)) propagator_ = PosePropagator(config.propagator);
+  config_ = config;
+  first_map_frame_ = config.map_frame;
+  config_.map_frame = frame_of_session(first_map_frame_, session_);
+  mounts_ = mounts;
+  odom_rate_ = RateLimit(config.odom_rate_hz);
+  altitude_rate_ = RateLimit(config.altitude_rate_hz);
+}
 
 void PoseOutputs::open(dds_entity_t participant) {
   to_.emplace(participant, config_);
@@ -173,12 +188,13 @@ void CloudOutputs::on_scan(const RegisteredScan& scan, std::int64_t shift_ns) {
 
 void CloudOutputs::on_map(const ipc::MapCloud& piece, std::int64_t shift_ns) {
   map_shift_ns_ = shift_ns;
-  map_frame_ = frame_of_session(config_.map_frame, piece.session);
+  map_session_ = piece.session;
   if (map_.add(piece, map_builder_) && to_) write_map();
 }
 
 void CloudOutputs::write_map() {
-  to_->map.write(map_builder_.message(map_.stamp_ns() + map_shift_ns_, map_frame_));
+  to_->map.write(map_builder_.message(map_.stamp_ns() + map_shift_ns_,
+                                      frame_of_session(config_.map_frame, map_session_)));
 }
 
 std::vector<dds_entity_t> CloudOutputs::writers() const {

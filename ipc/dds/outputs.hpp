@@ -50,6 +50,8 @@ class PoseOutputs {
   PoseOutputs(const PoseOutputs&) = delete;
   PoseOutputs& operator=(const PoseOutputs&) = delete;
 
+  /// Takes other settings while closed.
+  void configure(const DdsConfig& config, const SensorMounts& mounts);
   /// Makes the writers and publishes tf_static.
   /// @throws ServiceError when a DDS entity cannot be created
   void open(dds_entity_t participant);
@@ -102,6 +104,8 @@ class StationOutputs {
   StationOutputs(const StationOutputs&) = delete;
   StationOutputs& operator=(const StationOutputs&) = delete;
 
+  /// Takes other settings while closed.
+  void configure(const DdsConfig& config) { config_ = config; }
   /// @throws ServiceError when a DDS entity cannot be created
   void open(dds_entity_t participant);
   void close() noexcept { to_.reset(); }
@@ -129,6 +133,8 @@ class CloudOutputs {
   CloudOutputs(const CloudOutputs&) = delete;
   CloudOutputs& operator=(const CloudOutputs&) = delete;
 
+  /// Takes other settings while closed.
+  void configure(const DdsConfig& config) { config_ = config; }
   /// Makes the writers; publishes the last complete map.
   /// @throws ServiceError when a DDS entity cannot be created
   void open(dds_entity_t participant);
@@ -154,7 +160,7 @@ class CloudOutputs {
   CloudBuilder scan_builder_{CloudBuilder::Fields::kWithRing};
   CloudBuilder map_builder_{CloudBuilder::Fields::kWithoutRing};
   MapAssembly map_;
-  std::string map_frame_;  ///< of the newest map
+  std::uint32_t map_session_ = 1;  ///< of the newest map
   std::int64_t map_shift_ns_ = 0;
   std::optional<Writers> to_;
 };

@@ -43,6 +43,11 @@ std::vector<std::string> names_in(const fs::path& directory) {
   return names;
 }
 
+/// Whether a file may lie beside those of a run: isobard's own in its state folder, and the file system's.
+bool is_beside_runs(std::string_view name) {
+  return name == "lost+found" || name == "lock" || name == "blackbox" || name.starts_with("last-good.toml");
+}
+
 bool is_of_run(const std::string& name) {
   const auto equal = [&](const char* own) { return name == own; };
   const auto numbered = [&](const char* own) { return session_of(name, own) > 0; };
@@ -85,7 +90,7 @@ void refuse_foreign_folder(const fs::path& directory, const char* own, const std
   });
   if (is_own) return;
   for (const std::string& name : names) {
-    if (name.starts_with('.') || name == "lost+found" || name == "lock" || name == "blackbox") continue;
+    if (name.starts_with('.') || is_beside_runs(name)) continue;
     std::string rule = key + ": " + directory.string() + " holds files of others (";
     rule += name + "); name a new or empty folder, or one that isobard has written";
     throw ConfigError(rule);

@@ -30,7 +30,8 @@ inline constexpr const char* kCheckpointFile = "checkpoint";   ///< where a late
 /// True if the trajectory of a map frame holds no pose.
 [[nodiscard]] bool has_no_pose(const std::filesystem::path& directory, std::uint32_t session);
 /// Refuses a folder that is not empty and does not hold what Isobar writes there, so that nothing of others is
-/// mixed with it or replaced. Hidden files, lost+found and the black box's folder do not count.
+/// mixed with it or replaced. Hidden files, lost+found, the black box's folder and the kept configuration do not
+/// count.
 /// @param own a file that Isobar's folders have; empty: those of a run
 /// @param key the setting that names the folder, for the error
 /// @throws ConfigError naming the folder and a file in it

@@ -49,8 +49,14 @@ class Program {
  public:
   explicit Program(const std::string& text) {
     write(text);
-    configuration_ = std::make_unique<Configuration>(
-        file().string(), [](Config& config) { config.output.directory = "/of/the/command/line"; });
+    start({});
+  }
+  /// A start with a state folder, "" as the text: without a file.
+  Program(const TemporaryFolder& state, const std::filesystem::path& file, const std::string& text)
+      : file_(file) {
+    std::filesystem::remove(file_);
+    if (!text.empty()) write(text);
+    start(state.path());
   }
   ~Program() {
     sigset_t set;
@@ -61,7 +67,9 @@ class Program {
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
-  [[nodiscard]] std::filesystem::path file() const { return folder_.path() / "isobar.toml"; }
+  [[nodiscard]] std::filesystem::path file() const {
+    return file_.empty() ? folder_.path() / "isobar.toml" : file_;
+  }
   void write(const std::string& text) const { std::ofstream(file()) << text; }
   /// Writes the file and asks for a reload.
   /// @return what the service manager is told
@@ -80,15 +88,28 @@ class Program {
     }
     return {};
   }
+  /// A tick of the supervise loop.
+  void tick() { configuration_->poll(graph, service_); }
+  [[nodiscard]] std::string status() const { return configuration_->status(); }
   [[nodiscard]] const Config& config() const { return configuration_->config(); }
   NotingGraph graph;
 
  private:
+  void start(const std::filesystem::path& state) {
+    configuration_ = std::make_unique<Configuration>(
+        file().string(), [](Config& config) { config.output.directory = "/of/the/command/line"; }, state);
+  }
   TemporaryFolder folder_;
+  std::filesystem::path file_;  // empty: in folder_
   NotifySocket manager_;
   Service service_;
   std::unique_ptr<Configuration> configuration_;
 };
+
+/// "FILE:LINE"
+std::string file_place(const Program& program, int line) {
+  return program.file().string() + ":" + std::to_string(line);
+}
 
 bool has(const std::string& text, const std::string& words) {
   CAPTURE(text);
@@ -134,6 +155,53 @@ TEST_CASE("a file that is refused changes nothing, until a good one comes") {
   program.reload("map.radius_m = 62\n");
   CHECK(program.graph.radius_m == 62.0);
   CHECK(program.entry("configuration/refused").empty());
+}
+
+TEST_CASE("a start with bad files goes on with the last good configuration, until the files are right") {
+  const TemporaryFolder state;
+  const TemporaryFolder etc;
+  const auto file = etc.path() / "isobar.toml";
+  CHECK_THROWS_AS(Program(state, file, "map.radius_m = 5\n"), ConfigErrors);  // nothing is kept yet
+  Program(state, file, "map.radius_m = 55\n").tick();
+  for (const char* bad : {"map.radius_m = 5\n", "map.radius_m = \n", "map.radius = 60\n", "\xff", ""}) {
+    CAPTURE(bad);
+    Program program(state, file, bad);
+    CHECK(program.config().map.radius_m == 55.0);
+    CHECK(program.config().output.directory == "/of/the/command/line");
+    CHECK(has(program.status(), "stays in force; refused: " + file.string()));
+    CHECK(has(program.entry("configuration"), "kept from an earlier run, as the files are bad"));
+    CHECK(has(program.entry("configuration/refused"), file.string()));
+    program.tick();
+    program.reload("map.radius_m = 66\n");
+    CHECK(program.graph.radius_m == 66.0);
+    CHECK(program.entry("configuration/refused").empty());
+    CHECK_FALSE(has(program.entry("configuration"), "kept"));
+    program.reload("map.radius_m = 55\n");
+    program.tick();
+  }
+}
+
+TEST_CASE("what was never in force is not kept, and what others have written is not used") {
+  const TemporaryFolder state;
+  const TemporaryFolder etc;
+  const auto file = etc.path() / "isobar.toml";
+  { const Program never_ran(state, file, "map.radius_m = 55\n"); }
+  CHECK_THROWS_AS(Program(state, file, "x"), ConfigErrors);
+  Program(state, file, "map.radius_m = 55\n").tick();
+  CHECK_THROWS_AS(Program(state, etc.path() / "other.toml", "x"), ConfigErrors);
+  std::ofstream(state.path() / kKeptConfigFile, std::ios::app) << "map.radius_m = 77\n";
+  CHECK_THROWS_AS(Program(state, file, "x"), ConfigErrors);
+  Program(state, file, "map.radius_m = 56\n").tick();  // written anew
+  CHECK(Program(state, file, "x").config().map.radius_m == 56.0);
+}
+
+TEST_CASE("a folder with files of others is refused at once, not at the next start") {
+  const TemporaryFolder foreign;
+  std::ofstream(foreign.path() / "thesis.txt") << "x";
+  Program program("map.radius_m = 50\n");
+  program.reload("[map]\nradius_m = 60\ndirectory = \"" + foreign.path().string() + "\"\n");
+  CHECK(has(program.entry("configuration/refused"), file_place(program, 3) + ":13: map.directory: "));
+  CHECK(program.graph.changes == 0);
 }
 
 TEST_CASE("a file with equal values asks nothing of the stages") {
