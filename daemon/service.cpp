@@ -59,7 +59,8 @@ bool Service::wait_for(std::chrono::milliseconds duration) {
 }
 
 void Service::supervise(const std::function<bool()>& tick, std::chrono::milliseconds period) {
-  while (wait_for(period)) {
+  // The first tick at once: a bridge that has aborted attaches to isobard in it.
+  for (std::chrono::milliseconds wait{0}; wait_for(wait); wait = period) {
     if (tick()) feed_watchdog();
   }
   sd_notify(0, "STOPPING=1");

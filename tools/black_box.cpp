@@ -15,6 +15,7 @@
 #include "ipc/service_view.hpp"
 #include "ipc/shared_memory.hpp"
 #include "tools/commands.hpp"
+#include "tools/status/hang_limit.hpp"
 #include "tools/subcommand.hpp"
 
 namespace isobar::tools {
@@ -30,6 +31,8 @@ struct SaveOptions {
 struct StateOptions {};
 
 constexpr auto kBlackBoxAttachTimeout = 3s;
+/// Beyond --timeout: attaching and detaching take milliseconds.
+constexpr unsigned kHangLimitS = 5;
 /// Time within which a running black box tells its state: it does so once a second.
 constexpr auto kStateTimeout = 3s;
 
@@ -87,6 +90,7 @@ class BlackBoxLink {
 
 void run_save(const SaveOptions& options) {
   ipc::enter_service_view();
+  const HangLimit limit(kHangLimitS + static_cast<unsigned>(options.timeout_s), 69);
   BlackBoxLink link;
   link.save(options);
   if (link.state().last_failed) throw ServiceError(std::string("not saved: ") + link.state().last);
@@ -96,6 +100,7 @@ void run_save(const SaveOptions& options) {
 void run_state(const StateOptions&) {
   constexpr double kMb = 1e6;
   ipc::enter_service_view();
+  const HangLimit limit(kHangLimitS, 69);
   const BlackBoxLink link;
   const ipc::BlackBoxState& state = link.state();
   std::printf("holds %.1f s in %.1f MB (at most %.0f MB); %llu inputs lost\n",

@@ -12,6 +12,7 @@
 #include "ipc/channel.hpp"
 #include "ipc/service_view.hpp"
 #include "tools/commands.hpp"
+#include "tools/status/hang_limit.hpp"
 #include "tools/subcommand.hpp"
 
 namespace isobar::tools {
@@ -19,6 +20,9 @@ namespace isobar::tools {
 namespace {
 
 using std::chrono::milliseconds;
+
+/// Beyond --timeout: attaching and detaching take milliseconds.
+constexpr unsigned kResetLimitS = 5;
 
 struct ResetOptions {
   double timeout_s = 5.0;
@@ -50,6 +54,7 @@ void run_reset(const ResetOptions& options) {
   const auto end =
       std::chrono::steady_clock::now() + milliseconds(static_cast<std::int64_t>(options.timeout_s * 1e3));
   ipc::enter_service_view();
+  const HangLimit limit(kResetLimitS + static_cast<unsigned>(options.timeout_s), 69);
   const ipc::Attachment attachment("isobar-reset", milliseconds(2'000));
   ipc::Subscriber<ipc::HealthReport> reports(ipc::topics::kHealth);
   ipc::Publisher<ipc::CommandMessage> commands(ipc::topics::kCommand);

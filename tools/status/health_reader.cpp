@@ -16,10 +16,13 @@
 #include "drivers/clock/robot_clock.hpp"
 #include "ipc/service_view.hpp"
 #include "ipc/shared_memory.hpp"
+#include "tools/status/hang_limit.hpp"
 
 namespace isobar::tools {
 namespace {
 
+/// Attaching takes milliseconds.
+constexpr unsigned kAttachLimitS = 5;
 constexpr unsigned kDetachLimitS = 2;
 volatile std::sig_atomic_t g_exit_code = 0;
 
@@ -31,14 +34,20 @@ struct HealthReader::Impl {
   ipc::Waiter waiter{&reports.raw()};
 
   explicit Impl(const char* program) : attachment(program, std::chrono::milliseconds(0)) {}
+
+  /// @param hang_code see HangLimit
+  static std::unique_ptr<Impl> attach(const char* program, int hang_code) {
+    const HangLimit limit(kAttachLimitS, hang_code);
+    return std::make_unique<Impl>(program);
+  }
 };
 
-HealthReader::HealthReader(const char* program, std::chrono::milliseconds timeout) {
+HealthReader::HealthReader(const char* program, std::chrono::milliseconds timeout, int hang_code) {
   const auto deadline = std::chrono::steady_clock::now() + timeout;
   bool said = false;
   while (!impl_) {
     try {
-      impl_ = std::make_unique<Impl>(program);
+      impl_ = Impl::attach(program, hang_code);
     } catch (const ServiceError& error) {
       if (std::chrono::steady_clock::now() >= deadline) throw;
       if (!said) std::fprintf(stderr, "isobar: %s; waiting\n", error.what());

@@ -15,8 +15,9 @@ class HealthReader {
  public:
   /// @param program name under which this process attaches
   /// @param timeout longest wait for a running isobard
+  /// @param hang_code exit code of this process when isobard runs but does not answer, see HangLimit
   /// @throws ServiceError when none runs, or when this user may not attach to it
-  HealthReader(const char* program, std::chrono::milliseconds timeout);
+  HealthReader(const char* program, std::chrono::milliseconds timeout, int hang_code);
   ~HealthReader();
   HealthReader(const HealthReader&) = delete;
   HealthReader& operator=(const HealthReader&) = delete;

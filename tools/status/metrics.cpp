@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tools/status/health_reader.hpp"
+#include "tools/status/view.hpp"
 
 namespace isobar::tools {
 namespace {
@@ -15,9 +16,6 @@ using prometheus::ClientMetric;
 using prometheus::MetricFamily;
 using prometheus::MetricType;
 using Labels = std::vector<ClientMetric::Label>;
-
-/// A report older than this comes from an isobard that hangs [s].
-constexpr double kHangs = 5.0;
 
 /// Families in the order of their first sample.
 class Families {
@@ -60,7 +58,7 @@ void add_health(const ipc::HealthReport& report, Families& out) {
   }
 }
 
-void add_sensors(const ipc::ServiceStatus& status, Families& out) {
+void add_sensors(const ipc::ServiceStatus& status, double age_s, Families& out) {
   for (std::uint32_t i = 0; i < std::min<std::size_t>(status.sensor_count, status.kMaxSensors); ++i) {
     const ipc::SensorStatus& sensor = status.sensors[i];
     const Labels labels{{"sensor", sensor.name}};
@@ -68,8 +66,8 @@ void add_sensors(const ipc::ServiceStatus& status, Families& out) {
               labels);
     if (sensor.heard) {
       out.gauge("isobar_sensor_rate_hertz", "Samples a second; of a lidar, scans", sensor.rate_hz, labels);
-      out.gauge("isobar_sensor_age_seconds", "Time since the newest sample was measured", sensor.age_s,
-                labels);
+      out.gauge("isobar_sensor_age_seconds", "Time since the newest sample was measured",
+                sensor.age_s + age_s, labels);
       out.gauge("isobar_sensor_jitter_seconds", "Mean deviation of the sample interval",
                 sensor.jitter_ms * 1e-3, labels);
     }
@@ -95,7 +93,7 @@ void add_stages(const ipc::ServiceStatus& status, Families& out) {
   }
 }
 
-void add_estimate(const ipc::ServiceStatus& status, Families& out) {
+void add_estimate(const ipc::ServiceStatus& status, double age_s, Families& out) {
   if (status.pose.mode[0] != '\0') {
     const ipc::PoseFigures& pose = status.pose;
     const char* help = "Position of base_link in the map frame";
@@ -103,7 +101,7 @@ void add_estimate(const ipc::ServiceStatus& status, Families& out) {
     out.gauge("isobar_pose_position_meters", help, pose.y_m, {{"axis", "y"}});
     out.gauge("isobar_pose_position_meters", help, pose.z_m, {{"axis", "z"}});
     out.gauge("isobar_pose_yaw_degrees", "Yaw of base_link in the map frame", pose.yaw_deg);
-    out.gauge("isobar_pose_age_seconds", "Time since the stamp of the newest pose", pose.age_s);
+    out.gauge("isobar_pose_age_seconds", "Time since the stamp of the newest pose", pose.age_s + age_s);
     out.gauge("isobar_pose_overlap_ratio", "Share of the scan's points that match the map", pose.overlap);
   }
   if (status.height.source[0] != '\0') {
@@ -124,15 +122,16 @@ void add_estimate(const ipc::ServiceStatus& status, Families& out) {
 
 std::vector<MetricFamily> metrics_of(const ipc::HealthReport* report, double age_s) {
   Families out;
-  const bool up = report != nullptr && age_s < kHangs;
+  const bool up = report != nullptr && age_s < kOldReportS;
   out.gauge("isobar_up", "1 if isobard runs and reports its health", up ? 1.0 : 0.0);
   if (report == nullptr) return out.take();
   out.gauge("isobar_report_age_seconds", "Time since the health report was made", age_s);
+  if (!up) return out.take();  // figures that nobody knows any more
   out.gauge("isobar_uptime_seconds", "Time since isobard started", report->status.uptime_s);
   add_health(*report, out);
-  add_sensors(report->status, out);
+  add_sensors(report->status, age_s, out);
   add_stages(report->status, out);
-  add_estimate(report->status, out);
+  add_estimate(report->status, age_s, out);
   return out.take();
 }
 

@@ -13,7 +13,8 @@
 namespace isobar::tools {
 
 /// Metrics of a health report, with units in their names as Prometheus wants them. Without a report (isobard
-/// does not run) only isobar_up, 0. Figures that do not exist are left out.
+/// does not run) only isobar_up, 0; with one older than kOldReportS (it hangs) that and its age. Ages are as of now.
+/// Figures that do not exist are left out.
 [[nodiscard]] std::vector<prometheus::MetricFamily> metrics_of(const ipc::HealthReport* report, double age_s);
 
 /// The newest report, for the threads of the HTTP server.

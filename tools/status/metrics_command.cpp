@@ -15,6 +15,7 @@
 #include "daemon/service.hpp"
 #include "ipc/service_view.hpp"
 #include "tools/commands.hpp"
+#include "tools/status/hang_limit.hpp"
 #include "tools/status/health_reader.hpp"
 #include "tools/status/metrics.hpp"
 
@@ -22,9 +23,6 @@ namespace isobar::tools {
 namespace {
 
 using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
-
-/// Time limit for attaching: milliseconds, but it blocks for ever when isobard ends in the middle of it.
-constexpr unsigned kAttachLimitS = 10;
 
 /// The HTTP server, once the address can be listened on.
 class Endpoint {
@@ -61,13 +59,10 @@ class Endpoint {
 /// @return null while it does not run
 std::unique_ptr<HealthReader> attach(bool& said) {
   try {
-    alarm(kAttachLimitS);  // ends this process; its unit restarts it
-    auto reader = std::make_unique<HealthReader>("isobar-metrics", 0ms);
-    alarm(0);
+    auto reader = std::make_unique<HealthReader>("isobar-metrics", 0ms, HangLimit::kWait);
     log_info("attached to isobard");
     return reader;
   } catch (const ServiceError& error) {
-    alarm(0);
     if (!said) log_info(std::string(error.what()) + "; waiting for it");
     said = true;
     return nullptr;

@@ -12,6 +12,7 @@
 #include "core/errors.hpp"
 #include "ipc/service_view.hpp"
 #include "tools/commands.hpp"
+#include "tools/status/hang_limit.hpp"
 #include "tools/status/health_reader.hpp"
 #include "tools/status/view.hpp"
 
@@ -22,7 +23,8 @@ using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
 
 /// Longest wait for a report of a running isobard, which makes one a second.
 constexpr auto kReportTimeout = 4s;
-constexpr double kOldReportS = 5.0;
+/// Exit code when isobard runs, but sends no report.
+constexpr int kHangs = 2;
 constexpr const char* kClearScreen = "\033[H\033[J";
 
 struct StatusOptions {
@@ -36,7 +38,7 @@ volatile std::sig_atomic_t g_stop_status = 0;
 
 /// Exit codes of monitoring plugins: 0 ok, 1 warning, 2 error, 3 stale.
 int exit_code(const ipc::HealthReport& report) {
-  if (report.entry_count == 0 || HealthReader::age_s(report) > kOldReportS) return 2;
+  if (report.entry_count == 0 || HealthReader::age_s(report) > kOldReportS) return kHangs;
   return static_cast<int>(report.entries[0].level);
 }
 
@@ -62,7 +64,7 @@ void watch(HealthReader& reader, const StatusOptions& options, ipc::HealthReport
     if (reader.next(report, 1s)) {
       show(report, options);
     } else if (HealthReader::age_s(report) > kOldReportS && reader.alive()) {
-      std::fprintf(stderr, "isobar: no report of isobard for %.0f s\n", HealthReader::age_s(report));
+      show(report, options);  // with its age
     }
   }
 }
@@ -73,12 +75,12 @@ void run_status(const StatusOptions& options) {
                                   : std::chrono::duration_cast<std::chrono::milliseconds>(
                                         std::chrono::duration<double>(options.wait_s));
   ipc::enter_service_view();
-  HealthReader reader("isobar-status", wait);
+  HealthReader reader("isobar-status", wait, options.watch ? HangLimit::kWait : kHangs);
   ipc::HealthReport report;
   if (!reader.next(report, kReportTimeout)) {
     throw Error(
         "isobard runs but sends no health report: it hangs, is just starting, or comes from another build",
-        2);
+        kHangs);
   }
   if (options.watch) {
     watch(reader, options, report);

@@ -84,9 +84,10 @@ Json map_json(const ipc::ServiceStatus& status) {
 
 std::string status_json(const ipc::HealthReport& report, double age_s) {
   const ipc::ServiceStatus& status = report.status;
+  const Headline head = headline_of(report, age_s);
   Json json{{"schema", 1},
-            {"level", report.entry_count > 0 ? ipc::level_name(report.entries[0].level) : "stale"},
-            {"summary", report.entry_count > 0 ? report.entries[0].message : "no health report"},
+            {"level", ipc::level_name(head.level)},
+            {"summary", head.text},
             {"stamp_ns", report.stamp_ns},
             {"report_age_s", age_s},
             {"role", status.role},

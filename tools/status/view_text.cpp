@@ -140,13 +140,23 @@ std::string stage_rows(const ipc::ServiceStatus& status) {
 
 }  // namespace
 
+Headline headline_of(const HealthReport& report, double age_s) {
+  if (report.entry_count == 0) return {HealthLevel::kStale, "no health report"};
+  if (age_s > kOldReportS) {
+    return {HealthLevel::kError,
+            fmt::format("isobard sends no health report for {}: it hangs; all figures are of then",
+                        duration(age_s))};
+  }
+  return {report.entries[0].level, report.entries[0].message};
+}
+
 std::string status_text(const HealthReport& report, double age_s, const ViewOptions& options) {
   if (report.entry_count == 0) return "no health report\n";
-  const ipc::HealthEntry& summary = report.entries[0];
   const ipc::ServiceStatus& status = report.status;
-  const std::string level = ipc::level_name(summary.level);
-  std::string head = row(level, summary.message);
-  head = colored(summary.level, head.substr(0, level.size()), options.color) + head.substr(level.size());
+  const Headline headline = headline_of(report, age_s);
+  const std::string level = ipc::level_name(headline.level);
+  std::string head = row(level, headline.text);
+  head = colored(headline.level, head.substr(0, level.size()), options.color) + head.substr(level.size());
   std::string out = head;
   out += health_rows(report, options);
   out += row("isobard",

@@ -75,6 +75,23 @@ timeout 4 "$isobar" status --watch --json >"$work/watch.json" || true
 [ "$(wc -l <"$work/watch.json")" -ge 2 ] || fail "--watch printed $(wc -l <"$work/watch.json") lines in 4 s"
 ok "--watch shows each report"
 
+timeout 15 "$isobar" status --watch >"$work/hung.log" 2>&1 &
+watch=$!
+pids+=("$watch")
+sleep 2
+kill -STOP "$daemon"
+status_is 2 "isobard runs but does not answer: it hangs or was stopped" || fail "status of a stopped isobard"
+"$isobar" reset --timeout 1 >"$work/reset.log" 2>&1 && fail "reset of a stopped isobard"
+grep -q "does not answer" "$work/reset.log" || fail "reset does not say that isobard hangs"
+wait_until metric_is "isobar_up 0"
+metric_is 'isobar_sensor_rate' && fail "old figures in the metrics"
+metric_is 'isobar_health_level' && fail "old levels in the metrics"
+kill -CONT "$daemon"
+wait "$watch" || true
+grep -q "^error *isobard sends no health report for" "$work/hung.log" || fail "--watch shows old figures as fresh"
+wait_until metric_is "isobar_up 1"
+ok "an isobard that hangs is an error, and no figure of then is shown as fresh"
+
 kill -9 "$daemon"
 wait_until metric_is "isobar_up 0"
 start

@@ -70,6 +70,16 @@ HealthReport robot() {
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
+TEST_CASE("an old report is an error that says how old it is, whatever it says itself") {
+  HealthReport report = robot();
+  report.entries[0].level = HealthLevel::kOk;
+  const std::string text = tools::status_text(report, 12.0, {});
+  CHECK(text.starts_with("error         isobard sends no health report for 12.0 s: it hangs"));
+  const auto json = nlohmann::json::parse(tools::status_json(report, 12.0));
+  CHECK(json["level"] == "error");
+  CHECK(tools::status_text(report, 0.5, {}).starts_with("ok "));
+}
+
 }  // namespace
 
 TEST_CASE("the screen has health first, at most 80 columns and 24 lines, and no colours in a pipe") {
@@ -134,6 +144,13 @@ TEST_CASE("metrics have units in their names, and without isobard only isobar_up
   CHECK(has(absent, "isobar_up 0\n"));
   CHECK_FALSE(has(absent, "isobar_sensor"));
   CHECK(has(prometheus::TextSerializer().Serialize(tools::metrics_of(&report, 60.0)), "isobar_up 0\n"));
+  // Of an isobard that hangs no figure is known any more, but the age of the last report.
+  const std::string old = prometheus::TextSerializer().Serialize(tools::metrics_of(&report, 60.0));
+  CHECK(has(old, "isobar_report_age_seconds 60\n"));
+  CHECK_FALSE(has(old, "isobar_sensor"));
+  CHECK_FALSE(has(old, "isobar_health_level"));
+  CHECK_FALSE(has(old, "isobar_pose"));
+  CHECK(has(text, "isobar_pose_age_seconds 0.25\n"));  // 0.05 s in a report that is 0.2 s old
 }
 
 }  // namespace isobar::test::test_status_view
