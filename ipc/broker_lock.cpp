@@ -29,7 +29,7 @@ constexpr const char* kLockPath = Rendezvous::kLock;
 constexpr mode_t kLockMode = 0640;
 
 /// Byte ranges of the lock file: the owner has an exclusive lock on the first byte, each attached process a
-/// shared lock on the second.
+/// shared lock on the second. Opened with O_NONBLOCK: a FIFO in its place would wait for a writer.
 constexpr off_t kOwnerByte = 0;
 constexpr off_t kAttachedByte = 1;
 
@@ -49,9 +49,7 @@ class Descriptor {
  public:
   explicit Descriptor(int value) : value_(value) {}
   ~Descriptor() {
-    if (value_ >= 0) {
-      ::close(value_);
-    }
+    if (value_ >= 0) ::close(value_);
   }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
@@ -71,7 +69,7 @@ void require_free_library_lock() {
   const char* path = Rendezvous::kLibraryLock;
   std::optional<HeldLock> held = find_lock(path, /*is_flock=*/true);
   if (!held) {
-    const Descriptor file(::open(path, O_RDONLY | O_CLOEXEC));
+    const Descriptor file(::open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (file.get() < 0 || ::flock(file.get(), LOCK_SH | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
     held.emplace();
   }
@@ -98,7 +96,7 @@ bool has_attached(int descriptor) noexcept { return conflicts(descriptor, lock_o
 /// Opens the lock file of an owner that has announced itself, with the shared lock of an attached process.
 /// @return descriptor; -1: there is no such owner
 int open_announced(std::uint64_t& instance) {
-  const int descriptor = ::open(kLockPath, O_RDONLY | O_CLOEXEC);
+  const int descriptor = ::open(kLockPath, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) {
     if (errno == EACCES) throw ServiceError(not_a_member(kLockPath));
     return -1;
@@ -115,7 +113,7 @@ int open_announced(std::uint64_t& instance) {
 
 bool is_held(const char* path) {
   if (find_lock(path, /*is_flock=*/false)) return true;
-  const Descriptor file(::open(path, O_RDONLY | O_CLOEXEC));  // where /proc/locks is hidden
+  const Descriptor file(::open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // where /proc/locks is hidden
   return file.get() >= 0 && has_owner(file.get());
 }
 
@@ -151,7 +149,8 @@ int open_lock_file() {
   if (descriptor < 0 && errno == ENOENT) {
     descriptor = ::open(kLockPath, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kLockMode);
   }
-  if (descriptor < 0 && errno != EACCES && errno != ELOOP && errno != EEXIST) {
+  const bool is_no_file = descriptor < 0 && (errno == ELOOP || errno == EISDIR);
+  if (descriptor < 0 && !is_no_file && errno != EACCES && errno != EEXIST) {
     throw ServiceError(std::string(kLockPath) + ": cannot be opened: " + errno_text());
   }
   if (descriptor >= 0 && is_own(descriptor)) {
@@ -160,6 +159,7 @@ int open_lock_file() {
   }
   if (descriptor >= 0) ::close(descriptor);
   clear_foreign_lock_file();
+  if (is_no_file) remove_obstacle(kLockPath, "is no file");  // also one of this user
   return -1;
 }
 

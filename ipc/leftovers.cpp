@@ -68,9 +68,21 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
+/// Removes a file or an empty folder.
+/// @return true when nothing is there any more
+bool remove_entry(const std::string& path) {
+  if (::unlink(path.c_str()) == 0 || errno == ENOENT) return true;
+  return errno == EISDIR && ::rmdir(path.c_str()) == 0;
+}
+
 ObstructedError obstructed(const std::vector<std::string>& files, const std::string& reason) {
+  const bool has_folder = std::any_of(files.begin(), files.end(), [](const std::string& file) {
+    const auto status = status_at(file);
+    return status && S_ISDIR(status->st_mode);
+  });
   return ObstructedError("shared memory: " + joined(files) + " " + reason +
-                         "; this user may not remove it, but: sudo rm " + joined(files));
+                         "; this user may not remove it, but: sudo rm " + (has_folder ? "-r " : "") +
+                         joined(files));
 }
 
 }  // namespace
@@ -109,7 +121,7 @@ bool has_broker_of_owner(const std::string& path) {
 }
 
 void remove_obstacle(const std::string& path, const std::string& reason) {
-  if (::unlink(path.c_str()) != 0 && errno != ENOENT) {
+  if (!remove_entry(path)) {
     throw obstructed({path}, "of " + owner_text(path) + " " + reason);
   }
 }
@@ -135,7 +147,7 @@ void remove_leftovers() {
   std::vector<std::string> remaining;
   std::string owner;
   for (const std::string& path : old) {
-    if (::unlink(path.c_str()) == 0 || errno == ENOENT) continue;
+    if (remove_entry(path)) continue;
     if (owner.empty()) owner = owner_text(path);
     remaining.push_back(path);
   }

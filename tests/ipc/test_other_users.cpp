@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -59,7 +60,8 @@ int files_of(uid_t user) {
 void remove_all() {
   for (const char* folder : {"/dev/shm", "/tmp"}) {
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-      if (!entry.is_directory()) std::filesystem::remove(entry.path());  // the source tree may be below /tmp
+      std::error_code not_empty;  // the source tree may be below /tmp
+      std::filesystem::remove(entry.path(), not_empty);
     }
   }
 }
@@ -122,6 +124,35 @@ TEST_CASE("a lock file that another user made first does not stop root, and is w
   CHECK(::stat("/dev/shm/isobar.lock", &status) == 0);
   CHECK(status.st_uid == 0);
   CHECK((status.st_mode & 0777) == 0640);
+}
+
+TEST_CASE(
+    "a folder, a pipe or a link of another user in the place of a file does not stop root, nor others for "
+    "good") {
+  if (!is_isolated()) return;
+  for (const char* make : {"mkdir $f", "mkfifo -m 666 $f", "ln -s /etc/passwd $f"}) {
+    CAPTURE(make);
+    const auto obstruct = [make] {
+      remove_all();
+      const std::string names =
+          "/dev/shm/isobar.lock /dev/shm/iceoryx_mgmt /tmp/iox-unique-roudi.lock /tmp/roudi /tmp/roudi.lock";
+      ChildProcess maker(as(kNobody, {"/bin/sh", "-c", "for f in " + names + "; do " + make + "; done"}));
+      REQUIRE(maker.wait(5s) == 0);
+      REQUIRE(files_of(65534) == 5);
+    };
+    obstruct();
+    {
+      ChildProcess broker({ISOBAR_IPC_PEER, "broker"});
+      CHECK(broker.read_until("ready", 10s));
+    }
+    obstruct();
+    ChildProcess patient(as(kOther, {ISOBAR_IPC_PEER, "patient"}));
+    CHECK(patient.read_until("user nobody", 10s));
+    ChildProcess attaching(as(kOther, {ISOBAR_IPC_PEER, "read", "1"}));
+    CHECK(attaching.wait(10s) == 69);  // and does not hang
+    remove_all();
+    CHECK(patient.read_until("ready", 10s));
+  }
 }
 
 TEST_CASE("a lock that another user holds without a broker does not stop root, and is waited for by others") {
