@@ -41,11 +41,15 @@ class Machine:
                 stdin=subprocess.DEVNULL, stdout=console, stderr=console)
         self.leader = self.wait_for_boot()
         self.files = Path(f"/proc/{self.leader}/root")
-        self.call("sh", "-ec", "apt-get -qq update; DEBIAN_FRONTEND=noninteractive apt-get -qq -y install /host/isobar.deb")
+        self.call("apt-get", "-qq", "update")
+        self.call("env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "-qq", "-y", "install", "/host/isobar.deb")
+        self.configure("robot", self.mounts())
+
+    def mounts(self):
+        """Where the recording's sensors are on the robot, as TOML."""
         sensors = tomllib.loads((Path(self.recording) / "recording.toml").read_text())
-        self.configure("robot", "".join(
-            f"[{name}]\n" + "".join(f"{key} = {sensors[name][key]}\n" for key in ("xyz_m", "rpy_deg") if key in sensors[name])
-            for name in ("lidar", "imu", "barometer") if name in sensors))
+        return "".join(f"{name}.{key} = {sensors[name][key]}\n" for name in ("lidar", "imu", "barometer")
+                       for key in ("xyz_m", "rpy_deg") if key in sensors.get(name, {}))
 
     def wait_for_boot(self):
         """Process id of the container's process 1, once it has booted."""
