@@ -11,8 +11,14 @@ import tomllib
 from pathlib import Path
 
 UNITS = ("isobard", "isobar-dds")
-# An overlay, seen by this child only, that ends with it.
-MOUNT = 'mount -t overlay overlay -o "$1" "$2"; shift 2; exec "$@"'
+# Where systemd keeps groups of processes: the unified hierarchy alone, or beside an older one.
+HIERARCHIES = [path for path in map(Path, ("/sys/fs/cgroup", "/sys/fs/cgroup/unified", "/sys/fs/cgroup/systemd"))
+               if (path / "cgroup.procs").exists()]
+# Joins the groups, then mounts the overlay, which is seen by this child only and ends with it.
+ENTER = """for group in $1; do echo $$ >"$group/cgroup.procs"; done
+mount -t overlay overlay -o "$2" "$3"
+shift 3
+exec "$@\""""
 
 
 class Machine:
@@ -22,20 +28,21 @@ class Machine:
         """image: folder of tests/vm/image, made if it is not there; recording: seen as /recording inside."""
         self.image, self.deb, self.recording = image, deb, recording
         self.container = None
+        # Groups of its own, because two containers with the same would stop each other's services.
+        self.groups = [path / f"isobar-{os.getpid()}" for path in HIERARCHIES]
         self.work = Path(tempfile.mkdtemp(prefix="isobar-machine", dir="/var/tmp"))
 
     def boot(self):
         subprocess.run([Path(__file__).parents[1] / "vm/image", self.image, self.deb], check=True)
-        for name in ("changes", "overlay", "root"):
-            (self.work / name).mkdir()
+        for folder in (*self.groups, self.work / "changes", self.work / "overlay", self.work / "root"):
+            folder.mkdir()
         layers = f"lowerdir={self.image}/root,upperdir={self.work}/changes,workdir={self.work}/overlay"
-        # After --boot:
-        # parameters as of a kernel; there is no disk to mount, and no test of tests/vm/service to run.
+        # After --boot: parameters as of a kernel. There is no disk to mount, and no test of tests/vm/service to run.
         with open(self.work / "console", "w") as console:
             self.container = subprocess.Popen(
-                ["unshare", "--mount", "sh", "-ec", MOUNT, "boot", layers, self.work / "root",
-                 "systemd-nspawn", "--quiet", "--register=no", "--keep-unit", "--private-network", "--console=passive",
-                 f"--machine=isobar-{os.getpid()}", f"--directory={self.work}/root",
+                ["unshare", "--mount", "sh", "-ec", ENTER, "boot", " ".join(map(str, self.groups)), layers,
+                 self.work / "root", "systemd-nspawn", "--quiet", "--register=no", "--keep-unit", "--private-network",
+                 "--console=passive", f"--machine=isobar-{os.getpid()}", f"--directory={self.work}/root",
                  f"--bind-ro={self.recording}:/recording", f"--bind-ro={self.image}/repository:/host/repository",
                  f"--bind-ro={self.deb}:/host/isobar.deb", "--boot", "fstab=no", "systemd.mask=guest.service"],
                 stdin=subprocess.DEVNULL, stdout=console, stderr=console)
@@ -102,4 +109,7 @@ class Machine:
             except subprocess.TimeoutExpired:
                 os.kill(self.leader, signal.SIGKILL)
                 self.container.wait()
+        for group in self.groups:
+            for folder, _, _ in os.walk(group, topdown=False):
+                os.rmdir(folder)
         shutil.rmtree(self.work, ignore_errors=True)
