@@ -42,15 +42,37 @@ FileTileStore* MapStores::open(std::uint32_t session) {
   const fs::path folder = folder_of(session);
   session_ = session;
   store_.reset();
+  journal_.reset();
   std::error_code error;
   if (fs::exists(folder / "map.toml", error)) {
     store_ = FileTileStore::open_to_continue(folder, header_, limits_);
-  } else if (fs::exists(folder, error) && !segment_numbers(folder).empty()) {
+  } else if (fs::exists(folder, error) && !file_numbers(folder, kTilesExtension).empty()) {
     throw DataError(folder.string() + ": holds tiles of a map but no map.toml");
   } else {
     store_ = FileTileStore::create(folder, header_, limits_);
   }
+  journal_.emplace(folder);
   return store_.get();
+}
+
+std::size_t MapStores::read_journal(const std::function<void(const RegisteredScan&)>& visit) {
+  return journal_ ? ScanJournal::read(folder_of(session_), visit) : 0;
+}
+
+void MapStores::post_for_flush() noexcept {
+  if (store_) tile_flusher_.post(store_->newest_file());
+  if (journal_) {
+    if (FileDescriptor scans = journal_->newest_file()) scan_flusher_.post(std::move(scans));
+  }
+}
+
+bool MapStores::flush() noexcept {
+  const bool tiles = tile_flusher_.flush();
+  return scan_flusher_.flush() && tiles;
+}
+
+void MapStores::finish() noexcept {
+  if (store_ && journal_ && DiskFlusher::wait_for(store_->newest_file())) journal_->clear();
 }
 
 bool MapStores::disk_is_full() const {

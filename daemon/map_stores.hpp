@@ -2,12 +2,15 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "config/config.hpp"
 #include "run/tile_store/disk_flusher.hpp"
 #include "run/tile_store/file_tile_store.hpp"
+#include "run/tile_store/scan_journal.hpp"
 
 namespace isobar {
 
@@ -37,9 +40,20 @@ class MapStores {
   /// True while the folder of the present store is in its place.
   [[nodiscard]] bool in_place() const;
   [[nodiscard]] FileTileStore* current() { return store_.get(); }
+  /// Journal of the present map; null when no folder is configured or the disk has refused it.
+  [[nodiscard]] ScanJournal* journal() { return journal_ ? &*journal_ : nullptr; }
+  /// Reads the scans of the journal of the present map, in their order.
+  /// @return their number
+  std::size_t read_journal(const std::function<void(const RegisteredScan&)>& visit);
 
-  /// Tiles written by the map thread, waited for by another one.
-  [[nodiscard]] DiskFlusher& flusher() { return flusher_; }
+  /// Posts what was written to flush().
+  void post_for_flush() noexcept;
+  /// Waits until the tiles and the scans that were posted are on the disk. False if the disk refuses. For another
+  /// thread than that of the map.
+  bool flush() noexcept;
+  /// The whole map has been written to the tiles: waits for the disk, and removes the journal. The thread of the
+  /// map.
+  void finish() noexcept;
 
  private:
   [[nodiscard]] std::filesystem::path folder_of(std::uint32_t session) const;
@@ -50,7 +64,9 @@ class MapStores {
   TileStoreLimits limits_;
   std::uint32_t session_ = 1;
   std::unique_ptr<FileTileStore> store_;
-  DiskFlusher flusher_;
+  std::optional<ScanJournal> journal_;
+  DiskFlusher tile_flusher_;
+  DiskFlusher scan_flusher_;
 };
 
 }  // namespace isobar

@@ -16,11 +16,16 @@ namespace {
 
 constexpr std::chrono::seconds kWriteInterval(1);
 
-/// The local map of the run's start, with the tiles around the place of an earlier run.
+/// The local map of the run's start, with the tiles around the place of an earlier run, and the scans that may not
+/// be in them.
 std::unique_ptr<LocalMap> loaded_map(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar,
                                      MapStores& maps, const RunStart& start) {
   auto map = std::make_unique<LocalMap>(config, T_base_lidar, maps.current(), start.session);
-  if (start.place) map->load_around(start.place->T_map_base.translation());
+  if (!start.place) return map;
+  map->load_around(start.place->T_map_base.translation());
+  const std::size_t scans = maps.read_journal([&](const RegisteredScan& scan) { map->update(scan); });
+  if (scans > 0)
+    spdlog::info("map: {} scans of the journal are inserted: they may not be in the tiles", scans);
   return map;
 }
 
@@ -42,7 +47,7 @@ MapThread::MapThread(const MapConfig& config, const Eigen::Isometry3d& T_base_li
 void MapThread::loop() noexcept {
   drain_until_stopped(
       waiter_, worker_.heartbeat(), [this] { drain(); }, [] { return kWriteInterval; });
-  map_->store_all();
+  store_all_tiles();
   log_tile_losses();
 }
 
@@ -78,6 +83,7 @@ void MapThread::add(const RegisteredScan& scan) noexcept {
   const CpuTimer timer;
   if (scan.pose.session != map_->session()) begin_session(scan.pose.session);
   if (map_->update(scan)) {
+    if (ScanJournal* journal = maps_.journal()) journal->add(scan);
     snapshots_.publish(map_->snapshot());
     draft_status_.update_ms = timer.elapsed_ms();
   }
@@ -87,7 +93,7 @@ void MapThread::add(const RegisteredScan& scan) noexcept {
 
 // The old map is kept as it is; the new one begins empty, with a folder of its own.
 void MapThread::begin_session(std::uint32_t session) noexcept {
-  map_->store_all();
+  store_all_tiles();
   FileTileStore* store = nullptr;
   try {
     store = maps_.open(session);
@@ -114,7 +120,24 @@ void MapThread::write_tiles() noexcept {
     draft_status_.disk_failing = true;
     return;
   }
+  store_changed_tiles();
+  maps_.post_for_flush();
+}
+
+// The end of a map frame. The journal is kept where a tile was refused.
+void MapThread::store_all_tiles() noexcept {
+  if (maps_.current() == nullptr) return;
   const std::uint64_t refused = maps_.current()->counters().refused;
+  map_->store_all();
+  if (maps_.current()->counters().refused == refused) maps_.finish();
+}
+
+void MapThread::store_changed_tiles() noexcept {
+  const std::uint64_t refused = maps_.current()->counters().refused;
+  if (map_->sweep_begins()) {
+    if (ScanJournal* journal = maps_.journal()) journal->begin_sweep(sweep_whole_);
+    sweep_whole_ = true;
+  }
   map_->store_some();
   const bool failing = maps_.current()->counters().refused > refused;
   if (!failing && draft_status_.disk_failing && refused > 0) {
@@ -122,7 +145,7 @@ void MapThread::write_tiles() noexcept {
     logged_.refused = false;
   }
   draft_status_.disk_failing = failing;
-  maps_.flusher().post(maps_.current()->newest_file());
+  sweep_whole_ = sweep_whole_ && !failing;
 }
 
 // Somebody deleted the folder of the map: what is still readable and what is in memory goes into a new one.

@@ -67,6 +67,8 @@ class MapThread {
   void add(const RegisteredScan& scan) noexcept;
   void begin_session(std::uint32_t session) noexcept;
   void write_tiles() noexcept;
+  void store_changed_tiles() noexcept;
+  void store_all_tiles() noexcept;
   void follow_folder();
   void log_tile_losses() noexcept;
 
@@ -80,6 +82,7 @@ class MapThread {
   ipc::Waiter waiter_;
   LoggedLosses logged_;
   std::int64_t written_ns_ = 0;   ///< last write_tiles(), robot clock
+  bool sweep_whole_ = true;       ///< no tile of the present sweep was refused
   std::uint64_t superseded_ = 0;  ///< scans dropped for a newer one
   Deadline deadline_;
   Handover<Change> changes_;

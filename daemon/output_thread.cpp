@@ -96,7 +96,7 @@ void OutputThread::write() noexcept {
     draft_status_.dropped_lines = files_.output()->dropped_lines();
   }
   attempt([&] { write_checkpoint(); });
-  if (!files_.maps().flusher().flush()) failure = "the map's tiles cannot be written to the disk";
+  if (!files_.maps().flush()) failure = "the map's tiles cannot be written to the disk";
   report(failure);
   written_ns_ = RobotClock::now_ns();
 }

@@ -52,8 +52,10 @@ class LocalMap {
   void store_all();
   /// Writes some of the tiles whose planes have changed since they were last written, so that a crash loses
   /// little. Called once a second, every change is written within 2 * kSweepParts seconds, and one call writes
-  /// a share of 1 / kSweepParts of the changed tiles.
+  /// a share of 1 / kSweepParts of the changed tiles. Does nothing without a storage.
   void store_some();
+  /// The next store_some() begins a sweep over all tiles that have changed by then.
+  [[nodiscard]] bool sweep_begins() const { return sweep_.empty(); }
   static constexpr std::size_t kSweepParts = 4;
   /// Another storage, which may hold other versions of the tiles in memory: those count as changed.
   void change_storage(TileStorage* storage);

@@ -20,8 +20,9 @@ class DiskFlusher {
   /// `file` takes the place of one that was not flushed yet; the caller makes sure that this is the same file.
   void post(FileDescriptor file) noexcept { const FileDescriptor old(posted_.exchange(file.release())); }
   /// Waits until the posted file is on the disk (fdatasync). True also without one.
-  bool flush() noexcept {
-    const FileDescriptor file(posted_.exchange(-1));
+  bool flush() noexcept { return wait_for(FileDescriptor(posted_.exchange(-1))); }
+  /// Waits until the file is on the disk. True also without one.
+  [[nodiscard]] static bool wait_for(const FileDescriptor& file) noexcept {
     return !file || ::fdatasync(file.get()) == 0;
   }
 

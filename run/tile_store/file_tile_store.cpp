@@ -68,9 +68,9 @@ std::unique_ptr<FileTileStore> FileTileStore::create(const std::filesystem::path
 }
 
 bool FileTileStore::load(TileSegment::Access access) {
-  for (const std::uint32_t number : segment_numbers(directory_)) {
+  for (const std::uint32_t number : file_numbers(directory_, kTilesExtension)) {
     SegmentContent content;
-    const auto file = segment_file(directory_, number);
+    const auto file = numbered_file(directory_, number, kTilesExtension);
     std::optional<TileSegment> opened;
     try {
       opened.emplace(file, access, content);
@@ -171,7 +171,8 @@ FileTileStore::Segment* FileTileStore::segment_for(std::uint64_t bytes) {
   }
   try {
     SegmentContent content;
-    TileSegment file(segment_file(directory_, next_number_), TileSegment::Access::kWrite, content);
+    TileSegment file(numbered_file(directory_, next_number_, kTilesExtension), TileSegment::Access::kWrite,
+                     content);
     sync_folder(directory_);
     return &segments_.emplace(next_number_++, Segment{std::move(file)}).first->second;
   } catch (const Error& error) {

@@ -155,14 +155,14 @@ MapLock::MapLock(const fs::path& directory) : path_(directory / "lock") {
                     ::pwrite(file_.get(), holder.data(), holder.size(), 0) > 0);
 }
 
-std::vector<std::uint32_t> segment_numbers(const fs::path& directory) {
+std::vector<std::uint32_t> file_numbers(const fs::path& directory, const char* extension) {
   std::vector<std::uint32_t> numbers;
   std::error_code error;
   fs::directory_iterator entries(directory, error);
   if (error) throw ServiceError(directory.string() + ": cannot be read: " + error.message());
   for (const auto& entry : entries) {
     const std::int64_t number = number_of(entry.path());
-    if (number >= 0 && entry.path().extension() == ".tiles") {
+    if (number >= 0 && entry.path().extension() == extension) {
       numbers.push_back(static_cast<std::uint32_t>(number));
     }
   }
@@ -170,9 +170,9 @@ std::vector<std::uint32_t> segment_numbers(const fs::path& directory) {
   return numbers;
 }
 
-fs::path segment_file(const fs::path& directory, std::uint32_t number) {
+fs::path numbered_file(const fs::path& directory, std::uint32_t number, const char* extension) {
   std::array<char, 24> name{};
-  std::snprintf(name.data(), name.size(), "%08u.tiles", static_cast<unsigned>(number));
+  std::snprintf(name.data(), name.size(), "%08u%s", static_cast<unsigned>(number), extension);
   return directory / name.data();
 }
 
@@ -180,7 +180,8 @@ void remove_map(const fs::path& directory) {
   std::vector<fs::path> files{directory / "map.toml"};
   for (const auto& entry : fs::directory_iterator(directory)) {
     const auto extension = entry.path().extension();
-    const bool is_ours = extension == ".tiles" || extension == ".index";
+    const bool is_ours =
+        extension == kTilesExtension || extension == ".index" || extension == kScansExtension;
     if (is_ours && number_of(entry.path()) >= 0) files.push_back(entry.path());
   }
   for (const fs::path& file : files) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Folder of a map: `map.toml` (format and grid), `lock` (held by the process that writes), and segments of
-// tiles with their indices (tile_record.hpp).
+// Folder of a map: `map.toml` (format and grid), `lock` (held by the process that writes), segments of tiles
+// with their indices (tile_record.hpp), and the journal of the newest scans (scan_journal.hpp).
 #pragma once
 
 #include <cstdint>
@@ -44,11 +44,15 @@ class MapLock {
 /// Waits until the names of new files are on the disk, where the file system can.
 void sync_folder(const std::filesystem::path& directory) noexcept;
 
-/// Numbers of the segments in the folder, ascending.
+inline constexpr const char* kTilesExtension = ".tiles";  ///< segments of tiles (tile_segment.hpp)
+inline constexpr const char* kScansExtension = ".scans";  ///< parts of the journal (scan_journal.hpp)
+
+/// Numbers of the files NNNNNNNN.EXTENSION in the folder, ascending.
 /// @throws ServiceError when the folder cannot be read
-std::vector<std::uint32_t> segment_numbers(const std::filesystem::path& directory);
-/// Path of a segment: DIR/NNNNNNNN.tiles
-std::filesystem::path segment_file(const std::filesystem::path& directory, std::uint32_t number);
+std::vector<std::uint32_t> file_numbers(const std::filesystem::path& directory, const char* extension);
+/// Path of such a file.
+std::filesystem::path numbered_file(const std::filesystem::path& directory, std::uint32_t number,
+                                    const char* extension);
 /// Deletes the files of the map and no other file of the folder. The caller holds the lock.
 /// @throws ServiceError when a file cannot be deleted
 void remove_map(const std::filesystem::path& directory);
