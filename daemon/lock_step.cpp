@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/lock_step.hpp"
 
+#include "run/tile_store/scan_journal.hpp"
+
 namespace isobar {
 
 namespace {
@@ -18,6 +20,14 @@ LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileStorag
       map_(settings.map, settings.T_base_lidar, storage),
       filling_(std::make_unique<Scan>()),
       queue_(kLockStepQueue) {}
+
+void LockStep::continue_from(const RunStart& start, const std::filesystem::path& map_folder) {
+  prior_estimator_.resume(start.datum);
+  registration_.begin_at(start.session, start.place);
+  if (!start.place) return;
+  map_.load_around(start.place->T_map_base.translation());
+  ScanJournal::read(map_folder, [this](const RegisteredScan& scan) { map_.update(scan); });
+}
 
 void LockStep::handle(const recording::Event& event) {
   switch (event.kind) {

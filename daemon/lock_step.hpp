@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "core/prior/prior_estimator.hpp"
 #include "daemon/lidar_sender.hpp"
 #include "daemon/registration_stage.hpp"
+#include "daemon/run_start.hpp"
 #include "daemon/scan_queue.hpp"
 #include "daemon/stage_settings.hpp"
 #include "drivers/velodyne/velodyne_decoder.hpp"
@@ -29,6 +31,9 @@ class LockStep {
   /// @param storage takes the tiles that leave memory; null: they are discarded
   LockStep(const StageSettings& settings, EstimateSink& sink, TileStorage* storage = nullptr);
 
+  /// Continues an earlier run, before the first event, with the tiles of the storage around its place and the
+  /// scans of the journal in the folder of its map.
+  void continue_from(const RunStart& start, const std::filesystem::path& map_folder);
   void handle(const recording::Event& event);
   /// Registers the waiting scans and stores the tiles in memory. Call once, at the end.
   void finish();
@@ -36,7 +41,10 @@ class LockStep {
   [[nodiscard]] const velodyne::VelodyneDecoder& decoder() const { return decoder_; }
   [[nodiscard]] const SenderStatus& lidar_sender() const { return sender_.status(); }
   [[nodiscard]] const PriorEstimator& prior_estimator() const { return prior_estimator_; }
+  [[nodiscard]] LocalMap& map() { return map_; }
   [[nodiscard]] const LocalMap& map() const { return map_; }
+  /// The last scan and its pose, as the map got them.
+  [[nodiscard]] const RegisteredScan& registered_scan() const { return registered_; }
   [[nodiscard]] std::uint64_t scans() const { return scans_; }
 
  private:

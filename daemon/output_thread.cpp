@@ -8,7 +8,6 @@
 #include <exception>
 #include <utility>
 
-#include "core/stamp.hpp"
 #include "daemon/message_loop.hpp"
 #include "drivers/clock/robot_clock.hpp"
 
@@ -18,10 +17,6 @@ namespace {
 /// Interval of writes: a power cut loses this and the time of one write.
 constexpr std::int64_t kWriteIntervalNs = 500'000'000;
 constexpr std::chrono::milliseconds kPoll(100);
-/// Longest step between two poses that gives a velocity.
-constexpr double kMaxStepS = 0.5;
-/// A larger velocity is a correction, not a motion.
-constexpr double kMaxSpeedMS = 15.0;
 
 }  // namespace
 
@@ -51,34 +46,13 @@ void OutputThread::drain() noexcept {
 
 void OutputThread::add_pose(const PoseEstimate& pose) noexcept {
   ++draft_status_.poses;
-  note_for_checkpoint(pose);
+  checkpoint_.note(pose);
   if (files_.output() == nullptr || place_unknown(pose)) return;
   try {
     files_.output()->add_pose(pose, newest_prior_);
   } catch (const std::exception& error) {
     add_failure_ = error.what();
   }
-}
-
-// A pose before the place is known is none to go on from.
-void OutputThread::note_for_checkpoint(const PoseEstimate& pose) noexcept {
-  const double step_s = seconds_between(last_pose_.stamp_ns, pose.stamp_ns);
-  Eigen::Vector3d v_map_m_s = Eigen::Vector3d::Zero();
-  if (pose.session == last_pose_.session && step_s > 0.0 && step_s < kMaxStepS) {
-    v_map_m_s = (pose.T_map_base.translation() - last_pose_.T_map_base.translation()) / step_s;
-    if (v_map_m_s.norm() > kMaxSpeedMS) v_map_m_s.setZero();
-  }
-  last_pose_ = pose;
-  if (pose.mode == PoseMode::kInitializing) return;
-  checkpoint_.session = pose.session;
-  checkpoint_.stamp_ns = pose.stamp_ns;
-  checkpoint_.T_map_base = pose.T_map_base;
-  checkpoint_.v_map_m_s = v_map_m_s;
-  if (pose.mode == PoseMode::kRegistered) {
-    checkpoint_.overlap = std::clamp(pose.overlap, 0.0, 1.0);
-    checkpoint_.residual_rms_m = std::clamp(pose.residual_rms_m, 0.0, 1.0);
-  }
-  checkpoint_due_ = true;
 }
 
 void OutputThread::write() noexcept {
@@ -102,11 +76,9 @@ void OutputThread::write() noexcept {
 }
 
 void OutputThread::write_checkpoint() {
-  if (!checkpoint_due_ || checkpoint_file_.empty()) return;
-  checkpoint_.clock_ns = RobotClock::now_ns();
-  checkpoint_.datum = datum_();
-  files::write_checkpoint(checkpoint_file_, checkpoint_);
-  checkpoint_due_ = false;
+  if (!checkpoint_.due() || checkpoint_file_.empty()) return;
+  files::write_checkpoint(checkpoint_file_, checkpoint_.at(RobotClock::now_ns(), datum_()));
+  checkpoint_.written();
 }
 
 void OutputThread::report(const std::string& failure) noexcept {

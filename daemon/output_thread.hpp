@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "daemon/checkpoint_draft.hpp"
 #include "daemon/output_status.hpp"
 #include "daemon/run_files.hpp"
 #include "daemon/seq_lock.hpp"
@@ -28,7 +29,6 @@ class OutputThread {
   void loop() noexcept;
   void drain() noexcept;
   void add_pose(const PoseEstimate& pose) noexcept;
-  void note_for_checkpoint(const PoseEstimate& pose) noexcept;
   void write() noexcept;
   void write_checkpoint();
   void report(const std::string& failure) noexcept;
@@ -40,9 +40,7 @@ class OutputThread {
   ipc::Subscriber<Prior> priors_;
   ipc::Waiter waiter_;
   Prior newest_prior_;
-  PoseEstimate last_pose_;
-  files::Checkpoint checkpoint_;
-  bool checkpoint_due_ = false;  ///< a pose has come since the last one
+  CheckpointDraft checkpoint_;
   std::int64_t written_ns_ = 0;  ///< robot clock
   std::string add_failure_;      ///< since the last write()
   OutputStatus draft_status_;

@@ -14,16 +14,6 @@
 namespace isobar {
 namespace {
 
-KnownPlace place_of(const files::Checkpoint& checkpoint) {
-  return {.session = checkpoint.session,
-          .stamp_ns = checkpoint.stamp_ns,
-          .T_map_base = checkpoint.T_map_base,
-          .overlap = checkpoint.overlap,
-          .residual_rms_m = checkpoint.residual_rms_m,
-          .has_height = checkpoint.datum.known,
-          .v_map_m_s = checkpoint.v_map_m_s};
-}
-
 std::string frame_name(std::uint32_t session) { return files::name_of_session("map", session); }
 
 std::vector<files::RunCount> counts_of_threads(const StatusSnapshot& last) {
@@ -106,7 +96,7 @@ void RunFiles::choose_start() {
     start_.datum = checkpoint->datum;
     return;
   }
-  start_ = {newest, place_of(*checkpoint), checkpoint->datum};
+  start_ = continuation_of(*checkpoint);
   const Eigen::Vector3d p = checkpoint->T_map_base.translation();
   spdlog::info(
       "continues the earlier run in frame {} at ({:.2f}, {:.2f}, {:.2f}) m; the first scans must "

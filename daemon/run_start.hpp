@@ -6,6 +6,7 @@
 
 #include "core/altitude/height_datum.hpp"
 #include "core/registration/known_place.hpp"
+#include "run/files/checkpoint.hpp"
 
 namespace isobar {
 
@@ -15,5 +16,8 @@ struct RunStart {
   std::optional<KnownPlace> place;  ///< of the run that is continued
   HeightDatum datum;                ///< of the run that is continued
 };
+
+/// The start of a run that goes on where the checkpoint was written.
+[[nodiscard]] RunStart continuation_of(const files::Checkpoint& checkpoint);
 
 }  // namespace isobar

@@ -72,10 +72,13 @@ void HeightFilter::start(double z_m, double vz_sigma_m_s) {
   started_ = true;
 }
 
-void HeightFilter::resume(double z_m, double variance_m2, double vz_sigma_m_s, double offset_m) {
-  start(z_m, vz_sigma_m_s);
-  filter_.resume(z_m, variance_m2, vz_sigma_m_s, offset_m);
+void HeightFilter::resume(const VerticalFilter::Continuation& from) {
+  start(from.z_m, from.vz_sigma_m_s);
+  filter_.resume(from);
   restart_forks();
+  // Until wheels and pressure agree: a ride that began before shows no acceleration.
+  ground_moves_ = from.may_ride;
+  agreeing_s_ = 0.0;
 }
 
 void HeightFilter::restart_forks() {

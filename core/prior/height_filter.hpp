@@ -42,7 +42,7 @@ class HeightFilter {
 
   void start(double z_m, double vz_sigma_m_s);
   /// Continues the height of an earlier run (VerticalFilter::resume()).
-  void resume(double z_m, double variance_m2, double vz_sigma_m_s, double offset_m);
+  void resume(const VerticalFilter::Continuation& from);
   [[nodiscard]] bool started() const { return started_; }
   /// Offset between the barometers [m].
   [[nodiscard]] double offset_m() const { return filter_.value(VerticalFilter::kOffset); }
@@ -68,6 +68,7 @@ class HeightFilter {
 
   /// Reported height: corrections after the return or the switch of a base station enter at a limited rate.
   [[nodiscard]] double z_m() const { return filter_.value(VerticalFilter::kZ) + slew_.rest_m(); }
+  [[nodiscard]] double vz_m_s() const { return filter_.value(VerticalFilter::kVz); }
   [[nodiscard]] double variance_m2() const;
   /// Estimated offset of the barometric height: barometers, local pressure, weather and steps together.
   [[nodiscard]] double pressure_bias_m() const { return filter_.pressure_bias_m(); }

@@ -55,6 +55,9 @@ HeightDatum PriorEstimator::height_datum() const {
   HeightDatum datum;
   if (!s.height.started()) return s.resumed;
   datum.known = s.reading_source != HeightSource::kNone;
+  datum.stamp_ns = s.imu_gate.stamp_ns();
+  datum.climb_m_s = s.height.vz_m_s();
+  datum.ground_moves = s.height.ground_moves();
   datum.height_m = s.height.z_m() - s.above_base(s.p_base_imu);
   datum.variance_m2 = s.height.variance_m2() + s.height.offset_variance_m2();
   datum.offset_m = s.height.offset_m();

@@ -33,6 +33,9 @@ class PriorHistory {
   bool at(std::int64_t stamp_ns, Prior& out) const;
 
   [[nodiscard]] bool empty() const { return count_ == 0; }
+  [[nodiscard]] std::size_t size() const { return count_; }
+  /// Prior number `index` from the oldest. Precondition: index < size().
+  [[nodiscard]] const Prior& operator[](std::size_t index) const { return nth(index); }
   /// Precondition of both: !empty().
   [[nodiscard]] const Prior& oldest() const { return nth(0); }
   [[nodiscard]] const Prior& newest() const { return nth(count_ - 1); }

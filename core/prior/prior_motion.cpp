@@ -25,6 +25,16 @@ constexpr double kStartClimbOnWheelsMS = 0.05;
 constexpr double kStartClimbHangingMS = 0.3;
 // A continued height waits for pressures up to this long after the alignment: a base station settles in 1 s.
 constexpr double kWaitForPressureS = 1.8;
+// Pause after which a robot may still be climbing as before, and the change of its vertical speed, 1 sigma: stairs
+// begin or end.
+constexpr double kClimbOnS = 10.0;
+constexpr double kUnseenClimbMS = 0.25;
+// Unseen climb that stairs do not explain, and the vertical speed of an elevator, 1 sigma.
+constexpr double kRideM = 0.6;
+constexpr double kStandMS = 0.05;
+constexpr double kRideSigmaMS = 0.7;
+// Height from one pressure against the base station, with turbulence, 1 sigma.
+constexpr double kPressureSigmaM = 0.2;
 // Vertical motion of a robot that is switched off, 1 sigma: it is pushed over a threshold.
 constexpr double kStandSigmaM = 0.05;
 // The pressure contradicts: a difference that neither turbulence nor a ventilation zone makes.
@@ -62,19 +72,52 @@ void PriorEstimator::State::start_height() {
   }
 }
 
-// The robot stands where it was, unless the pressure contradicts: then it was taken to another floor.
+// After a short pause the robot may be climbing, or riding; after a longer one it stands where it was, unless the
+// pressure contradicts: then it was taken to another floor.
 void PriorEstimator::State::continue_height(double vz_sigma_m_s) {
-  double z_m = resumed.height_m + above_base(p_base_imu);
-  double variance_m2 = resumed.variance_m2 + squared(kStandSigmaM);
+  VerticalFilter::Continuation from;
+  from.z_m = resumed.height_m + above_base(p_base_imu);
+  from.variance_m2 = resumed.variance_m2 + squared(kStandSigmaM);
+  from.vz_sigma_m_s = vz_sigma_m_s;
+  from.offset_m = resumed.offset_m;
+  const double pause_s = seconds_between(resumed.stamp_ns, imu_gate.stamp_ns());
+  const bool short_pause = pause_s > 0.0 && pause_s < kClimbOnS;
+  if (short_pause) keep_climbing(pause_s, from);
   if (reading_source == HeightSource::kDifferential && !resumed.step_open) {
     const double lever_m = above_base(config.p_base_port - p_base_imu);
-    const double risen_m = reading_m - lever_m - resumed.offset_m - z_m;
-    if (std::abs(risen_m) > std::max(kMovedM, kMovedSigmas * std::sqrt(variance_m2))) {
-      z_m += risen_m;
-      variance_m2 += squared(kMovedSigmaM);
+    const double risen_m = reading_m - lever_m - resumed.offset_m - from.z_m;
+    if (short_pause) {
+      use_unseen_climb(risen_m, from);
+    } else if (std::abs(risen_m) > std::max(kMovedM, kMovedSigmas * std::sqrt(from.variance_m2))) {
+      from.z_m += risen_m;
+      from.variance_m2 += squared(kMovedSigmaM);
     }
   }
-  height.resume(z_m, variance_m2, vz_sigma_m_s, resumed.offset_m);
+  height.resume(from);
+}
+
+void PriorEstimator::State::keep_climbing(double pause_s, VerticalFilter::Continuation& from) const {
+  from.z_m += resumed.climb_m_s * pause_s;
+  from.variance_m2 += squared(kUnseenClimbMS * pause_s);
+  from.vz_m_s = resumed.climb_m_s;
+  from.vz_sigma_m_s = std::max(from.vz_sigma_m_s, kUnseenClimbMS);
+  // A robot that drives is not in an elevator; of one that stands nobody has seen whether a ride has begun.
+  const bool stands =
+      wheels.valid(imu_gate.stamp_ns()) && std::hypot(wheels.last().vx_m_s, wheels.last().vy_m_s) < kStandMS;
+  from.may_ride = resumed.ground_moves || stands;
+}
+
+// `risen_m`: height of the pressure above the predicted one. More than stairs explain is a ride that has begun or
+// ended unseen.
+void PriorEstimator::State::use_unseen_climb(double risen_m, VerticalFilter::Continuation& from) {
+  if (std::abs(risen_m) > kRideM) {
+    from.may_ride = true;
+    from.variance_m2 += squared(risen_m);
+  }
+  if (from.may_ride) from.vz_sigma_m_s = kRideSigmaMS;
+  const double gain = from.variance_m2 / (from.variance_m2 + squared(kPressureSigmaM));
+  from.z_m += gain * risen_m;
+  from.variance_m2 *= 1.0 - gain;
 }
 
 void PriorEstimator::State::bridge_gap(const Eigen::Vector3d& gyro, double dt_s) {

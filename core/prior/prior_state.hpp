@@ -79,6 +79,8 @@ struct PriorEstimator::State {
   void align(const Eigen::Vector3d& gyro, const Eigen::Vector3d& force, double dt_s);
   void start_height();
   void continue_height(double vz_sigma_m_s);
+  void keep_climbing(double pause_s, VerticalFilter::Continuation& from) const;
+  static void use_unseen_climb(double risen_m, VerticalFilter::Continuation& from);
   void step(const Eigen::Vector3d& gyro, const Eigen::Vector3d& force, double dt_s, bool gap);
   void bridge_gap(const Eigen::Vector3d& gyro, double dt_s);
   void restart_clock(double dt_s);

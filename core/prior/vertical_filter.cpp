@@ -31,10 +31,11 @@ void VerticalFilter::start(double z_m, double vz_sigma_m_s) {
   step_open_ = false;
 }
 
-void VerticalFilter::resume(double z_m, double variance_m2, double vz_sigma_m_s, double offset_m) {
-  start(z_m, vz_sigma_m_s);
-  P_(kZ, kZ) = variance_m2;
-  x_[kOffset] = offset_m;
+void VerticalFilter::resume(const Continuation& from) {
+  start(from.z_m, from.vz_sigma_m_s);
+  P_(kZ, kZ) = from.variance_m2;
+  x_[kVz] = from.vz_m_s;
+  x_[kOffset] = from.offset_m;
   P_(kOffset, kOffset) = 0.0;
   offset_age_s_ = config_.offset_learning_s;
 }

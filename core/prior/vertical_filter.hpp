@@ -30,9 +30,17 @@ class VerticalFilter {
   /// Starts at height `z_m`, exactly, with a vertical speed of 0, 1 sigma `vz_sigma_m_s`.
   void start(double z_m, double vz_sigma_m_s);
 
-  /// Continues the height of an earlier run, whose offset between the barometers is fixed: `z_m` and its
-  /// variance, which includes the offset's.
-  void resume(double z_m, double variance_m2, double vz_sigma_m_s, double offset_m);
+  /// Height of an earlier run, at its continuation.
+  struct Continuation {
+    double z_m = 0.0;
+    double variance_m2 = 0.0;  ///< of z_m, that of the offset included
+    double vz_m_s = 0.0;
+    double vz_sigma_m_s = 0.0;
+    double offset_m = 0.0;  ///< between the barometers, fixed
+    bool may_ride = false;  ///< for HeightFilter: the ground may be moving, as in an elevator
+  };
+  /// Continues the height of an earlier run.
+  void resume(const Continuation& from);
 
   /// `accel_density`: [m^2/s^3], spectral density of the acceleration's noise. `weather_moves`: no base
   /// station.

@@ -14,7 +14,9 @@ struct KnownPlace {
   double overlap = 0.0;         ///< of the last scans that matched the map; 0: unknown
   double residual_rms_m = 0.0;  ///< the same
   bool has_height = false;      ///< the prior will continue the height of this map: the search waits for it
+  double height_m = 0.0;        ///< of the prior at that time, if it has one: not z where the scans give z
   Eigen::Vector3d v_map_m_s = Eigen::Vector3d::Zero();  ///< velocity at that time
+  double yaw_rate_rad_s = 0.0;                          ///< the same, about the map's z
 };
 
 }  // namespace isobar

@@ -46,9 +46,7 @@ void MotionModel::start_at(const Prior& prior, const Eigen::Isometry3d& T_map_ba
   start(prior);
   const Eigen::Matrix3d& R = T_map_base.linear();
   T_map_base_.linear() = rotation_about_z(std::atan2(R(1, 0), R(0, 0))) * T_map_base_.linear();
-  T_map_base_.translation().head<2>() = T_map_base.translation().head<2>();
-  if (prior.height_source == HeightSource::kNone)
-    T_map_base_.translation().z() = T_map_base.translation().z();
+  T_map_base_.translation() = T_map_base.translation();
 }
 
 void MotionModel::take_over(const MotionModel& other) {

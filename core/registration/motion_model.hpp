@@ -32,8 +32,7 @@ class MotionModel {
 
   /// Starts at yaw 0 and x = y = 0, with roll and pitch of the prior; z is its height, 0 without a barometer.
   void start(const Prior& prior);
-  /// Starts at the horizontal position and yaw of `T_map_base`, with roll and pitch of the prior; z is the
-  /// prior's height, that of `T_map_base` without a barometer.
+  /// Starts at the position and yaw of `T_map_base`, with roll and pitch of the prior.
   void start_at(const Prior& prior, const Eigen::Isometry3d& T_map_base);
   /// A search has found the robot at `T_map_base`, the pose at the time of `now`; the velocity is unknown.
   void relocate(const Prior& now, const Eigen::Isometry3d& T_map_base);

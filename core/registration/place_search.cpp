@@ -6,20 +6,20 @@
 
 #include "core/geometry.hpp"
 #include "core/so3.hpp"
-#include "core/stamp.hpp"
+#include "core/squared.hpp"
 
 namespace isobar {
 
 namespace {
 
-// Pause for which a robot may have kept its velocity; after a longer one it is expected where it was.
-constexpr double kDriveOnS = 10.0;
-// Radius of the search around the expected place, and its growth with the distance driven unseen.
+// Half the length of the search around the expected place, and its growth along the track with the distance driven
+// unseen.
 constexpr double kRadiusM = 1.0;
-constexpr double kRadiusShare = 0.5;
-constexpr double kLargestRadiusM = 3.0;
+constexpr double kAlongShare = 0.4;
+constexpr double kLargestAlongM = 4.0;
 // Spacing of the hypotheses: the ICP finds the pose from half of it.
 constexpr double kSpacingM = 1.0;
+constexpr double kSpacingAlongM = 0.5;
 constexpr double kSpacingRad = 30.0 * kRadPerDeg;
 // Error of a hypothesis, 1 sigma.
 constexpr double kHypothesisM = 0.4;
@@ -33,18 +33,35 @@ constexpr double kFoundRad = 0.05;
 constexpr double kLeastOverlap = 0.6;
 constexpr double kShareOfOverlap = 0.8;
 // The same after a short pause, when the robot cannot be in another building: it has driven past the edge of the
-// map, of which the tiles of the last 8 s may be missing. Measured where 0.91 had matched before: 0.7 in a corridor,
-// 0.53 behind a corner, at wrong places below 0.3, with residuals from 0.07 m.
-constexpr double kShareAfterPause = 0.45;
-// Overlap that leaves no doubt: the other hypotheses are not tried.
-constexpr double kCertainOverlap = 0.85;
-constexpr double kCertainShare = 0.95;
-constexpr double kCertainShareAfterPause = 0.5;
+// map. Measured at the right place: 0.35 after a corner and 2 s down a shaft, where 0.9 had matched before.
+constexpr double kShareAfterPause = 0.3;
+// The same of a robot that has driven far unseen, which is outdoors, where ground and facades match at many places
+// along a street.
+constexpr double kFarM = 1.5;
+constexpr double kShareAfterDrive = 0.4;
+// Share of the known overlap below which a match must leave no direction free.
+constexpr double kDegenerateShare = 0.42;
+// Distance between the height of the match and that of the altimeter, whose error is 0.1 m, and 0.4 m beside a door
+// that is opened: allowed only where as much matches as before.
+constexpr double kLeastClimbM = 0.25;
+constexpr double kLargestClimbM = 0.6;
 // Residual at the right place: noise of lidar and map; at a wrong one planes of other walls are 0.1 m away.
 constexpr double kLargestResidualM = 0.08;
 constexpr double kTimesResidual = 1.5;
 constexpr double kMoreResidualM = 0.01;
-// Sampled points of a scan that can be judged: the first revolution may be incomplete.
+// The same after a short pause: what the robot has just passed is known from a few scans. Measured in a shaft: 0.045
+// where 0.01 had been.
+constexpr double kTimesAfterPause = 3.0;
+constexpr double kMoreAfterPauseM = 0.03;
+// Error of the expected pose, 1 sigma: this, and a share of the distance driven unseen. The robot may also have been
+// turned by any angle, with this probability density relative to that of the expected yaw.
+constexpr double kExpectedM = 0.5;
+constexpr double kExpectedShare = 0.2;
+constexpr double kExpectedRad = 0.4;
+constexpr double kTurnedShare = 0.1;
+// Score that leaves no doubt: the other hypotheses are not tried. 1: everything matches at the expected pose.
+constexpr double kCertainScore = 0.6;
+// Sampled points of a scan that can be judged.
 constexpr std::uint32_t kLeastPoints = 150;
 constexpr int kConfirmingScans = 3;
 constexpr int kMaxRefusals = 2;
@@ -58,64 +75,80 @@ Prediction with_error(Prediction prediction, double translation_m, double yaw_ra
   return prediction;
 }
 
-bool is_short(double pause_s) { return pause_s > 0.0 && pause_s < kDriveOnS; }
-
 }  // namespace
 
-bool PlaceSearch::fits(const MatchResult& result) const {
-  return result.solved && result.sampled_points >= kLeastPoints && result.overlap >= least_overlap_ &&
+bool PlaceSearch::can_judge(std::size_t sampled_points) { return sampled_points >= kLeastPoints; }
+
+bool PlaceSearch::fits(const Prediction& expected, const MatchResult& result) const {
+  const double climb_m = result.T_map_base.translation().z() - expected.T_map_base.translation().z();
+  // The floor alone matches wherever the robot is.
+  const bool floor_only = result.degenerate && result.overlap < kDegenerateShare * known_overlap_;
+  const bool much = result.overlap >= kShareOfOverlap * known_overlap_;
+  return result.solved && !floor_only &&
+         (!has_height_ || std::abs(climb_m) <= (much ? kLargestClimbM : kLeastClimbM)) &&
+         can_judge(result.sampled_points) && result.overlap >= least_overlap_ &&
          result.residual_rms_m <= largest_residual_m_;
 }
 
-Eigen::Isometry3d PlaceSearch::expected_pose(const KnownPlace& place, std::int64_t now_ns) {
-  const double pause_s = seconds_between(place.stamp_ns, now_ns);
-  Eigen::Isometry3d pose = place.T_map_base;
-  if (is_short(pause_s)) {
-    const Eigen::Vector3d way_m = place.v_map_m_s * pause_s;
-    pose.translation() += way_m * std::min(1.0, kLargestRadiusM / std::max(way_m.norm(), 1e-9));
-  }
-  return pose;
+void PlaceSearch::begin(const KnownPlace& place, double pause_s, const ExpectedPlace& expected) {
+  const double along_m = std::min(kRadiusM + kAlongShare * expected.unseen_m, kLargestAlongM);
+  // The way of a robot that drove on is less certain than its track.
+  const Eigen::Vector3d& v = place.v_map_m_s;
+  const double track_rad = expected.unseen_m > kRadiusM ? std::atan2(v.y(), v.x()) : 0.0;
+  add_hypotheses(along_m, track_rad);
+  set_limits(place, is_short_pause(pause_s), expected.unseen_m);
+  expected_error_m_ = kExpectedM + kExpectedShare * expected.unseen_m;
+  stood_ = expected.stood;
+  has_height_ = place.has_height;
+  rounds_ = 0;
+  active_ = true;
+  restart_round();
 }
 
-void PlaceSearch::begin(const KnownPlace& place, std::int64_t now_ns) {
-  const double way_m =
-      (expected_pose(place, now_ns).translation() - place.T_map_base.translation()).head<2>().norm();
-  const double radius_m = std::min(kRadiusM + kRadiusShare * way_m, kLargestRadiusM);
+// Beside the track and along it, finer along it; turned by 30 degrees within a metre; turned further on the spot.
+void PlaceSearch::add_hypotheses(double along_m, double track_rad) {
   hypotheses_.clear();
-  const auto reach = static_cast<int>(radius_m / kSpacingM);
-  const auto turns = static_cast<int>(std::lround(kPi / kSpacingRad));
-  for (int yaw = -turns + 1; yaw <= turns; ++yaw) {
-    for (int x = -reach; x <= reach; ++x) {
-      for (int y = -reach; y <= reach; ++y) {
-        const Hypothesis h{x * kSpacingM, y * kSpacingM, yaw * kSpacingRad};
-        // A robot that was turned by more than half a right angle was not moved as well.
-        const bool turned = std::abs(h.yaw_rad) > 1.5 * kSpacingRad;
-        const double distance_m = std::hypot(h.x_m, h.y_m);
-        if (distance_m <= (turned ? 0.0 : radius_m)) hypotheses_.push_back(h);
+  const Eigen::Rotation2Dd R_map_track(track_rad);
+  const auto add_around = [&](double half_length_m, double spacing_m, double yaw_rad) {
+    const auto steps = static_cast<int>(std::lround(half_length_m / spacing_m));
+    for (int along = -steps; along <= steps; ++along) {
+      for (int across = -1; across <= 1; ++across) {
+        const Eigen::Vector2d p = R_map_track * Eigen::Vector2d(along * spacing_m, across * kSpacingM);
+        hypotheses_.push_back({p.x(), p.y(), yaw_rad});
       }
     }
+  };
+  add_around(along_m, kSpacingAlongM, 0.0);
+  add_around(kSpacingM, kSpacingM, kSpacingRad);
+  add_around(kSpacingM, kSpacingM, -kSpacingRad);
+  const auto turns = static_cast<int>(std::lround(kPi / kSpacingRad));
+  for (int turn = 2; turn <= turns; ++turn) {
+    hypotheses_.push_back({0.0, 0.0, turn * kSpacingRad});
+    if (turn < turns) hypotheses_.push_back({0.0, 0.0, -turn * kSpacingRad});
   }
   const auto size = [](const Hypothesis& h) {
     return std::hypot(h.x_m, h.y_m) / kSpacingM + std::abs(h.yaw_rad) / kSpacingRad;
   };
   std::stable_sort(hypotheses_.begin(), hypotheses_.end(),
                    [&](const Hypothesis& a, const Hypothesis& b) { return size(a) < size(b); });
-  const bool known = place.overlap > 0.0;
-  const bool paused = is_short(seconds_between(place.stamp_ns, now_ns));
-  least_overlap_ = known ? (paused ? kShareAfterPause : kShareOfOverlap) * place.overlap : kLeastOverlap;
-  certain_overlap_ =
-      known ? (paused ? kCertainShareAfterPause : kCertainShare) * place.overlap : kCertainOverlap;
-  largest_residual_m_ =
-      known ? std::min(kTimesResidual * place.residual_rms_m + kMoreResidualM, kLargestResidualM)
-            : kLargestResidualM;
-  rounds_ = 0;
-  active_ = true;
-  restart_round();
+}
+
+void PlaceSearch::set_limits(const KnownPlace& place, bool short_pause, double unseen_m) {
+  known_overlap_ = 1.0;
+  least_overlap_ = kLeastOverlap;
+  largest_residual_m_ = kLargestResidualM;
+  if (place.overlap <= 0.0) return;
+  known_overlap_ = place.overlap;
+  const double after_pause = unseen_m < kFarM ? kShareAfterPause : kShareAfterDrive;
+  least_overlap_ = (short_pause ? after_pause : kShareOfOverlap) * place.overlap;
+  const double residual_m = short_pause ? kTimesAfterPause * place.residual_rms_m + kMoreAfterPauseM
+                                        : kTimesResidual * place.residual_rms_m + kMoreResidualM;
+  largest_residual_m_ = std::min(residual_m, kLargestResidualM);
 }
 
 void PlaceSearch::restart_round() {
   next_ = 0;
-  best_overlap_ = 0.0;
+  best_score_ = 0.0;
   best_correction_.setIdentity();
   confirmations_ = refusals_ = 0;
   found_ = false;
@@ -131,31 +164,46 @@ Prediction PlaceSearch::next(const Prediction& expected) {
 }
 
 void PlaceSearch::judge(const Prediction& expected, const MatchResult& result) {
-  if (!fits(result) || result.overlap <= best_overlap_) return;
-  best_overlap_ = result.overlap;
+  if (!fits(expected, result)) return;
+  const double score = result.overlap / known_overlap_ * expectation(expected, result);
+  if (score <= best_score_) return;
+  best_score_ = score;
   best_correction_ = result.T_map_base * expected.T_map_base.inverse(Eigen::Isometry);
+}
+
+// Probability density of the found pose, relative to that of the expected one.
+double PlaceSearch::expectation(const Prediction& expected, const MatchResult& result) const {
+  const Eigen::Vector3d step = result.T_map_base.translation() - expected.T_map_base.translation();
+  const Eigen::Matrix3d turn = result.T_map_base.linear() * expected.T_map_base.linear().transpose();
+  const double turn_rad = rotation_angle_rad(Eigen::Quaterniond(turn));
+  return std::exp(-0.5 * squared(step.head<2>().norm() / expected_error_m_)) *
+         (kTurnedShare + (1.0 - kTurnedShare) * std::exp(-0.5 * squared(turn_rad / kExpectedRad)));
 }
 
 PlaceVerdict PlaceSearch::end_of_scan() {
   const bool all_tried = next_ >= hypotheses_.size();
-  if (best_overlap_ >= certain_overlap_ || (all_tried && best_overlap_ > 0.0)) {
+  if (best_score_ >= kCertainScore || (all_tried && best_score_ > 0.0)) {
     found_ = true;
     return PlaceVerdict::kFound;
   }
   if (!all_tried) return PlaceVerdict::kSearching;
+  return end_of_round();
+}
+
+// A robot that stood needs one round: it has not driven into a place that it knows better.
+PlaceVerdict PlaceSearch::end_of_round() {
+  if (stood_) return PlaceVerdict::kUnseen;
   if (++rounds_ >= kRounds) return PlaceVerdict::kUnknown;
   restart_round();
   return PlaceVerdict::kSearching;
 }
 
-PlaceVerdict PlaceSearch::confirm(const MatchResult& result) {
-  if (fits(result))
+PlaceVerdict PlaceSearch::confirm(const Prediction& expected, const MatchResult& result) {
+  if (fits(expected, result))
     return ++confirmations_ >= kConfirmingScans ? PlaceVerdict::kConfirmed : PlaceVerdict::kFound;
   confirmations_ = 0;
   if (++refusals_ <= kMaxRefusals) return PlaceVerdict::kFound;
-  if (++rounds_ >= kRounds) return PlaceVerdict::kUnknown;
-  restart_round();
-  return PlaceVerdict::kSearching;
+  return end_of_round();
 }
 
 Prediction PlaceSearch::near(const Prediction& expected) { return with_error(expected, kFoundM, kFoundRad); }

@@ -10,6 +10,7 @@
 #include "core/registration/known_place.hpp"
 #include "core/registration/motion_model.hpp"
 #include "core/registration/scan_matcher.hpp"
+#include "core/registration/unseen_motion.hpp"
 
 namespace isobar {
 
@@ -19,19 +20,21 @@ enum class PlaceVerdict : std::uint8_t {
   kFound,      ///< apply correction(); the next scans confirm it
   kConfirmed,  ///< some scans in a row match the map there
   kUnknown,    ///< no hypothesis matches: the robot is elsewhere
+  kUnseen,  ///< no hypothesis matches, but the robot stood: it is where it was, and its surroundings are new
 };
 
 /// The robot stands where it was last, or near: it drove on before this process was ready, it was pushed, or
-/// it was turned on the spot. Hypotheses of the pose around the last one, the nearest first, are matched a
-/// few a scan; the first that leaves no doubt, else the best of all, must then be confirmed by
-/// kConfirmingScans scans in a row. Allocates in begin() only.
+/// it was turned on the spot. Hypotheses of the pose around the expected one, the nearest first, are matched a few a
+/// scan. Of the matches that fit, the one with the largest posterior is taken: the share of the scan that matches,
+/// times the density of the expected pose, which decides where the scans cannot, as along a bare corridor or on a
+/// flight of equal steps. kConfirmingScans scans in a row must then confirm it. Allocates in begin() only.
 class PlaceSearch {
  public:
-  /// Hypotheses to be matched with one scan: bounds the time of a scan.
-  static constexpr std::size_t kPerScan = 4;
+  /// Hypotheses to be matched with one scan: the expected pose and its neighbours. Bounds the time of a scan.
+  static constexpr std::size_t kPerScan = 9;
 
-  /// Begins the search around `place`. `now_ns`: time of the first prior, robot clock.
-  void begin(const KnownPlace& place, std::int64_t now_ns);
+  /// Begins the search for a robot that was at `place`, `pause_s` ago, around `expected`.
+  void begin(const KnownPlace& place, double pause_s, const ExpectedPlace& expected);
   void stop() {
     active_ = false;
     hypotheses_.clear();
@@ -39,6 +42,8 @@ class PlaceSearch {
   [[nodiscard]] bool active() const { return active_; }
   /// A correction was found, and scans are confirming it.
   [[nodiscard]] bool confirming() const { return found_; }
+  /// False for a scan with too few points to judge by: the first revolution may be incomplete.
+  [[nodiscard]] static bool can_judge(std::size_t sampled_points);
 
   /// The next hypothesis, as a prediction near `expected`, for one match.
   [[nodiscard]] Prediction next(const Prediction& expected);
@@ -47,17 +52,14 @@ class PlaceSearch {
   /// To be called after the matches of a scan.
   PlaceVerdict end_of_scan();
   /// Result of the match of one scan at the found place, instead of next() and judge().
-  PlaceVerdict confirm(const MatchResult& result);
+  PlaceVerdict confirm(const Prediction& expected, const MatchResult& result);
 
   /// Rigid motion in the map from the expected to the found pose.
   [[nodiscard]] const Eigen::Isometry3d& correction() const { return best_correction_; }
   /// The match is that of the right place.
-  [[nodiscard]] bool fits(const MatchResult& result) const;
+  [[nodiscard]] bool fits(const Prediction& expected, const MatchResult& result) const;
   /// `expected` with the errors of a robot that has just been found.
   [[nodiscard]] static Prediction near(const Prediction& expected);
-
-  /// Where the robot is at `now_ns` if it kept its velocity; the last place after a longer pause.
-  [[nodiscard]] static Eigen::Isometry3d expected_pose(const KnownPlace& place, std::int64_t now_ns);
 
  private:
   struct Hypothesis {
@@ -66,20 +68,27 @@ class PlaceSearch {
     double yaw_rad = 0.0;
   };
 
+  [[nodiscard]] PlaceVerdict end_of_round();
+  void add_hypotheses(double along_m, double track_rad);
+  void set_limits(const KnownPlace& place, bool short_pause, double unseen_m);
   void restart_round();
+  [[nodiscard]] double expectation(const Prediction& expected, const MatchResult& result) const;
 
   std::vector<Hypothesis> hypotheses_;
   double least_overlap_ = 0.0;
-  double certain_overlap_ = 1.0;
   double largest_residual_m_ = 0.0;
   std::size_t next_ = 0;
-  double best_overlap_ = 0.0;
+  double known_overlap_ = 1.0;     // at the last place
+  double expected_error_m_ = 1.0;  // of the expected place, 1 sigma
+  double best_score_ = 0.0;        // 0: no match has fitted
   Eigen::Isometry3d best_correction_ = Eigen::Isometry3d::Identity();
   int rounds_ = 0;
   int confirmations_ = 0;
   int refusals_ = 0;
   bool active_ = false;
   bool found_ = false;
+  bool stood_ = false;
+  bool has_height_ = false;
 };
 
 }  // namespace isobar

@@ -40,6 +40,7 @@ Registration::Registration(const RegistrationConfig& config, Method method,
       asked_(method),
       traits_(traits_of(method, HeightSource::kNone)),
       traits_with_height_(traits_of(method, HeightSource::kDifferential)),
+      traits_of_free_height_(traits_of(Method::k4DofAltitude, HeightSource::kDifferential)),
       traits_without_imu_(traits_of(Method::k6Dof, HeightSource::kNone)),
       state_(config),
       deskewer_(T_base_lidar, config.min_range_m, config.max_range_m),
@@ -127,7 +128,7 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
   const Prediction prediction = state_.motion.predict(end, traits);
   prepare_scan(scan, state_.history, state_.motion.scan_motion(end, prediction), deskewer_, sampler_, out);
   if (state_.search.active()) {
-    search_place(map, end, prediction, traits, out);
+    search_place(map, end, prediction, out);
     return;
   }
 

@@ -76,6 +76,7 @@ class Registration {
 
  private:
   [[nodiscard]] const MethodTraits& traits_for(const Prior& prior) const;
+  [[nodiscard]] const MethodTraits& traits_of_search(const Prior& prior) const;
   [[nodiscard]] PoseEstimate description_of(const Prior& prior, const MethodTraits& traits) const;
   [[nodiscard]] Prior prior_at(std::int64_t stamp_ns) const;
   [[nodiscard]] Prior prior_without_imu(std::int64_t stamp_ns) const;
@@ -87,7 +88,7 @@ class Registration {
   void next_frame();
   bool start_at_place(const Prior& prior);
   void search_place(const MapSnapshot& map, const Prior& end, const Prediction& expected,
-                    const MethodTraits& traits, RegisteredScan& out);
+                    RegisteredScan& out);
   PlaceVerdict try_hypotheses(const MapSnapshot& map, const Prior& end, const Prediction& expected,
                               const MethodTraits& traits);
   PlaceVerdict confirm_place(const MapSnapshot& map, const Prior& end, const Prediction& expected,
@@ -101,7 +102,8 @@ class Registration {
   Method asked_;
   MethodTraits traits_;  // without a height
   MethodTraits traits_with_height_;
-  MethodTraits traits_without_imu_;  // IMU silent: the motion comes from the scans alone
+  MethodTraits traits_of_free_height_;  // search of the place: 3-DOF with z
+  MethodTraits traits_without_imu_;     // IMU silent: the motion comes from the scans alone
   RegistrationState state_;
   Deskewer deskewer_;
   Sampler sampler_;

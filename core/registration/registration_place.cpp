@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The part of Registration that begins a map frame or continues in a known one.
+#include <algorithm>
+#include <cmath>
+
 #include "core/registration/registration.hpp"
+#include "core/registration/unseen_motion.hpp"
+#include "core/squared.hpp"
+#include "core/stamp.hpp"
 
 namespace isobar {
 
@@ -11,6 +17,10 @@ constexpr std::uint32_t kMaxScansWithoutHeight = 25;
 // Standard deviation of a pose that no scan has confirmed.
 constexpr double kUnknownM = 10.0;
 constexpr double kUnknownRad = 3.0;
+constexpr double kStoodM = 0.15;
+constexpr double kStoodRad = 0.1;
+// Largest error of the height in which the scans are searched, 1 sigma.
+constexpr double kLargestHeightErrorM = 0.5;
 
 Matrix6d unknown_covariance() {
   Matrix6d covariance = Matrix6d::Zero();
@@ -19,7 +29,31 @@ Matrix6d unknown_covariance() {
   return covariance;
 }
 
+// Covariance of a robot that stood, and that no scan confirms.
+Matrix6d covariance_of_unseen(const Prior& prior) {
+  Matrix6d covariance = Matrix6d::Zero();
+  covariance.diagonal().head<2>().setConstant(squared(kStoodM));
+  covariance(2, 2) = std::max(prior.height_variance_m2, squared(kStoodM));
+  covariance.diagonal().segment<2>(3).setConstant(prior.roll_pitch_variance_rad2);
+  covariance(5, 5) = squared(kStoodRad);
+  return covariance;
+}
+
+// The height of the start is known less well than the one of a run.
+Prediction with_height_error(Prediction prediction, const Prior& prior) {
+  const double height_sd_m = std::sqrt(std::max(prior.height_variance_m2, 0.0));
+  prediction.deviation(5) = std::max(prediction.deviation(5), std::min(height_sd_m, kLargestHeightErrorM));
+  return prediction;
+}
+
 }  // namespace
+
+// The scans find z as well, near the altimeter's height: a robot that was killed on stairs, in an elevator or on a
+// rope has climbed unseen.
+const MethodTraits& Registration::traits_of_search(const Prior& prior) const {
+  const MethodTraits& traits = traits_for(prior);
+  return traits.method == Method::k3Dof ? traits_of_free_height_ : traits;
+}
 
 void Registration::resume(const KnownPlace& place) {
   state_.place = place;
@@ -50,21 +84,28 @@ void Registration::next_frame() {
 bool Registration::start_at_place(const Prior& prior) {
   const bool waits = state_.place->has_height && prior.height_source == HeightSource::kNone;
   if (waits && ++state_.scans_without_height < kMaxScansWithoutHeight) return false;
-  state_.motion.start_at(prior, PlaceSearch::expected_pose(*state_.place, prior.stamp_ns));
-  state_.search.begin(*state_.place, prior.stamp_ns);
+  const KnownPlace& place = *state_.place;
+  ExpectedPlace expected = expected_place(place, state_.history);
+  if (place.has_height && prior.height_source != HeightSource::kNone) {
+    expected.T_map_base.translation().z() =
+        place.T_map_base.translation().z() + (prior.height_m - place.height_m);
+  }
+  state_.motion.start_at(prior, expected.T_map_base);
+  state_.search.begin(place, seconds_between(place.stamp_ns, prior.stamp_ns), expected);
   state_.place.reset();
   return true;
 }
 
 // Searches the place with one scan. Its points stay out of the map.
 void Registration::search_place(const MapSnapshot& map, const Prior& end, const Prediction& expected,
-                                const MethodTraits& traits, RegisteredScan& out) {
+                                RegisteredScan& out) {
+  const MethodTraits& traits = traits_of_search(end);
   PoseEstimate& pose = out.pose;
   out.point_count = 0;
   pose.T_map_base = expected.T_map_base;
   pose.covariance = unknown_covariance();
-  // A dropped scan has no points and says nothing about the place.
-  if (sampler_.sample().empty()) {
+  // A dropped scan has no points.
+  if (!PlaceSearch::can_judge(sampler_.sample().size())) {
     state_.motion.keep_prediction(end, expected);
     pose.T_map_odom = pose.T_map_base * end.T_odom_base.inverse();
     state_.last = pose;
@@ -77,10 +118,14 @@ void Registration::search_place(const MapSnapshot& map, const Prior& end, const 
     pose.session = session();
     pose.T_map_base.setIdentity();
   }
-  if (verdict == PlaceVerdict::kConfirmed) {
+  if (verdict == PlaceVerdict::kUnseen) {
+    pose.mode = PoseMode::kPriorOnly;
+    pose.covariance = covariance_of_unseen(end);
+  }
+  if (verdict == PlaceVerdict::kConfirmed || verdict == PlaceVerdict::kUnseen) {
     state_.search.stop();
     state_.bootstrapping = false;
-    pose.mode = PoseMode::kRegistered;
+    if (verdict == PlaceVerdict::kConfirmed) pose.mode = PoseMode::kRegistered;
   }
   pose.T_map_odom = pose.T_map_base * end.T_odom_base.inverse();
   state_.last = pose;
@@ -90,7 +135,7 @@ PlaceVerdict Registration::try_hypotheses(const MapSnapshot& map, const Prior& e
                                           const Prediction& expected, const MethodTraits& traits) {
   PlaceSearch& search = state_.search;
   for (std::size_t i = 0; i < PlaceSearch::kPerScan; ++i) {
-    const Prediction hypothesis = search.next(expected);
+    const Prediction hypothesis = with_height_error(search.next(expected), end);
     search.judge(expected, knows(map) ? match(map, end, hypothesis, traits) : MatchResult{});
   }
   const PlaceVerdict verdict = search.end_of_scan();
@@ -105,9 +150,10 @@ PlaceVerdict Registration::try_hypotheses(const MapSnapshot& map, const Prior& e
 PlaceVerdict Registration::confirm_place(const MapSnapshot& map, const Prior& end, const Prediction& expected,
                                          const MethodTraits& traits, PoseEstimate& pose) {
   const MatchResult result =
-      knows(map) ? match(map, end, PlaceSearch::near(expected), traits) : MatchResult{};
-  const PlaceVerdict verdict = state_.search.confirm(result);
-  if (!state_.search.fits(result)) {
+      knows(map) ? match(map, end, with_height_error(PlaceSearch::near(expected), end), traits)
+                 : MatchResult{};
+  const PlaceVerdict verdict = state_.search.confirm(expected, result);
+  if (!state_.search.fits(expected, result)) {
     state_.motion.keep_prediction(end, expected);
     return verdict;
   }

@@ -26,6 +26,7 @@ constexpr std::uint32_t kVersion = 1;
 constexpr double kLargestM = 1e7;
 constexpr double kLargestVarianceM2 = 1e8;
 constexpr double kLargestSpeedMS = 100.0;
+constexpr double kLargestRateRadS = 50.0;
 constexpr std::uint32_t kLargestSession = 1'000'000;
 
 /// Content of the file. All padding is explicit.
@@ -48,7 +49,11 @@ struct Record {
   std::array<double, HeightDatum::kStations> station_offset_log{};
   double overlap = 0.0;
   double residual_rms_m = 0.0;
-  std::array<double, 4> reserved{};
+  double climb_m_s = 0.0;
+  std::int64_t datum_stamp_ns = 0;
+  double yaw_rate_rad_s = 0.0;
+  std::uint8_t ground_moves = 0;
+  std::array<std::uint8_t, 7> reserved{};
   std::uint32_t reserved_word = 0;
   std::uint32_t crc = 0;
 };
@@ -66,8 +71,8 @@ bool all_within(const std::array<double, kCount>& values, double limit) {
 }
 
 bool are_flags(const Record& record) {
-  return record.datum_known <= 1 && record.step_open <= 1 && record.station_known[0] <= 1 &&
-         record.station_known[1] <= 1;
+  return record.datum_known <= 1 && record.step_open <= 1 && record.ground_moves <= 1 &&
+         record.station_known[0] <= 1 && record.station_known[1] <= 1;
 }
 
 const char* broken_rule(const Record& record) {
@@ -75,15 +80,16 @@ const char* broken_rule(const Record& record) {
   if (record.version != kVersion) return "is of another version of Isobar";
   if (record.length != kCheckpointBytes || record.crc != crc_of(record)) return "its checksum is wrong";
   const auto& q = record.quaternion;
-  const bool plausible = record.session >= 1 && record.session <= kLargestSession && are_flags(record) &&
-                         all_within(record.position_m, kLargestM) && all_within(q, 2.0) &&
-                         kPlausibleQuaternionNorm.holds(Eigen::Quaterniond(q[0], q[1], q[2], q[3]).norm()) &&
-                         all_within(record.velocity_m_s, kLargestSpeedMS) &&
-                         within(record.height_m, kLargestM) &&
-                         within(record.variance_m2, kLargestVarianceM2) && record.variance_m2 >= 0.0 &&
-                         within(record.offset_m, kLargestM) && within(record.overlap, 1.0) &&
-                         record.overlap >= 0.0 && within(record.residual_rms_m, 1.0) &&
-                         record.residual_rms_m >= 0.0 && all_within(record.station_offset_log, 10.0);
+  const bool plausible =
+      record.session >= 1 && record.session <= kLargestSession && are_flags(record) &&
+      all_within(record.position_m, kLargestM) && all_within(q, 2.0) &&
+      kPlausibleQuaternionNorm.holds(Eigen::Quaterniond(q[0], q[1], q[2], q[3]).norm()) &&
+      all_within(record.velocity_m_s, kLargestSpeedMS) && within(record.climb_m_s, kLargestSpeedMS) &&
+      within(record.yaw_rate_rad_s, kLargestRateRadS) && within(record.height_m, kLargestM) &&
+      within(record.variance_m2, kLargestVarianceM2) && record.variance_m2 >= 0.0 &&
+      within(record.offset_m, kLargestM) && within(record.overlap, 1.0) && record.overlap >= 0.0 &&
+      within(record.residual_rms_m, 1.0) && record.residual_rms_m >= 0.0 &&
+      all_within(record.station_offset_log, 10.0);
   return plausible ? nullptr : "a value is implausible";
 }
 
@@ -100,12 +106,16 @@ CheckpointBytes encode(const Checkpoint& checkpoint) {
     record.position_m[i] = checkpoint.T_map_base.translation()[static_cast<Eigen::Index>(i)];
     record.velocity_m_s[i] = checkpoint.v_map_m_s[static_cast<Eigen::Index>(i)];
   }
+  record.yaw_rate_rad_s = checkpoint.yaw_rate_rad_s;
   record.overlap = checkpoint.overlap;
   record.residual_rms_m = checkpoint.residual_rms_m;
   const HeightDatum& datum = checkpoint.datum;
   record.datum_known = datum.known ? 1 : 0;
   record.step_open = datum.step_open ? 1 : 0;
+  record.datum_stamp_ns = datum.stamp_ns;
+  record.ground_moves = datum.ground_moves ? 1 : 0;
   record.height_m = datum.height_m;
+  record.climb_m_s = std::clamp(datum.climb_m_s, -kLargestSpeedMS, kLargestSpeedMS);
   record.variance_m2 = datum.variance_m2;
   record.offset_m = datum.offset_m;
   record.station_offset_log = datum.station_offset_log;
@@ -133,12 +143,16 @@ std::optional<Checkpoint> decode(std::span<const std::byte> bytes, const char*& 
   checkpoint.T_map_base.linear() = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
   checkpoint.T_map_base.translation() = Eigen::Vector3d(record.position_m.data());
   checkpoint.v_map_m_s = Eigen::Vector3d(record.velocity_m_s.data());
+  checkpoint.yaw_rate_rad_s = record.yaw_rate_rad_s;
   checkpoint.overlap = record.overlap;
   checkpoint.residual_rms_m = record.residual_rms_m;
   HeightDatum& datum = checkpoint.datum;
   datum.known = record.datum_known == 1;
   datum.step_open = record.step_open == 1;
+  datum.stamp_ns = record.datum_stamp_ns;
+  datum.ground_moves = record.ground_moves == 1;
   datum.height_m = record.height_m;
+  datum.climb_m_s = record.climb_m_s;
   datum.variance_m2 = record.variance_m2;
   datum.offset_m = record.offset_m;
   datum.station_offset_log = record.station_offset_log;

@@ -21,6 +21,7 @@ struct Checkpoint {
   std::int64_t clock_ns = 0;  ///< robot clock when it was written
   Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
   Eigen::Vector3d v_map_m_s = Eigen::Vector3d::Zero();  ///< velocity, from the last poses
+  double yaw_rate_rad_s = 0.0;                          ///< the same
   double overlap = 0.0;                                 ///< of the last registered pose; 0: none yet
   double residual_rms_m = 0.0;                          ///< the same
   HeightDatum datum;

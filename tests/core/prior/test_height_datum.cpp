@@ -22,6 +22,8 @@ struct Standing {
   double base_pa = 100'950.0;
   double base_from_s = 0.0;  ///< the base station is heard from then on
   double seconds = 30.0;
+  double climb_m_s = 0.0;  ///< of the robot and of what it stands on
+  bool wheels = false;     ///< that stand
 };
 
 /// The last prior of the estimator. Its height must not leave `limit_m` around `expected_m` once it is known.
@@ -36,15 +38,16 @@ Prior stand(PriorEstimator& estimator, const Standing& at, std::int64_t begin_ns
     if (i % 3 == 0) {
       PressureSample sample{stamp_ns, at.base_pa + 0.3 * noise(random), 20.0};
       if (i >= at.base_from_s * 100.0) estimator.add_base_pressure(sample);
-      sample.pressure_pa = at.robot_pa + 0.3 * noise(random);
+      sample.pressure_pa = at.robot_pa - kPaPerM * at.climb_m_s * 0.01 * i + 0.3 * noise(random);
       estimator.add_pressure(sample);
     }
     ImuSample imu;
     imu.stamp_ns = stamp_ns;
     for (int axis = 0; axis < 3; ++axis) imu.gyro_rad_s[axis] = 0.001 * noise(random);
     imu.accel_m_s2 = {0.01 * noise(random), 0.01 * noise(random), kGravity + 0.01 * noise(random)};
+    if (at.wheels && i % 5 == 0) estimator.add_wheel({stamp_ns, 0.0, 0.0, 0.0});
     if (estimator.add_imu(imu, prior) && prior.height_source != HeightSource::kNone) {
-      CHECK(std::abs(prior.height_m - expected_m) < limit_m);
+      CHECK(std::abs(prior.height_m - expected_m - at.climb_m_s * 0.01 * i) < limit_m);
     }
   }
   return prior;
@@ -89,6 +92,31 @@ TEST_CASE("a height that was not 0 is continued, and so is the datum of a third 
     next.resume(datum);
     stand(next, above, kStartNs + morning * kNightNs, 12.0, 0.3);
     datum = next.height_datum();
+  }
+}
+
+TEST_CASE("a robot that is killed while it climbs continues at the height where it has climbed to") {
+  struct Ride {
+    double climb_m_s;
+    bool wheels, seen;
+  };
+  // A rope, a ride that had begun before, one that began while nobody looked.
+  for (const Ride& ride : {Ride{-0.4, false, true}, Ride{1.0, true, true}, Ride{1.0, true, false}}) {
+    CAPTURE(ride.climb_m_s);
+    CAPTURE(ride.seen);
+    HeightDatum datum = first_run();
+    const std::int64_t begin_ns = datum.stamp_ns + 1'000'000'000;
+    const double unseen_m = ride.climb_m_s * 1.0;
+    if (ride.seen) datum.climb_m_s = ride.climb_m_s;
+    datum.ground_moves = ride.seen && ride.wheels;
+    PriorEstimator next{PriorConfig{}};
+    next.resume(datum);
+    const Standing riding{.robot_pa = 100'900.0 - kPaPerM * unseen_m,
+                          .seconds = 6.0,
+                          .climb_m_s = ride.climb_m_s,
+                          .wheels = ride.wheels};
+    // The first pressures have 3 cm of noise and a filter's delay; a speed that is not known shows after a second.
+    stand(next, riding, begin_ns, unseen_m, ride.seen ? 0.35 : 0.8);
   }
 }
 

@@ -36,6 +36,13 @@ World another_room() {
   return world;
 }
 
+/// Of the room, only the floor is left.
+World hall() {
+  World world;
+  world.add_box({-30.0, -25.0, 0.0}, {35.0, 28.0, 9.0});
+  return world;
+}
+
 }  // namespace
 
 TEST_CASE("a continued run finds its place: where it was, pushed aside, and turned on the spot") {
@@ -82,6 +89,56 @@ TEST_CASE("in another place a new frame begins at the origin, and the old map st
   // The robot drives on at 0.6 m/s during the first scans of the new frame.
   CHECK(run.pose().T_map_base.translation().head<2>().norm() < 0.2);
   CHECK_FALSE(run.registration().searching());
+}
+
+TEST_CASE(
+    "a robot that stood when its process was killed keeps its frame, whatever its surroundings became") {
+  for (const bool stood : {true, false}) {
+    CAPTURE(stood);
+    RegistrationRun run(furnished_room(), circle, drifting(circle), Method::k3Dof);
+    run.steps(kMapSteps);
+    KnownPlace place = place_at(run.pose().T_map_base);
+    place.stamp_ns = run.pose().stamp_ns - 1'000'000'000;
+    place.overlap = run.pose().overlap;
+    place.residual_rms_m = run.pose().residual_rms_m;
+    if (!stood) place.v_map_m_s = {5.0, 0.0, 0.0};
+    run.restart_at(place);
+    run.enter(hall());
+    PoseMode first_known = PoseMode::kInitializing;
+    for (int i = 0; i < kMostSearchSteps && first_known == PoseMode::kInitializing; ++i) {
+      first_known = run.step().mode;
+      if (run.pose().session != 1) break;
+    }
+    CHECK(run.pose().session == (stood ? 1U : 2U));
+    if (!stood) continue;
+    // No scan has confirmed it: the pose is the prior's, and says how well it is known.
+    CHECK(first_known == PoseMode::kPriorOnly);
+    CHECK(run.pose().covariance(0, 0) > 0.01);
+    CHECK(run.pose().covariance(0, 0) < 1.0);
+  }
+}
+
+TEST_CASE("between places that look alike the expected one is taken") {
+  // A corridor without features: the scans say nothing about the way along it.
+  World corridor;
+  corridor.add_box({-60.0, -1.2, 0.0}, {60.0, 1.2, 2.6});
+  RegistrationRun run(corridor, along_x, drifting(along_x), Method::k3Dof);
+  run.steps(kMapSteps);
+  KnownPlace place = place_at(run.pose().T_map_base);
+  place.stamp_ns = run.pose().stamp_ns;
+  place.overlap = run.pose().overlap;
+  place.residual_rms_m = run.pose().residual_rms_m;
+  const double x_m = run.pose().T_map_base.translation().x();
+  run.restart_at(place);
+  int steps = 0;
+  while (run.registration().searching() && steps < kMostSearchSteps) {
+    run.step();
+    ++steps;
+  }
+  CHECK(run.pose().session == 1);
+  CHECK(steps < kMostSearchSteps);
+  // 0.8 m/s, 0.1 s a scan; dead reckoning is off by 4 %.
+  CHECK(std::abs(run.pose().T_map_base.translation().x() - x_m - 0.08 * steps) < 0.15);
 }
 
 TEST_CASE("a new frame on command begins with the next number") {

@@ -25,12 +25,16 @@ Checkpoint example() {
   checkpoint.T_map_base = Eigen::Translation3d(1.5, -200.25, 7.0) *
                           Eigen::AngleAxisd(2.1, Eigen::Vector3d(0.1, -0.05, 0.99).normalized());
   checkpoint.v_map_m_s = {0.5, -0.25, 0.0};
+  checkpoint.yaw_rate_rad_s = 0.375;
   checkpoint.overlap = 0.875;
   checkpoint.residual_rms_m = 0.0625;
   checkpoint.datum = {.known = true,
+                      .stamp_ns = 1'700'000'000'000'000'001,
                       .height_m = 7.0,
+                      .climb_m_s = -0.5,
                       .variance_m2 = 0.01,
                       .offset_m = -0.125,
+                      .ground_moves = true,
                       .step_open = true,
                       .station_known = {true, false},
                       .station_offset_log = {0.001, 0.0}};
@@ -57,10 +61,14 @@ TEST_CASE("a checkpoint survives the way to the disk and back") {
   CHECK(read->clock_ns == example().clock_ns);
   CHECK(read->T_map_base.matrix().isApprox(example().T_map_base.matrix(), 1e-14));
   CHECK(read->v_map_m_s == example().v_map_m_s);
+  CHECK(read->yaw_rate_rad_s == 0.375);
   CHECK(read->overlap == 0.875);
   CHECK(read->residual_rms_m == 0.0625);
   CHECK(read->datum.known);
   CHECK(read->datum.step_open);
+  CHECK(read->datum.ground_moves);
+  CHECK(read->datum.stamp_ns == 1'700'000'000'000'000'001);
+  CHECK(read->datum.climb_m_s == -0.5);
   CHECK(read->datum.height_m == 7.0);
   CHECK(read->datum.variance_m2 == 0.01);
   CHECK(read->datum.offset_m == -0.125);
