@@ -21,6 +21,9 @@ foreach(unit isobard.service isobar-dds.service isobar-metrics.service run-isoba
   list(APPEND CMAKE_INSTALL_MANIFEST_FILES ${lib}/systemd/system/${unit})
 endforeach()
 # file(INSTALL) puts DESTDIR before these places itself.
+foreach(unit isobard isobar-dds isobar-metrics)
+  file(INSTALL ${systemd}/shared-memory.conf DESTINATION ${lib}/systemd/system/${unit}.service.d PERMISSIONS ${rights})
+endforeach()
 file(INSTALL ${systemd}/59-isobar.rules DESTINATION ${lib}/udev/rules.d PERMISSIONS ${rights})
 file(INSTALL ${systemd}/isobar.sysusers DESTINATION ${CMAKE_INSTALL_PREFIX}/lib/sysusers.d PERMISSIONS ${rights}
      RENAME isobar.conf)

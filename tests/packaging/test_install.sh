@@ -18,6 +18,7 @@ install() { DESTDIR=$root cmake --install "$2" --prefix "$1" >"$root/log" || { c
 
 install /usr "$2"
 for file in usr/bin/{isobard,isobar,isobar-dds} lib/systemd/system/{isobard.service,isobar-dds.service,run-isobar.mount} \
+  lib/systemd/system/{isobard,isobar-dds,isobar-metrics}.service.d/shared-memory.conf \
   lib/udev/rules.d/59-isobar.rules usr/lib/sysusers.d/isobar.conf usr/lib/tmpfiles.d/isobar.conf etc/isobar/isobar.toml \
   etc/isobar/conf.d usr/share/man/man8/{isobard,isobar-dds}.8 usr/share/man/man5/isobar.toml.5 \
   usr/share/doc/isobar/copyright usr/share/isobar/ros2/isobar_msgs/package.xml; do

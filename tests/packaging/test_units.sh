@@ -12,6 +12,9 @@ for unit in isobard.service isobar-dds.service isobar-metrics.service run-isobar
   sed -e "s#^ExecStart=/usr/bin/isobard #ExecStart=$2 #; s#^ExecStart=/usr/bin/isobar-dds #ExecStart=$3 #; s#^ExecStart=/usr/bin/isobar #ExecStart=$4 #" "$1/$unit" \
     >"$folder/$unit"
 done
+for unit in isobard isobar-dds isobar-metrics; do
+  install -D -m 644 "$1/shared-memory.conf" "$folder/$unit.service.d/shared-memory.conf"
+done
 # Its exit code is 0 also after "Unknown key name …, ignoring".
 said=$(SYSTEMD_LOG_LEVEL=info systemd-analyze verify --man=no "$folder"/*.service "$folder"/*.mount 2>&1 || true)
 check "systemd-analyze verify says nothing: $said" "$([ -z "$said" ] && echo yes)"
@@ -21,9 +24,10 @@ for unit in isobard isobar-dds isobar-metrics; do
     sed -n 's/.*Overall exposure level.*: \([0-9.]*\) .*/\1/p')
   check "exposure of $unit is ${exposure:-unknown}, at most 2.0" \
     "$(awk -v e="${exposure:-10}" 'BEGIN { if (e <= 2.0) print "yes" }')"
+  check "$unit.service: /dev/shm and /tmp are the services' own" "$(grep -qxF \
+    'BindPaths=/run/isobar/shm:/dev/shm /run/isobar/tmp:/tmp' "$folder/$unit.service.d/shared-memory.conf" && echo yes)"
   # What the services rely on, whatever the score says.
-  for line in StartLimitIntervalSec=0 Restart=always User=isobar PrivateTmp=yes \
-    'BindPaths=/run/isobar/shm:/dev/shm /run/isobar/tmp:/tmp'; do
+  for line in StartLimitIntervalSec=0 Restart=always User=isobar PrivateTmp=yes; do
     check "$unit.service: $line" "$(grep -qxF "$line" "$folder/$unit.service" && echo yes)"
   done
 done
