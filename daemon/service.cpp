@@ -33,7 +33,12 @@ int signal_descriptor(std::initializer_list<int> signals) {
 
 }  // namespace
 
-Service::Service() : signals_(signal_descriptor({SIGTERM, SIGINT})), hangups_(signal_descriptor({SIGHUP})) {}
+Service::Service() : signals_(signal_descriptor({SIGTERM, SIGINT})), hangups_(signal_descriptor({SIGHUP})) {
+  // A log that nobody reads any more (`isobard | head`) and a limit on the size of files (ulimit -f) are errors of
+  // one write, not the end of the program.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
 
 Service::~Service() {
   close(signals_);

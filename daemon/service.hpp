@@ -13,7 +13,7 @@ namespace isobar {
 class Service {
  public:
   /// Blocks SIGTERM, SIGINT and SIGHUP in this thread and in all threads
-  /// started later: construct it before the first thread.
+  /// started later: construct it before the first thread. Ignores SIGPIPE and SIGXFSZ: such writes fail.
   /// @throws ServiceError when the kernel refuses a signal descriptor
   Service();
   ~Service();

@@ -5,6 +5,8 @@
 #include <signal.h>  // NOLINT(modernize-deprecated-headers): sigtimedwait is POSIX
 #include <unistd.h>
 
+#include <array>
+#include <cerrno>
 #include <string>
 #include <vector>
 
@@ -45,6 +47,19 @@ TEST_CASE("SIGHUP asks for one reload and does not stop; a reload is told with i
   const auto messages = manager.messages();
   REQUIRE(messages.size() == 1);
   CHECK(messages[0].starts_with("RELOADING=1\nMONOTONIC_USEC="));
+}
+
+TEST_CASE("a log that nobody reads ends no program: the write fails") {
+  std::array<int, 2> ends{};
+  REQUIRE(::pipe(ends.data()) == 0);
+  {
+    const Service service;
+    ::close(ends[0]);
+    CHECK(::write(ends[1], "x", 1) == -1);
+    CHECK(errno == EPIPE);
+  }
+  ::close(ends[1]);
+  clear_signals();
 }
 
 TEST_CASE("the supervise loop feeds the watchdog only in ticks with all threads alive, and ends on SIGTERM") {
