@@ -214,6 +214,8 @@ void Forwarding::add_own_health() {
             prior_in_.rejected() + pose_in_.rejected() + station_in_.rejected() + health_in_.rejected(),
             "isobard and isobar-dds come from different builds");
   add_count("bridge/received_implausible", received.refused, "a DDS writer sends implausible values");
+  add_count("bridge/received_other_senders", received.other_senders,
+            "a second node writes the topic of the IMU or of the wheels: refused; stop one of them");
   add_count("bridge/shared_memory_faults", ipc::library_fault_count(), "errors in the iceoryx library");
   add_count("bridge/received_too_early", received.too_early, "received before isobard could take it");
   add_station_health(received);

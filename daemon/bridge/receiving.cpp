@@ -74,8 +74,12 @@ std::vector<dds_entity_t> Receiving::readers() const {
 }
 
 ReceivedCounts Receiving::counts() const noexcept {
-  return {refused_.load(std::memory_order_relaxed), too_early_.load(std::memory_order_relaxed),
-          station_status_.get(), stations_.size(), clock_.now_ns()};
+  return {refused_.load(std::memory_order_relaxed),
+          other_senders_.load(std::memory_order_relaxed),
+          too_early_.load(std::memory_order_relaxed),
+          station_status_.get(),
+          stations_.size(),
+          clock_.now_ns()};
 }
 
 template <class Message, class Sample>
@@ -83,7 +87,7 @@ void Receiving::forward(std::optional<Stream<Message, Sample>>& stream) {
   if (!stream) {
     return;
   }
-  stream->reader.take([&](const Message& message) {
+  stream->reader.take([&](const Message& message, dds_instance_handle_t writer) {
     Sample sample;
     if (dds::to_sample(message, sample) != nullptr) {
       refused_.fetch_add(1, std::memory_order_relaxed);
@@ -91,6 +95,11 @@ void Receiving::forward(std::optional<Stream<Message, Sample>>& stream) {
     }
     if (!clock_.known()) {
       too_early_.fetch_add(1, std::memory_order_relaxed);
+      return;
+    }
+    const auto is_present = [&](dds_instance_handle_t other) { return stream->reader.is_matched(other); };
+    if (!stream->writer.admits(writer, monotonic_ns(), is_present)) {
+      other_senders_.fetch_add(1, std::memory_order_relaxed);
       return;
     }
     // The sender's clock is that of another machine, or this machine's system clock, which can step.

@@ -15,6 +15,7 @@
 #include "core/time/system_clock_watch.hpp"
 #include "daemon/bridge/settings.hpp"
 #include "daemon/bridge/station_input.hpp"
+#include "daemon/bridge/writer_choice.hpp"
 #include "daemon/seq_lock.hpp"
 #include "ipc/dds/endpoints.hpp"
 #include "ipc/shared_memory.hpp"
@@ -40,8 +41,9 @@ class IsobardClock {
 
 /// Counts of received messages, for the diagnostics.
 struct ReceivedCounts {
-  std::uint64_t refused = 0;    ///< implausible
-  std::uint64_t too_early = 0;  ///< no clock of isobard yet, or no free chunk in shared memory
+  std::uint64_t refused = 0;        ///< implausible
+  std::uint64_t other_senders = 0;  ///< of a second IMU or of second wheels
+  std::uint64_t too_early = 0;      ///< no clock of isobard yet, or no free chunk in shared memory
   /// Base stations with readers, [0 … station_count-1].
   std::array<BaseStationStatus, 2> stations;
   std::size_t station_count = 0;
@@ -72,6 +74,7 @@ class Receiving {
     ClockAnchor anchor;
     SenderClock sender_clock;
     bool anchored = false;
+    WriterChoice writer;
 
     Stream(dds_entity_t participant, const dds::DdsTopic<Message>& from, const std::string& ros_namespace,
            const std::string& ros_name, const ipc::Topic<Sample>& to)
@@ -93,6 +96,7 @@ class Receiving {
   dds::Entity stop_;
   std::atomic<std::uint64_t> refused_{0};
   std::atomic<std::uint64_t> too_early_{0};
+  std::atomic<std::uint64_t> other_senders_{0};
   SeqLock<std::array<BaseStationStatus, 2>> station_status_;
   std::thread thread_;
 };

@@ -23,7 +23,7 @@ bool SenderLock::admits(const SenderAddress& sender, std::int64_t now_ns) noexce
     static_cast<void>(refuse(later, now_ns));
     return true;
   }
-  if (contested_) return refuse(sender, now_ns);
+  if (contested_ || is_port_alive(now_ns)) return refuse(sender, now_ns);
   earlier_port_ = status_.in_use.port;
   return admit(sender, now_ns);
 }
@@ -32,7 +32,18 @@ bool SenderLock::is_allowed(std::uint32_t ipv4) const noexcept {
   return allowed_.empty() || std::find(allowed_.begin(), allowed_.end(), ipv4) != allowed_.end();
 }
 
+// A program that opens a socket for each datagram is never alive in this sense: its ports send once.
+bool SenderLock::is_port_alive(std::int64_t now_ns) const noexcept {
+  return gap_ns_ > 0 && now_ns - heard_ns_ < std::clamp(3 * gap_ns_, kLeastPortWaitNs, kMostPortWaitNs);
+}
+
 bool SenderLock::admit(const SenderAddress& sender, std::int64_t now_ns) noexcept {
+  if (status_.in_use == sender) {
+    constexpr std::int64_t kForgetting = 16;  // samples
+    gap_ns_ = std::max({std::int64_t{1}, now_ns - heard_ns_, gap_ns_ - gap_ns_ / kForgetting});
+  } else {
+    gap_ns_ = 0;
+  }
   status_.in_use = sender;
   heard_ns_ = now_ns;
   return true;

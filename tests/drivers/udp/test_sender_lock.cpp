@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstdint>
 
 #include "drivers/udp/sender_lock.hpp"
@@ -53,18 +54,47 @@ TEST_CASE("A program that opens a socket for each datagram, or restarts, is one 
   CHECK(lock.status().refused == 0);
 }
 
-TEST_CASE("Two programs of one address are two senders: one sample is mixed, then only the first is used") {
+TEST_CASE("Two programs of one address are two senders: the first alone is used, and no sample is mixed") {
   SenderLock lock;
   SenderAddress other = kFirst;
-  int mixed = 0;
+  CHECK(lock.admits(kFirst, -5 * kMs));
   for (int i = 0; i < 200; ++i) {
     CHECK(lock.admits(kFirst, i * 5 * kMs));
     ++other.port;  // even with another port each time
+    CHECK_FALSE(lock.admits(other, i * 5 * kMs + kMs));
+  }
+  CHECK(lock.status().in_use == kFirst);
+  CHECK(lock.status().refused == 200);
+}
+
+TEST_CASE(
+    "Two programs of one address that begin at the same time: one sample is mixed, then only the first is "
+    "used") {
+  SenderLock lock;
+  SenderAddress other = kFirst;
+  ++other.port;
+  int mixed = 0;
+  for (int i = 0; i < 200; ++i) {
+    CHECK(lock.admits(kFirst, i * 5 * kMs));
     mixed += lock.admits(other, i * 5 * kMs + kMs) ? 1 : 0;
   }
   CHECK(mixed == 1);
   CHECK(lock.status().in_use == kFirst);
-  CHECK(lock.status().refused >= 199);
+}
+
+TEST_CASE("A program that restarts with another port is used again after three of its intervals") {
+  for (const std::int64_t interval_ns : {5 * kMs, 33 * kMs, 1000 * kMs}) {
+    SenderLock lock;
+    std::int64_t now_ns = 0;
+    for (int i = 0; i < 50; ++i) CHECK(lock.admits(kFirst, now_ns += interval_ns));
+    SenderAddress restarted = kFirst;
+    restarted.port += 3;
+    const std::int64_t silent_ns = now_ns;
+    while (!lock.admits(restarted, now_ns)) now_ns += kMs;
+    CHECK(now_ns - silent_ns ==
+          std::clamp(3 * interval_ns, SenderLock::kLeastPortWaitNs, SenderLock::kMostPortWaitNs));
+    CHECK(lock.status().takeovers == 0);
+  }
 }
 
 }  // namespace isobar::test::test_sender_lock
