@@ -150,6 +150,20 @@ class Robot {
   std::vector<Got> receive(std::size_t wanted) { return receive(wanted, std::chrono::seconds(20)); }
   /// The samples that isobard receives in this time.
   std::vector<Got> receive_for(std::chrono::milliseconds time) { return receive(SIZE_MAX, time); }
+  /// Forward speeds of the wheel samples that isobard receives in this time.
+  std::vector<double> wheels_for(std::chrono::milliseconds time) {
+    std::vector<double> speeds;
+    const auto deadline = std::chrono::steady_clock::now() + time;
+    std::string line;
+    double speed = 0.0;
+    while (std::chrono::steady_clock::now() < deadline) {
+      if (stand_in_.read_line(line, std::chrono::milliseconds(100)) &&
+          std::sscanf(line.c_str(), "wheel %lf", &speed) == 1) {
+        speeds.push_back(speed);
+      }
+    }
+    return speeds;
+  }
   /// Discards the samples that isobard has received so far.
   void forget() {
     std::string line;

@@ -2,7 +2,7 @@
 // Stand-in for isobard: holds the broker and publishes the data of stand_in.hpp in real time until SIGTERM.
 // Prints "ready", then once a second the number of priors published ("priors N"), and each base-station
 // pressure received, with its age on the stand-in's clock: "base PASCAL MILLISECONDS STATION VARIANCE
-// DEGREES".
+// DEGREES", and each wheel sample: "wheel VX".
 //   stand_in [--initializing]
 // --initializing: every pose is one of the bootstrap.
 #include <signal.h>  // NOLINT(modernize-deprecated-headers)
@@ -85,6 +85,7 @@ int run(bool is_initializing) {
   ipc::Publisher<ipc::MapCloud> maps(ipc::topics::kMapCloud);
   ipc::Publisher<ipc::HealthReport> reports(ipc::topics::kHealth);
   ipc::Subscriber<PressureSample> base_pressure(ipc::topics::kBaseBarometer);
+  ipc::Subscriber<WheelSample> wheels(ipc::topics::kWheel);
   const auto start = std::chrono::steady_clock::now();
   const std::int64_t start_ns =
       std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
@@ -107,6 +108,10 @@ int run(bool is_initializing) {
     if (const std::uint64_t piece = step % 400 / 20; step % 20 == 0 && piece < stand_in::kMapPieces) {
       publish_map(maps, stand_in::pose_at(start_ns, step), static_cast<std::uint32_t>(step / 400),
                   static_cast<std::uint32_t>(piece) * ipc::MapCloud::kMaxPoints);
+    }
+    while (const auto sample = wheels.take()) {
+      std::printf("wheel %.2f\n", sample->vx_m_s);
+      std::fflush(stdout);
     }
     while (const auto sample = base_pressure.take()) {
       const std::int64_t age_ns = stand_in::prior_at(start_ns, step).stamp_ns - sample->stamp_ns;

@@ -237,6 +237,40 @@ TEST_CASE(
   CHECK(robot.read_until("info: base_station: recovered", 30s));
 }
 
+/// A node that writes the wheels' odometry with this forward speed.
+class WheelNode {
+ public:
+  WheelNode(dds_entity_t participant, double speed_m_s)
+      : writer_(participant, dds::topics::kWheel), ticker_([this, speed_m_s] {
+          dds::OdometryMessage message{};
+          message.header = {dds::to_time(wall_ns()), dds::text("odom")};
+          message.child_frame_id = dds::text("base_link");
+          message.twist.twist.linear.x = speed_m_s;
+          writer_.write(message);
+        }) {}
+
+ private:
+  dds::Writer<dds::OdometryMessage> writer_;
+  Ticker ticker_;
+};
+
+TEST_CASE("of two nodes that write the wheels' topic the first is used, the other one when that has ended") {
+  Robot robot("[dds]\nreceive_sensors = true\n");
+  auto driver = std::make_unique<WheelNode>(robot.participant(), 1.0);
+  robot.wheels_for(2s);
+  const WheelNode rogue(robot.participant(), 9.0);
+  CHECK(robot.says("bridge/received_other_senders", kWarning));
+  robot.forget();
+  const std::vector<double> speeds = robot.wheels_for(2s);
+  CHECK(speeds.size() > 20);
+  for (const double speed : speeds) CHECK(speed == 1.0);
+  driver.reset();
+  robot.wheels_for(500ms);
+  const std::vector<double> then = robot.wheels_for(1s);
+  CHECK(then.size() > 10);
+  for (const double speed : then) CHECK(speed == 9.0);
+}
+
 }  // namespace
 
 }  // namespace isobar::test::test_base_station
