@@ -21,10 +21,10 @@ void add_network(dds::DdsConfig& dds, SectionBuilder& s) {
 }
 
 void add_names(dds::DdsConfig& dds, SectionBuilder& s) {
-  s.text("ros_namespace", dds.ros_namespace, TextRule::kNameOrEmpty,
+  s.text("ros_namespace", dds.ros_namespace, TextRule::kRosNameOrEmpty,
          "ROS namespace in front of the topic names, such as \"robot1\"; empty: none. Never in front of /tf, "
          "/tf_static and /diagnostics, which all robots share.");
-  s.text("node_name", dds.node_name, TextRule::kName,
+  s.text("node_name", dds.node_name, TextRule::kRosNode,
          "Node name of isobar-dds in ROS 2 tools. A base station with the default is named isobar_STATION.");
   s.choice("ros_gid_bytes", &dds.ros_gid_bytes, {"16", "24"},
            "Bytes of an endpoint's id in ros_discovery_info: 16 from ROS 2 Iron on, 24 up to Humble.");
@@ -34,7 +34,7 @@ void add_topics(dds::TopicNames& names, std::vector<Setting>& settings) {
   SectionBuilder s("dds.topics", UsedBy::kEveryRole, settings);
   s.applies(Apply::kLive);
   const auto name = [&s](const char* key, std::string& target, const char* doc) {
-    s.text(key, target, TextRule::kName, doc);
+    s.text(key, target, TextRule::kRosName, doc);
   };
   name("diagnostics", names.diagnostics,
        "Name of diagnostics, without ros_namespace as all robots share it.");

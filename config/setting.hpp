@@ -25,6 +25,9 @@ enum class TextRule : std::uint8_t {
   kNameOrEmpty,  ///< kName, or empty
   kPrefix,       ///< up to 100 letters, digits, '_' or '/', no '/' at the front, or empty
   kInterfaces,   ///< names or addresses of network interfaces, separated by commas, or empty
+  kRosName,      ///< kName whose parts do not begin with a digit and have no "__"
+  kRosNameOrEmpty,
+  kRosNode,  ///< kRosName without '/'
 };
 
 /// Who needs a setting.

@@ -49,6 +49,16 @@ bool is_name(const std::string& text) {
          text.back() != '/';
 }
 
+/// As ROS 2 checks topics and namespaces: its tools cannot subscribe to others.
+bool is_ros_name(const std::string& text) {
+  if (!is_name(text) || text.find("__") != std::string::npos) return false;
+  for (std::size_t part = 0; part != std::string::npos; part = text.find('/', part)) {
+    part += text[part] == '/' ? 1 : 0;
+    if (text[part] == '/' || std::isdigit(static_cast<unsigned char>(text[part])) != 0) return false;
+  }
+  return true;
+}
+
 /// Rules of text values, in the order of TextRule.
 constexpr std::array kTextRules = {
     "must be a text in quotation marks",
@@ -59,6 +69,13 @@ constexpr std::array kTextRules = {
     "must be empty, or up to 100 letters, digits, '_' or '/', with no '/' at the ends",
     "must be empty, or up to 100 letters, digits, '_' or '/', with no '/' at the front",
     "must be empty, or names or addresses of network interfaces, separated by commas",
+    "must be a ROS name: 1 to 100 letters, digits, '_' or '/', each part between '/' beginning with a letter "
+    "or "
+    "'_' and without \"__\"",
+    "must be empty, or a ROS name: up to 100 letters, digits, '_' or '/', each part between '/' beginning "
+    "with a "
+    "letter or '_' and without \"__\"",
+    "must be 1 to 100 letters, digits or '_', beginning with a letter or '_', without \"__\"",
 };
 
 struct RuleText {
@@ -155,6 +172,12 @@ bool keeps_rule(TextRule rule, const std::string& text) {
       return text.size() <= 100 && consists_of(text, "_/") && !text.starts_with('/');
     case TextRule::kInterfaces:
       return text.size() <= 200 && consists_of(text, "_.-:@, ");
+    case TextRule::kRosName:
+      return is_ros_name(text);
+    case TextRule::kRosNameOrEmpty:
+      return text.empty() || is_ros_name(text);
+    case TextRule::kRosNode:
+      return is_ros_name(text) && text.find('/') == std::string::npos;
   }
   return false;
 }

@@ -280,6 +280,11 @@ TEST_CASE("A configuration changed after loading is checked against the same tab
   refused([](Config& c) { c.dds.peers = "192.168.1.7,"; }, "dds.peers");
   refused([](Config& c) { c.dds.frame_prefix = "/robot1/"; }, "dds.frame_prefix");
   refused([](Config& c) { c.dds.topics.pose = "/pose"; }, "dds.topics.pose");
+  for (const char* name : {"1pose", "robot/1pose", "a//b", "a__b", "~/pose", "{x}", ""}) {
+    refused([name](Config& c) { c.dds.topics.pose = name; }, "dds.topics.pose: must be a ROS name");
+    if (*name != '\0') refused([name](Config& c) { c.dds.ros_namespace = name; }, "dds.ros_namespace");
+  }
+  refused([](Config& c) { c.dds.node_name = "a/b"; }, "dds.node_name");
   refused([](Config& c) { c.dds.topics.pose = "odom"; }, "dds.topics.pose: must differ from dds.topics.odom");
   refused([](Config& c) { c.dds.ros_namespace = "/robot"; }, "dds.ros_namespace");
   refused([](Config& c) { c.dds.map_frame = ""; }, "dds.map_frame");
