@@ -82,10 +82,10 @@ bool ConfigWatch::note(int watch, std::uint32_t mask, const char* name) {
     next_attempt_ = {};
   }
   if ((mask & IN_CREATE) == 0U || (mask & IN_ISDIR) != 0U) return true;
-  // A created file is written, and closed, next; a created link is complete.
+  // A created file is written, and closed, next. A link, and what is no file at all, is complete.
   std::error_code ignored;
   const std::filesystem::path folder = watch == main_watch_ ? folder_ : folder_ / kConfigFolder;
-  return std::filesystem::is_symlink(folder / name, ignored);
+  return !std::filesystem::is_regular_file(std::filesystem::symlink_status(folder / name, ignored));
 }
 
 /// Whether a name in a watched folder may belong to the configuration: isobar.toml, conf.d, *.toml in conf.d,

@@ -11,6 +11,8 @@
 namespace isobar::text {
 namespace {
 
+constexpr const char* kNoRegularFile = "is no regular file, but a pipe, a device or a socket";
+
 std::string too_large(std::size_t most_bytes) {
   return "is larger than " + std::to_string(most_bytes / 1024) + " KiB, the largest size";
 }
@@ -18,7 +20,7 @@ std::string too_large(std::size_t most_bytes) {
 /// Why a file of this kind is not read; empty for a regular file.
 std::string refusal_of(const struct stat& status, std::size_t most_bytes) {
   if (S_ISDIR(status.st_mode)) return "is a folder, must be a file";
-  if (!S_ISREG(status.st_mode)) return "is no regular file, but a pipe, a device or a socket";
+  if (!S_ISREG(status.st_mode)) return kNoRegularFile;
   if (status.st_size > static_cast<off_t>(most_bytes)) return too_large(most_bytes);
   return {};
 }
@@ -30,6 +32,7 @@ SmallFile read_small_file(const std::filesystem::path& file, std::size_t most_by
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (descriptor < 0) {
     const int reason = errno;
+    if (reason == ENXIO) return {{}, kNoRegularFile};  // a socket, or a device node without a device
     const bool missing = reason == ENOENT || reason == ENOTDIR;
     return {{}, missing ? "no such file" : std::string("cannot be read: ") + std::strerror(reason)};
   }

@@ -116,6 +116,9 @@ TEST_CASE("files that are no configuration are refused, wherever they are") {
   REQUIRE(mkfifo((folder.path() / "conf.d/a.toml").c_str(), 0600) == 0);
   CHECK(fails_with(folder, "conf.d/a.toml: is no regular file"));
   std::filesystem::remove(folder.path() / "conf.d/a.toml");
+  REQUIRE(mknod((folder.path() / "conf.d/a.toml").c_str(), S_IFSOCK | 0600, 0) == 0);
+  CHECK(fails_with(folder, "conf.d/a.toml: is no regular file"));
+  std::filesystem::remove(folder.path() / "conf.d/a.toml");
   folder.write("conf.d/a.toml", "#" + std::string(64 * 1024, 'x'));
   CHECK(fails_with(folder, "conf.d/a.toml: is larger than 64 KiB"));
   std::filesystem::remove(folder.path() / "conf.d/a.toml");

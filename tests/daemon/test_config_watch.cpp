@@ -2,6 +2,7 @@
 #include "daemon/config_watch.hpp"
 
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -60,6 +61,10 @@ TEST_CASE("a file is told when it is closed, replaced by rename, deleted, linked
   fs::remove(watched.root() / "conf.d/b.toml");
   CHECK(watched.told());
   fs::create_symlink("a.toml", watched.root() / "conf.d/c.toml");
+  CHECK(watched.told());
+  REQUIRE(mkfifo((watched.root() / "conf.d/pipe.toml").c_str(), 0600) == 0);
+  CHECK(watched.told());
+  fs::create_directory(watched.root() / "conf.d/folder.toml");
   CHECK(watched.told());
   fs::permissions(watched.root() / "conf.d/a.toml", fs::perms::owner_read);
   CHECK(watched.told());
