@@ -135,10 +135,12 @@ void remove_files_of(const std::string& name) noexcept {
 
 void remove_leftovers() {
   const auto management = status_at(Rendezvous::kManagement);
+  std::vector<std::string> names(kFixedNames.begin(), kFixedNames.end());
+  names.push_back("/dev/shm/" + group_name(::getegid()));  // the data segment
   std::vector<std::string> old;
-  for (const char* path : kFixedNames) {
+  for (const std::string& path : names) {
     const auto status = status_at(path);
-    if (status && status->st_uid != ::geteuid()) old.emplace_back(path);
+    if (status && status->st_uid != ::geteuid()) old.push_back(path);
   }
   for (const std::string& path : files_in("/dev/shm")) {
     const auto status = status_at(path);

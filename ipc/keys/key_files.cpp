@@ -104,7 +104,7 @@ NewFolder::NewFolder(std::filesystem::path final_place)
     : final_place_(std::move(final_place)),
       place_(final_place_.string() + ".new-" + std::to_string(::getpid())) {
   refuse_existing(final_place_);
-  if (::mkdir(place_.c_str(), 0700) != 0) fail(place_, "cannot be made");
+  if (::mkdir(place_.c_str(), 0700) != 0) fail(final_place_, "cannot be made");
 }
 
 NewFolder::~NewFolder() {

@@ -135,10 +135,11 @@ TEST_CASE(
     const auto obstruct = [make] {
       remove_all();
       const std::string names =
-          "/dev/shm/isobar.lock /dev/shm/iceoryx_mgmt /tmp/iox-unique-roudi.lock /tmp/roudi /tmp/roudi.lock";
+          "/dev/shm/isobar.lock /dev/shm/iceoryx_mgmt /tmp/iox-unique-roudi.lock /tmp/roudi /tmp/roudi.lock "
+          "/dev/shm/root /dev/shm/daemon";
       ChildProcess maker(as(kNobody, {"/bin/sh", "-c", "for f in " + names + "; do " + make + "; done"}));
       REQUIRE(maker.wait(5s) == 0);
-      REQUIRE(files_of(65534) == 5);
+      REQUIRE(files_of(65534) == 7);
     };
     obstruct();
     {
