@@ -97,8 +97,9 @@ class Machine:
         os.replace(folder / f".{name}", folder / f"{name}.toml")
 
     def shared_files(self):
-        """Number of the files that could leak, a folder: the services' shared memory and sockets, and the machine's."""
-        return {folder: len(os.listdir(self.files / folder))
+        """Number of the files that could leak, a folder: the services' shared memory and sockets, and the machine's. Not
+        counted: folders of PrivateTmp=, which systemd makes and removes."""
+        return {folder: sum(not name.startswith("systemd-private-") for name in os.listdir(self.files / folder))
                 for folder in ("run/isobar/shm", "run/isobar/tmp", "dev/shm", "tmp")}
 
     def close(self):
