@@ -25,6 +25,7 @@ constexpr double kStartClimbOnWheelsMS = 0.05;
 constexpr double kStartClimbHangingMS = 0.3;
 // A continued height waits for pressures up to this long after the alignment: a base station settles in 1 s.
 constexpr double kWaitForPressureS = 1.8;
+constexpr double kWaitForBaseS = 10.0;
 // Pause after which a robot may still be climbing as before, and the change of its vertical speed, 1 sigma: stairs
 // begin or end.
 constexpr double kClimbOnS = 10.0;
@@ -62,7 +63,8 @@ void PriorEstimator::State::start_height() {
   const std::int64_t now_ns = imu_gate.stamp_ns();
   // A continued height waits for the pressures that it continues with.
   const bool incomplete = reading_source == HeightSource::kNone || altimeter.waits_for_base();
-  if (resumed.known && incomplete && seconds_between(aligned_ns, now_ns) < kWaitForPressureS) return;
+  if (resumed.known && incomplete && seconds_between(aligned_ns, now_ns) < wait_for_pressure_s(now_ns))
+    return;
   height_start_ns = now_ns;
   const double vz_sigma_m_s = wheels.valid(now_ns) ? kStartClimbOnWheelsMS : kStartClimbHangingMS;
   if (resumed.known) {
@@ -70,6 +72,15 @@ void PriorEstimator::State::start_height() {
   } else {
     height.start(above_base(p_base_imu), vz_sigma_m_s);
   }
+}
+
+// After a night the robot may be on another floor, which only the base station tells; its network may come late.
+double PriorEstimator::State::wait_for_pressure_s(std::int64_t now_ns) const {
+  const bool had_base = std::any_of(resumed.station_known.begin(), resumed.station_known.end(),
+                                    [](bool known) { return known; });
+  const double pause_s = seconds_between(resumed.stamp_ns, now_ns);
+  const bool short_pause = pause_s > 0.0 && pause_s < kClimbOnS;
+  return had_base && !short_pause ? kWaitForBaseS : kWaitForPressureS;
 }
 
 // After a short pause the robot may be climbing, or riding; after a longer one it stands where it was, unless the

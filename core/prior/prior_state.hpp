@@ -78,6 +78,7 @@ struct PriorEstimator::State {
   // prior_motion.cpp. `gyro` [rad/s] and `force` [m/s^2] in base axes.
   void align(const Eigen::Vector3d& gyro, const Eigen::Vector3d& force, double dt_s);
   void start_height();
+  [[nodiscard]] double wait_for_pressure_s(std::int64_t now_ns) const;
   void continue_height(double vz_sigma_m_s);
   void keep_climbing(double pause_s, VerticalFilter::Continuation& from) const;
   static void use_unseen_climb(double risen_m, VerticalFilter::Continuation& from);

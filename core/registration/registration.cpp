@@ -56,7 +56,10 @@ void Registration::take_over(const Registration& other) {
   state_.motion = motion;
 }
 
-void Registration::add_prior(const Prior& prior) { state_.history.add(prior); }
+void Registration::add_prior(const Prior& prior) {
+  if (state_.first_prior_ns == 0) state_.first_prior_ns = prior.stamp_ns;
+  state_.history.add(prior);
+}
 
 bool Registration::ready(const Scan& scan) const {
   return !state_.history.empty() && state_.history.newest().stamp_ns >= scan.end_stamp_ns;

@@ -31,8 +31,8 @@ struct RegistrationState {
   PlaceSearch search;
   std::optional<KnownPlace> place;
   PoseEstimate last;
+  std::int64_t first_prior_ns = 0;  ///< 0: none yet; the history forgets
   std::uint32_t scans_without_gravity = 0;
-  std::uint32_t scans_without_height = 0;  ///< of a known place
   std::uint32_t bootstrap_scans = 0;
   bool bootstrapping = true;  ///< no scan has been registered yet
 };

@@ -12,8 +12,10 @@ namespace isobar {
 
 namespace {
 
-// Scans for which the search waits for the height, which continues with the base station's pressure.
-constexpr std::uint32_t kMaxScansWithoutHeight = 25;
+// Time for which the search waits for the height, which continues with the base station's pressure: after a short
+// pause, and after a longer one, in which the robot may have been taken to another floor (prior_motion.cpp).
+constexpr double kWaitForHeightS = 2.5;
+constexpr double kWaitForBaseS = 11.0;
 // Standard deviation of a pose that no scan has confirmed.
 constexpr double kUnknownM = 10.0;
 constexpr double kUnknownRad = 3.0;
@@ -65,6 +67,7 @@ void Registration::resume(const KnownPlace& place) {
 void Registration::begin_new_frame() {
   next_frame();
   state_.history.clear();
+  state_.first_prior_ns = 0;
 }
 
 void Registration::next_frame() {
@@ -77,13 +80,15 @@ void Registration::next_frame() {
   state_.motion = MotionModel(config_);
   state_.search.stop();
   state_.place.reset();
-  state_.scans_without_gravity = state_.scans_without_height = state_.bootstrap_scans = 0;
+  state_.scans_without_gravity = state_.bootstrap_scans = 0;
   state_.bootstrapping = true;
 }
 
 bool Registration::start_at_place(const Prior& prior) {
   const bool waits = state_.place->has_height && prior.height_source == HeightSource::kNone;
-  if (waits && ++state_.scans_without_height < kMaxScansWithoutHeight) return false;
+  const double waited_s = seconds_between(state_.first_prior_ns, prior.stamp_ns);
+  const bool short_pause = is_short_pause(seconds_between(state_.place->stamp_ns, prior.stamp_ns));
+  if (waits && waited_s < (short_pause ? kWaitForHeightS : kWaitForBaseS)) return false;
   const KnownPlace& place = *state_.place;
   ExpectedPlace expected = expected_place(place, state_.history);
   if (place.has_height && prior.height_source != HeightSource::kNone) {

@@ -132,6 +132,16 @@ TEST_CASE("without a base station the robot stands at the height where it was") 
   }
 }
 
+TEST_CASE("a robot that was taken to another floor waits for a base station whose network comes late") {
+  const HeightDatum datum = first_run();
+  PriorEstimator next{PriorConfig{}};
+  next.resume(datum);
+  const Standing above{
+      .robot_pa = 100'900.0 - 1'500.0 - 3.5 * kPaPerM, .base_pa = 100'950.0 - 1'500.0, .base_from_s = 8.0};
+  const Prior last = stand(next, above, kStartNs + kNightNs, 3.5, 0.3);
+  CHECK(last.height_source == HeightSource::kDifferential);
+}
+
 TEST_CASE("a base station that is heard later confirms the height without a jump") {
   const HeightDatum datum = first_run();
   PriorEstimator next{PriorConfig{}};
