@@ -57,9 +57,11 @@ cp "$run/trajectory.tum" "$work/before.tum"
 # A crash between two writes loses 0.5 s and the time of one write; 1 s is promised. The machine may be busy.
 start second "$run"
 grep -q 'continues the earlier run in frame map' "$work/second.log" || fail "the second start says nothing"
+grep -q 'scans of the journal are inserted' "$work/second.log" || fail "the second start has no journal"
 wait "$play"
 sleep 1
 stop
+[ -z "$(find "$run" -name '*.scans')" ] || fail "the journal is left after a polite end, which has written all tiles"
 cmp -n "$(stat -c %s "$work/before.tum")" "$work/before.tum" "$run/trajectory.tum" || fail "the old poses were changed"
 whole_lines "$run/trajectory.tum"
 [ ! -e "$run/trajectory_2.tum" ] || fail "a new frame was begun"
