@@ -13,6 +13,13 @@ namespace isobar {
 /// Standard gravity used everywhere in the estimator [m/s^2].
 inline constexpr double kGravity = 9.80665;
 
+/// Way on which a sample reached this machine.
+enum class SamplePath : std::uint8_t {
+  kLocal,     ///< a sensor of this machine, or a recording
+  kDatagram,  ///< sample datagram (UDP)
+  kDds,       ///< isobar-dds
+};
+
 /// One inertial sample, in the IMU's own frame. At rest and level accel reads (0, 0, +g).
 struct ImuSample {
   std::int64_t stamp_ns = 0;                                        ///< time of the measurement, robot clock
@@ -20,13 +27,7 @@ struct ImuSample {
   Eigen::Vector3d accel_m_s2 = Eigen::Vector3d::Zero();             ///< specific force
   Eigen::Quaterniond q_world_imu = Eigen::Quaterniond::Identity();  ///< attitude from the IMU's own filter
   bool has_attitude = false;                                        ///< q_world_imu is valid
-};
-
-/// Way on which a sample reached this machine.
-enum class SamplePath : std::uint8_t {
-  kLocal,     ///< a sensor of this machine, or a recording
-  kDatagram,  ///< sample datagram (UDP)
-  kDds,       ///< isobar-dds
+  SamplePath path = SamplePath::kLocal;
 };
 
 /// One barometer sample, of the robot or of a base station.
@@ -46,6 +47,7 @@ struct WheelSample {
   double vx_m_s = 0.0;
   double vy_m_s = 0.0;
   double wz_rad_s = 0.0;
+  SamplePath path = SamplePath::kLocal;
 };
 
 /// One lidar return in the sensor's frame (x forward, y left, z up). No default initialisers: they would make

@@ -138,6 +138,8 @@ void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, He
   }
   add_input(report, now.samples, last_.samples);
   add_sample_senders(report, now.samples, last_.samples, now.now_ns);
+  add_paths(report, "imu", now.prior.imu_path, now.now_ns);
+  add_paths(report, "wheels", now.prior.wheel_path, now.now_ns);
   add_count(report, "input/dropped", now.prior.dropped_samples, last_.prior.dropped_samples,
             "samples dropped: they arrived faster than they were used");
 }
@@ -152,7 +154,7 @@ void HealthMonitor::fill_base_stations(const StatusSnapshot& now, HealthReport& 
     // A second base station is named in the configuration, hence expected.
     add_stream(report, kNames[i], cadence.last_ns(), now.now_ns, cadence.limit_ns(), rate_hz,
                input_of(config_, datagram::Kind::kBasePressure), i > 0 || config_.input.expect_base_station);
-    add_base_paths(report, kNames[i], now.prior.base_paths[i], now.now_ns);
+    add_paths(report, kNames[i], now.prior.base_paths[i], now.now_ns);
   }
   add_base_station_counts("base_station", now.samples.base, last_.samples.base,
                           [&report](const std::string& name, HealthLevel level, const std::string& message,

@@ -80,15 +80,15 @@ void add_sample_senders(ipc::HealthReport& report, const SampleInputStatus& now,
             static_cast<double>(now.not_allowed));
 }
 
-void add_base_paths(ipc::HealthReport& report, const std::string& name, const BasePathStatus& status,
-                    std::int64_t now_ns) {
+void add_paths(ipc::HealthReport& report, const std::string& name, const PathStatus& status,
+               std::int64_t now_ns) {
   if (status.refused == 0 && status.takeovers == 0) return;
   const auto refused = static_cast<double>(status.refused);
   const SamplePath other = status.in_use == SamplePath::kDds ? SamplePath::kDatagram : SamplePath::kDds;
   if (is_recent(status.other_ns, now_ns)) {
     add_entry(report, name + "/paths", HealthLevel::kWarning,
-              fmt::format("a second base station sends over {}: refused; the one over {} is used",
-                          text_of(other), text_of(status.in_use)),
+              fmt::format("a second sender, over {}: refused; the one over {} is used", text_of(other),
+                          text_of(status.in_use)),
               refused);
   } else {
     add_entry(report, name + "/paths", HealthLevel::kOk,

@@ -7,7 +7,7 @@
 
 #include "core/time/system_clock_watch.hpp"
 #include "daemon/barometer_thread.hpp"
-#include "daemon/base_path_choice.hpp"
+#include "daemon/path_choice.hpp"
 #include "daemon/sample_input.hpp"
 #include "daemon/start_over.hpp"
 #include "drivers/udp/sender_lock.hpp"
@@ -29,8 +29,8 @@ void add_sample_senders(ipc::HealthReport& report, const SampleInputStatus& now,
                         const SampleInputStatus& before, std::int64_t now_ns);
 
 /// Adds the entry `name`/paths: absent while a base station was heard on one path only.
-void add_base_paths(ipc::HealthReport& report, const std::string& name, const BasePathStatus& status,
-                    std::int64_t now_ns);
+void add_paths(ipc::HealthReport& report, const std::string& name, const PathStatus& status,
+               std::int64_t now_ns);
 
 /// Adds the entry "system_clock": how often it was set since the start, and by how much the last time; a
 /// warning for kSenderMemoryNs after a step.

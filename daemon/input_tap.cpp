@@ -26,10 +26,14 @@ void InputTap::drain_base_stations(recording::InputLog& log) {
 }
 
 void InputTap::drain(recording::InputLog& log) {
-  while (const auto sample = imu_.take()) log.add(*sample);
+  while (const auto sample = imu_.take()) {
+    if (imu_path_.check(*sample)) log.add(*sample);
+  }
   while (const auto sample = barometer_.take()) log.add_pressure(*sample);
   drain_base_stations(log);
-  while (const auto sample = wheel_.take()) log.add(*sample);
+  while (const auto sample = wheel_.take()) {
+    if (wheel_path_.check(*sample)) log.add(*sample);
+  }
   drain_packets(log);
 }
 

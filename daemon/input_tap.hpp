@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "daemon/base_path_choice.hpp"
+#include "daemon/path_choice.hpp"
 #include "ipc/shared_memory.hpp"
 #include "run/recording/input_log.hpp"
 
@@ -33,8 +33,11 @@ class InputTap {
   ipc::Subscriber<ImuSample> imu_{ipc::topics::kImu};
   ipc::Subscriber<PressureSample> barometer_{ipc::topics::kBarometer};
   ipc::Subscriber<PressureSample> base_barometer_{ipc::topics::kBaseBarometer};
-  std::array<BasePathChoice, 2>
-      base_paths_;  ///< by station, as in the prior thread: what it refuses is left out
+  // What the prior thread refuses is left out.
+  std::array<PathChoice, 2> base_paths_{PathChoice(PathChoice::kBaseTakeoverNs),
+                                        PathChoice(PathChoice::kBaseTakeoverNs)};  ///< by station
+  PathChoice imu_path_{PathChoice::kSensorTakeoverNs};
+  PathChoice wheel_path_{PathChoice::kSensorTakeoverNs};
   ipc::Subscriber<WheelSample> wheel_{ipc::topics::kWheel};
   std::optional<std::uint64_t> lost_before_;  ///< LidarPackets::lost of the first message
   std::uint64_t lost_packets_ = 0;            ///< the growth of it since

@@ -64,11 +64,14 @@ void PriorThread::drain() noexcept {
     estimator_.add_base_pressure(*sample);
   }
   while (const auto sample = take(barometer_, Kind::kPressure)) estimator_.add_pressure(*sample);
-  while (const auto sample = take(wheel_, Kind::kWheel)) estimator_.add_wheel(*sample);
+  while (const auto sample = take(wheel_, Kind::kWheel)) {
+    if (wheel_path_.check(*sample)) estimator_.add_wheel(*sample);
+  }
   Prior prior;
   constexpr auto kImuIndex = static_cast<std::size_t>(Kind::kImu);
   std::int64_t before_ns = draft_status_.last_sample_ns[kImuIndex];
   while (const auto sample = take(imu_, Kind::kImu)) {
+    if (!imu_path_.check(*sample)) continue;
     if (before_ns != 0 && std::abs(sample->stamp_ns - before_ns) > StartOver::kSilenceNs) {
       draft_status_.imu_resumed_ns = sample->stamp_ns;
     }
@@ -78,6 +81,8 @@ void PriorThread::drain() noexcept {
     deadline_.note(prior.stamp_ns, RobotClock::now_ns());
     describe(prior);
   }
+  draft_status_.imu_path = imu_path_.status();
+  draft_status_.wheel_path = wheel_path_.status();
   draft_status_.counters = estimator_.counters();
   draft_status_.punctuality = deadline_.status();
   draft_status_.datum = estimator_.height_datum();

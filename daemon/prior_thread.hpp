@@ -8,9 +8,9 @@
 #include "core/prior/prior_estimator.hpp"
 #include "core/time/cadence.hpp"
 #include "core/time/stream_pace.hpp"
-#include "daemon/base_path_choice.hpp"
 #include "daemon/deadline.hpp"
 #include "daemon/handover.hpp"
+#include "daemon/path_choice.hpp"
 #include "daemon/seq_lock.hpp"
 #include "daemon/worker.hpp"
 #include "drivers/datagram/datagram.hpp"
@@ -24,7 +24,9 @@ struct PriorStatus {
   std::array<std::uint64_t, datagram::kKinds> samples{};        ///< by Kind, from UDP and DDS
   std::array<std::int64_t, datagram::kKinds> last_sample_ns{};  ///< robot clock, by Kind; 0: none yet
   std::array<Cadence, 2> base_stations;                         ///< by PressureSample::station, robot clock
-  std::array<BasePathStatus, 2> base_paths;                     ///< by PressureSample::station
+  std::array<PathStatus, 2> base_paths;                         ///< by PressureSample::station
+  PathStatus imu_path;
+  PathStatus wheel_path;
   std::int64_t imu_resumed_ns = 0;                        ///< end of its last silence, robot clock; 0: never
   std::array<StreamPace, datagram::kKinds> pace;          ///< of the stamps, by Kind
   std::array<std::uint64_t, datagram::kKinds> dropped{};  ///< lost to a full queue, by Kind
@@ -69,7 +71,11 @@ class PriorThread {
   void describe(const Prior& prior) noexcept;
 
   PriorEstimator estimator_;
-  std::array<BasePathChoice, 2> base_paths_;  ///< by PressureSample::station
+  std::array<PathChoice, 2> base_paths_{
+      PathChoice(PathChoice::kBaseTakeoverNs),
+      PathChoice(PathChoice::kBaseTakeoverNs)};  ///< by PressureSample::station
+  PathChoice imu_path_{PathChoice::kSensorTakeoverNs};
+  PathChoice wheel_path_{PathChoice::kSensorTakeoverNs};
   ipc::Subscriber<ImuSample> imu_;
   ipc::Subscriber<PressureSample> barometer_;
   ipc::Subscriber<PressureSample> base_barometer_;

@@ -30,6 +30,8 @@ std::vector<files::RunCount> counts_of_threads(const StatusSnapshot& last) {
   if (last.barometer.present) run_counts::append(counts, counts_of(last.barometer.device.counters));
   counts.push_back({"baro lines refused", last.samples.refused_pressure, ""});
   run_counts::append(counts, counts_of(last.prior.counters));
+  counts.push_back({"imu samples of the other path", last.prior.imu_path.refused, ""});
+  counts.push_back({"wheel samples of the other path", last.prior.wheel_path.refused, ""});
   counts.push_back({"shared memory faults", ipc::library_fault_count(), ""});
   return counts;
 }

@@ -79,6 +79,7 @@ datagram::Admission SampleInput::base_admission() noexcept {
 bool SampleInput::to_robot_clock(datagram::Sample& sample) noexcept {
   const bool stamped = sample.stamp_ns() != 0;
   if (!stamped) sample.set_stamp_ns(receive_ns_);
+  sample.imu.path = sample.wheel.path = SamplePath::kDatagram;
   if (sample.kind == datagram::Kind::kBasePressure) {
     sample.pressure.path = SamplePath::kDatagram;
     return base_.check(from_.ipv4, sample.pressure, receive_ns_, stamped ? system_ : nullptr) ==

@@ -109,6 +109,7 @@ void Receiving::forward(std::optional<Stream<Message, Sample>>& stream) {
     static_cast<void>(stream->anchor.add(stamp_ns, now_ns));
     stream->anchored = true;
     sample.stamp_ns = stream->anchor.to_host_ns(stream->anchor.device_unwrapped_ns());
+    sample.path = SamplePath::kDds;
     if (!stream->publisher.send(sample)) too_early_.fetch_add(1, std::memory_order_relaxed);
   });
 }

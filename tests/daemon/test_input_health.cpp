@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
-#include "daemon/base_path_choice.hpp"
 #include "daemon/health.hpp"
 #include "daemon/input_health.hpp"
+#include "daemon/path_choice.hpp"
 #include "daemon/start_over.hpp"
 #include "daemon/waiting_log.hpp"
 
@@ -36,7 +36,7 @@ PressureSample base_sample(SamplePath path, std::int64_t stamp_ns) {
 }  // namespace
 
 TEST_CASE("Of a base station on two paths one is used; the other takes over late and gives way at once") {
-  BasePathChoice choice;
+  PathChoice choice(PathChoice::kBaseTakeoverNs);
   std::int64_t now_ns = kNow;
   for (int i = 0; i < 100; ++i) {
     now_ns += kSecond;
@@ -46,11 +46,33 @@ TEST_CASE("Of a base station on two paths one is used; the other takes over late
   CHECK(choice.status().refused == 100);
   const std::int64_t last_ns = now_ns;
   while (!choice.check(base_sample(SamplePath::kDatagram, now_ns))) now_ns += kSecond / 10;
-  CHECK(now_ns - last_ns > BasePathChoice::kTakeoverNs);
-  CHECK(now_ns - last_ns < BasePathChoice::kTakeoverNs + kSecond);
+  CHECK(now_ns - last_ns > PathChoice::kBaseTakeoverNs);
+  CHECK(now_ns - last_ns < PathChoice::kBaseTakeoverNs + kSecond);
   CHECK(choice.check(base_sample(SamplePath::kDds, now_ns)));
   CHECK_FALSE(choice.check(base_sample(SamplePath::kDatagram, now_ns)));
   CHECK(choice.status().takeovers == 1);
+}
+
+TEST_CASE("Of an IMU on two paths the first is used, and the other is named") {
+  PathChoice choice(PathChoice::kSensorTakeoverNs);
+  const auto imu = [](SamplePath path, std::int64_t stamp_ns) {
+    ImuSample sample;
+    sample.stamp_ns = stamp_ns;
+    sample.path = path;
+    return sample;
+  };
+  std::int64_t now_ns = kNow;
+  for (int i = 0; i < 500; ++i, now_ns += kSecond / 100) {
+    CHECK(choice.check(imu(SamplePath::kDatagram, now_ns)));
+    CHECK_FALSE(choice.check(imu(SamplePath::kDds, now_ns + kSecond / 300)));
+  }
+  ipc::HealthReport report;
+  add_paths(report, "imu", choice.status(), now_ns);
+  const auto said = entry(report, "imu/paths");
+  REQUIRE(said.has_value());
+  CHECK(said->level == ipc::HealthLevel::kWarning);
+  CHECK(std::string(said->message) == "a second sender, over DDS: refused; the one over datagrams is used");
+  CHECK(choice.check(imu(SamplePath::kDds, now_ns + 6 * kSecond)));
 }
 
 TEST_CASE("A rate of scans that no lidar has, and a second lidar, are errors and warnings that name them") {
