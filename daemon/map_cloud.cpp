@@ -26,8 +26,12 @@ void MapCloudPublisher::start_over() noexcept {
 
 void MapCloudPublisher::step(const LocalMap& map, FileTileStore* store, const PoseEstimate& pose) noexcept {
   if (stage_ == Stage::kIdle) {
+    if (!clouds_.has_subscribers()) {
+      release();
+      return;
+    }
     const std::int64_t since_ns = pose.stamp_ns - began_ns_;
-    if ((since_ns >= 0 && since_ns < interval_ns_) || !clouds_.has_subscribers()) return;
+    if (since_ns >= 0 && since_ns < interval_ns_) return;
     began_ns_ = pose.stamp_ns;
     list_tiles(map, store, pose.T_map_base.translation());
     stage_ = Stage::kReading;
@@ -42,6 +46,15 @@ void MapCloudPublisher::step(const LocalMap& map, FileTileStore* store, const Po
     stage_ = points_.empty() ? Stage::kIdle : Stage::kSending;
   }
   if (stage_ == Stage::kSending) send_piece(map.session());
+}
+
+// The memory of a cloud that nobody asks for any more. The first one who does gets the next cloud at once.
+void MapCloudPublisher::release() noexcept {
+  if (points_.capacity() == 0) return;
+  points_ = {};
+  map_points_ = {};
+  stored_ = {};
+  began_ns_ = 0;
 }
 
 void MapCloudPublisher::list_tiles(const LocalMap& map, const FileTileStore* store,

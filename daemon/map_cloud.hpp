@@ -46,6 +46,7 @@ class MapCloudPublisher {
     std::size_t count = 0;
   };
 
+  void release() noexcept;
   void list_tiles(const LocalMap& map, const FileTileStore* store, const Eigen::Vector3d& p_map_base);
   void read_some(const LocalMap& map, FileTileStore* store);
   void read(const TileKey& key, FileTileStore& store);

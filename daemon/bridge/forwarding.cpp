@@ -20,6 +20,8 @@ using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
 constexpr auto kMaxWait = 250ms;
 /// Time without a health report after which the diagnostics report its absence [ns]: three periods of 1 s.
 constexpr std::int64_t kMissingReportNs = 3'000'000'000;
+/// Time without a reader after which the map cloud is no longer received [ns].
+constexpr std::int64_t kMapKeptNs = 20'000'000'000;
 
 /// Stamp of diagnostics without a health report of isobard to take it from.
 std::int64_t wall_ns() {
@@ -45,8 +47,7 @@ void report_absence(Outputs& outputs, dds::DiagnosticsBuilder& builder) {
   if (outputs.diagnostics) outputs.diagnostics->write(builder.message());
 }
 
-Forwarding::CloudsIn::CloudsIn()
-    : scan(ipc::topics::kRegisteredScan), map(ipc::topics::kMapCloud), waiter({&scan.raw(), &map.raw()}) {}
+Forwarding::CloudsIn::CloudsIn() : scan(ipc::topics::kRegisteredScan), waiter({&scan.raw()}) {}
 
 Forwarding::Forwarding(Outputs& outputs, const dds::DdsConfig& config)
     : outputs_(outputs),
@@ -243,10 +244,24 @@ void Forwarding::forward_clouds() noexcept {
     if (const auto scan = clouds_in_->scan.take_latest()) {
       outputs_.clouds->on_scan(*scan, stamp_shift_ns_.load(std::memory_order_relaxed));
     }
-    while (const auto piece = clouds_in_->map.take())
-      outputs_.clouds->on_map(*piece, stamp_shift_ns_.load(std::memory_order_relaxed));
     clouds_dropped_.store(clouds_in_->scan.dropped(), std::memory_order_relaxed);
     cloud_failures_.store(outputs_.clouds->failures(), std::memory_order_relaxed);
+    follow_map_readers();
+    if (!clouds_in_->map) continue;
+    while (const auto piece = clouds_in_->map->take())
+      outputs_.clouds->on_map(*piece, stamp_shift_ns_.load(std::memory_order_relaxed));
+  }
+}
+
+// A reader that has gone may only be renewing its network: its map is kept for a while.
+void Forwarding::follow_map_readers() {
+  CloudsIn& in = *clouds_in_;
+  if (outputs_.clouds->map_has_readers()) {
+    in.map_read_ns = steady_ns();
+    if (!in.map) in.map.emplace(ipc::topics::kMapCloud);
+  } else if (in.map && steady_ns() - in.map_read_ns > kMapKeptNs) {
+    in.map.reset();
+    outputs_.clouds->forget_map();
   }
 }
 

@@ -62,17 +62,20 @@ class Forwarding {
   [[nodiscard]] std::chrono::nanoseconds silence() const noexcept;
 
  private:
-  /// Constructed only when clouds are published: isobard builds map clouds only for a subscriber.
+  /// Constructed only when clouds are published. The map is received only while somebody reads it: isobard builds
+  /// map clouds only for a subscriber, and a large one takes 100 MB in either program.
   struct CloudsIn {
     CloudsIn();
     ipc::Subscriber<RegisteredScan> scan;
-    ipc::Subscriber<ipc::MapCloud> map;
-    ipc::Waiter waiter;
+    std::optional<ipc::Subscriber<ipc::MapCloud>> map;
+    std::int64_t map_read_ns = 0;  ///< when the map last had a reader, steady clock; 0: never
+    ipc::Waiter waiter;            ///< of the scans: a piece of the map follows each
   };
 
   void follow_system_clock() noexcept;
   void forward_poses() noexcept;
   void forward_clouds() noexcept;
+  void follow_map_readers();
   void forward_round();
   void forward_health();
   void add_own_health();

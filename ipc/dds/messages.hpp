@@ -56,6 +56,8 @@ class CloudBuilder {
 
   /// Removes all points. Their memory is kept for the next ones.
   void clear() noexcept { data_.clear(); }
+  /// Removes all points and frees their memory.
+  void release() noexcept { data_ = {}; }
   void append(std::span<const ScanPoint> points);
   [[nodiscard]] std::size_t size() const noexcept { return data_.size() / message_.point_step; }
   /// The message is valid until the next call of any function, and during the lifetime of `frame`.

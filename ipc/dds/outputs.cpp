@@ -197,6 +197,11 @@ void CloudOutputs::write_map() {
                                       frame_of_session(config_.map_frame, map_session_)));
 }
 
+void CloudOutputs::forget_map() {
+  map_ = {};
+  map_builder_.release();
+}
+
 std::vector<dds_entity_t> CloudOutputs::writers() const {
   if (!to_) return {};
   return {to_->scan.get(), to_->map.get()};

@@ -146,6 +146,10 @@ class CloudOutputs {
   /// Takes a piece of the local map; publishes the map, in the map frame, with its last piece.
   void on_map(const ipc::MapCloud& piece, std::int64_t shift_ns);
 
+  [[nodiscard]] bool map_has_readers() const noexcept { return to_ && to_->map.has_readers(); }
+  /// Frees the memory of the map; the next on_map() begins a new one.
+  void forget_map();
+
   [[nodiscard]] std::vector<dds_entity_t> writers() const;
   [[nodiscard]] std::uint64_t failures() const noexcept;
 
