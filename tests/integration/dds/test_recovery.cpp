@@ -12,6 +12,7 @@
 
 #include "ipc/shared_memory.hpp"
 #include "tests/integration/dds/listener.hpp"
+#include "tests/integration/dds/stand_in.hpp"
 #include "tests/ipc/child_process.hpp"
 
 namespace isobar::test::test_recovery {
@@ -75,6 +76,24 @@ TEST_CASE("when isobard is killed or stopped and starts again, the bridge reconn
   listener.forget();
   CHECK(listener.receive(20));
   CHECK(bridge.running());  // the same process throughout
+  bridge.signal(SIGTERM);
+  CHECK(bridge.wait(10s) == 0);
+}
+
+TEST_CASE(
+    "a reader that comes late gets the whole map, which the bridge receives only while somebody reads it") {
+  ChildProcess stand_in({ISOBAR_STAND_IN});
+  REQUIRE(stand_in.read_until("ready", 10s));
+  ChildProcess bridge({ISOBAR_DDS_PROGRAM});
+  const auto participant = std::make_shared<dds::Participant>(dds::ParticipantSettings{});
+  Listener<dds::OdometryMessage> odom(participant, dds::topics::kOdom);
+  REQUIRE(odom.receive(300));  // longer than the stand-in's map takes
+  // Twice: the second reader comes while the bridge still keeps the map for the first one.
+  for (int i = 0; i < 2; ++i) {
+    Listener<dds::CloudMessage> map(participant, dds::topics::kMapCloud);
+    CHECK(map.receive(
+        1, [](const dds::CloudMessage& message) { return message.width == stand_in::kMapPoints; }));
+  }
   bridge.signal(SIGTERM);
   CHECK(bridge.wait(10s) == 0);
 }
