@@ -18,6 +18,16 @@ def tiles_in(said):
     return int(found[1]) if found else 0
 
 
+def undisturbed_error_m(isobar, recording, scratch):
+    """Largest distance of a pose from the truth when nothing happens to the run: that of its replay.
+
+    isobar: the program, as a list of arguments; scratch: a folder of its machine, for the run."""
+    subprocess.run([*isobar, "replay", str(recording), "--out", scratch], capture_output=True, check=True)
+    said = subprocess.run([*isobar, "evaluate", f"{recording}/reference.tum", scratch, "--json", "/dev/stdout"],
+                          capture_output=True, text=True, check=True).stdout
+    return float(re.search(r'"ate_max_m": *([-0-9.e]+)', said)[1])
+
+
 class Poses:
     """Arrival times and positions of the poses, from `isobar echo`, which is a DDS subscriber."""
 
