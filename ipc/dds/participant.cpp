@@ -50,8 +50,11 @@ std::string domain_configuration(const ParticipantSettings& settings,
       "<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>64"
       "</MaxAutoParticipantIndex>";
   xml += peers_xml(split_list(settings.peers)) + "</Discovery>";
-  // High-water mark of unacknowledged data: a whole map, before the writer blocks.
-  xml += "<Internal><Watermarks><WhcHigh>64MB</WhcHigh></Watermarks></Internal>";
+  // High-water mark of unacknowledged data: a whole map, before the writer blocks. Linger duration: a writer
+  // that is taken away waits for acknowledgements so long at most; a reader whose address has gone never
+  // sends any, and by default (1 s) the subscribers that are still there would miss as many poses.
+  xml += "<Internal><Watermarks><WhcHigh>64MB</WhcHigh></Watermarks>";
+  xml += "<WriterLingerDuration>100ms</WriterLingerDuration></Internal>";
   xml += "<Tracing><Verbosity>none</Verbosity></Tracing></Domain>";
   return settings.uri.empty() ? xml : xml + "," + settings.uri;
 }
