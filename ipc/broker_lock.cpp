@@ -19,6 +19,7 @@
 
 #include "core/errors.hpp"
 #include "ipc/leftovers.hpp"
+#include "ipc/lock_bytes.hpp"
 #include "ipc/lock_table.hpp"
 
 namespace isobar::ipc {
@@ -27,20 +28,6 @@ namespace {
 constexpr const char* kLockPath = Rendezvous::kLock;
 /// Only the owner's group may attach.
 constexpr mode_t kLockMode = 0640;
-
-/// Byte ranges of the lock file: the owner has an exclusive lock on the first byte, each attached process a
-/// shared lock on the second. Opened with O_NONBLOCK: a FIFO in its place would wait for a writer.
-constexpr off_t kOwnerByte = 0;
-constexpr off_t kAttachedByte = 1;
-
-struct flock lock_of(short type, off_t byte) {
-  struct flock lock {};
-  lock.l_type = type;
-  lock.l_whence = SEEK_SET;
-  lock.l_start = byte;
-  lock.l_len = 1;
-  return lock;
-}
 
 std::string errno_text() { return std::strerror(errno); }  // NOLINT(concurrency-mt-unsafe)
 
@@ -80,19 +67,6 @@ void require_free_library_lock() {
   remove_obstacle(path, "is locked by " + process_text(*held));
 }
 
-bool read_instance(int descriptor, std::uint64_t& instance) noexcept {
-  return ::pread(descriptor, &instance, sizeof(instance), 0) == static_cast<ssize_t>(sizeof(instance)) &&
-         instance != 0;
-}
-
-bool conflicts(int descriptor, struct flock query) noexcept {
-  return ::fcntl(descriptor, F_OFD_GETLK, &query) == 0 && query.l_type != F_UNLCK;
-}
-
-bool has_owner(int descriptor) noexcept { return conflicts(descriptor, lock_of(F_RDLCK, kOwnerByte)); }
-
-bool has_attached(int descriptor) noexcept { return conflicts(descriptor, lock_of(F_WRLCK, kAttachedByte)); }
-
 /// Opens the lock file of an owner that has announced itself, with the shared lock of an attached process.
 /// @return descriptor; -1: there is no such owner
 int open_announced(std::uint64_t& instance) {
@@ -101,9 +75,8 @@ int open_announced(std::uint64_t& instance) {
     if (errno == EACCES) throw ServiceError(not_a_member(kLockPath));
     return -1;
   }
-  // Lock first, then number: a number read while the lock is held belongs to the live owner.
-  struct flock attached = lock_of(F_RDLCK, kAttachedByte);
-  if (::fcntl(descriptor, F_OFD_SETLK, &attached) == 0 && has_owner(descriptor) &&
+  // Lock first, then number: a number read while the third byte is locked belongs to the live owner.
+  if (lock_byte(descriptor, LockByte::kAttached) && is_byte_locked(descriptor, LockByte::kAnnounced) &&
       read_instance(descriptor, instance)) {
     return descriptor;
   }
@@ -114,7 +87,7 @@ int open_announced(std::uint64_t& instance) {
 bool is_held(const char* path) {
   if (find_lock(path, /*is_flock=*/false)) return true;
   const Descriptor file(::open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // where /proc/locks is hidden
-  return file.get() >= 0 && has_owner(file.get());
+  return file.get() >= 0 && is_byte_locked(file.get(), LockByte::kOwner);
 }
 
 ServiceError another_isobard() {
@@ -169,8 +142,7 @@ int open_lock_file() {
 int open_and_lock() {
   int descriptor = open_lock_file();
   while (descriptor < 0) descriptor = open_lock_file();
-  struct flock request = lock_of(F_WRLCK, kOwnerByte);
-  if (::fcntl(descriptor, F_OFD_SETLK, &request) != 0) {
+  if (!lock_byte(descriptor, LockByte::kOwner)) {
     ::close(descriptor);
     throw another_isobard();
   }
@@ -209,7 +181,7 @@ void BrokerLock::announce() {
       throw ServiceError("getrandom: " + errno_text());
     }
   }
-  if (::pwrite(descriptor_, &instance, sizeof(instance), 0) != static_cast<ssize_t>(sizeof(instance))) {
+  if (!announce_instance(descriptor_, instance)) {
     throw ServiceError(std::string(kLockPath) + ": cannot be written: " + errno_text());
   }
 }
@@ -217,7 +189,8 @@ void BrokerLock::announce() {
 void BrokerLock::withdraw(std::chrono::milliseconds timeout) noexcept {
   static_cast<void>(::ftruncate(descriptor_, 0) == 0);
   for (const int file : removed_) static_cast<void>(::ftruncate(file, 0) == 0);
-  const auto any_attached = [this] {
+  const auto has_attached = [](int file) { return is_byte_locked(file, LockByte::kAttached); };
+  const auto any_attached = [&] {
     return has_attached(descriptor_) || std::any_of(removed_.begin(), removed_.end(), has_attached);
   };
   const auto deadline = std::chrono::steady_clock::now() + timeout;
@@ -230,11 +203,9 @@ void BrokerLock::withdraw(std::chrono::milliseconds timeout) noexcept {
 void BrokerLock::put_back() {
   if (is_in_place(descriptor_)) return;
   const int descriptor = ::open(kLockPath, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kLockMode);
-  struct flock request = lock_of(F_WRLCK, kOwnerByte);
   std::uint64_t instance = 0;
-  if (descriptor < 0 || ::fcntl(descriptor, F_OFD_SETLK, &request) != 0 ||
-      !read_instance(descriptor_, instance) ||
-      ::pwrite(descriptor, &instance, sizeof(instance), 0) != static_cast<ssize_t>(sizeof(instance))) {
+  if (descriptor < 0 || !lock_byte(descriptor, LockByte::kOwner) || !read_instance(descriptor_, instance) ||
+      !announce_instance(descriptor, instance)) {
     if (descriptor >= 0) ::close(descriptor);
     return;
   }
@@ -293,7 +264,8 @@ BrokerWatch::~BrokerWatch() {
 
 bool BrokerWatch::alive() const noexcept {
   std::uint64_t instance = 0;
-  return has_owner(descriptor_) && read_instance(descriptor_, instance) && instance == instance_;
+  return is_byte_locked(descriptor_, LockByte::kAnnounced) && read_instance(descriptor_, instance) &&
+         instance == instance_;
 }
 
 }  // namespace isobar::ipc

@@ -3,7 +3,9 @@
 #include "ipc/shared_memory.hpp"
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
 #include <signal.h>  // NOLINT(modernize-deprecated-headers)
+#include <unistd.h>
 
 #include <array>
 #include <chrono>
@@ -13,6 +15,8 @@
 #include <thread>
 
 #include "core/errors.hpp"
+#include "ipc/broker_lock.hpp"
+#include "ipc/lock_bytes.hpp"
 #include "tests/ipc/child_process.hpp"
 
 namespace isobar::test::test_shared_memory {
@@ -235,6 +239,43 @@ TEST_CASE("a broker that ends waits until the attached processes have detached")
   // A broker that did not wait would have made the library end the reader with another code.
   CHECK(reader.wait(5s) == 0);
   CHECK(library_fault_count() == faults);
+}
+
+TEST_CASE("a broker ends in less than a second although an attached process hangs") {
+  auto broker = std::make_unique<Broker>();
+  auto priors = std::make_unique<Publisher<Prior>>(topics::kPrior);
+  ChildProcess reader({ISOBAR_IPC_PEER, "watch"});
+  std::string line;
+  while (!reader.read_line(line, 5ms)) {
+    Prior prior;
+    prior.height_m = 1.0;
+    REQUIRE(priors->send(prior));
+  }
+  reader.signal(SIGSTOP);
+  const auto began = std::chrono::steady_clock::now();
+  priors.reset();
+  broker.reset();
+  CHECK(std::chrono::steady_clock::now() - began < 900ms);
+  reader.signal(SIGCONT);
+  CHECK(reader.wait(5s) == 0);
+  const Broker next;  // nothing is left in its way
+}
+
+TEST_CASE("the number of a killed broker is not taken for that of the next one, which is just starting") {
+  ChildProcess killed({ISOBAR_IPC_PEER, "broker"});
+  REQUIRE(killed.read_until("ready", 10s));
+  killed.signal(SIGKILL);
+  REQUIRE(killed.wait(5s) == 128 + SIGKILL);
+  const int file = ::open("/dev/shm/isobar.lock", O_RDWR | O_CLOEXEC);
+  std::uint64_t instance = 0;
+  REQUIRE(read_instance(file, instance));
+  REQUIRE(lock_byte(file, LockByte::kOwner));  // as the next one, before it has cleared the number
+  CHECK_THROWS_AS(BrokerWatch::find(50ms), ServiceError);
+  REQUIRE(announce_instance(file, ++instance));
+  const BrokerWatch watch = BrokerWatch::find(50ms);
+  CHECK(watch.alive());
+  ::close(file);
+  CHECK_FALSE(watch.alive());
 }
 
 TEST_CASE("a second broker is refused with the reason") {
