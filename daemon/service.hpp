@@ -9,7 +9,8 @@
 
 namespace isobar {
 
-/// Signals and status of a service. Main thread only. Without a service manager the notifications do nothing.
+/// Signals and status of a service. Main thread only, except where noted. Without a service manager the
+/// notifications do nothing.
 class Service {
  public:
   /// Blocks SIGTERM, SIGINT and SIGHUP in this thread and in all threads
@@ -20,7 +21,7 @@ class Service {
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;
 
-  /// Sleeps; returns early when a stop signal arrives.
+  /// Sleeps; returns early when a stop signal arrives. Any thread.
   /// @return false once a stop signal has arrived, now or in an earlier call
   [[nodiscard]] bool wait_for(std::chrono::milliseconds duration);
 

@@ -37,7 +37,7 @@ class Broker {
   ///         gives the MB needed and available), when the system refuses shared memory, or when files of
   ///         another user are in the way and the patience has ended, see set_broker_patience()
   Broker();
-  /// Attached processes keep running but receive nothing more. Waits up to 2 s for them to detach.
+  /// Attached processes keep running but receive nothing more. Waits up to 0.5 s for them to detach.
   ~Broker();
   Broker(const Broker&) = delete;
   Broker& operator=(const Broker&) = delete;
@@ -64,8 +64,8 @@ class Attachment {
   Attachment& operator=(const Attachment&) = delete;
 
   /// False once the isobard of this attachment has ended, even if another one has started since. From then on
-  /// no message arrives; only a new process can attach again. Call it at least twice a second: an isobard
-  /// that ends waits for its attached processes. Costs a few system calls.
+  /// no message arrives; only a new process can attach again. Call it every 0.1 s, and detach then: an isobard
+  /// that ends waits for its attached processes, up to 0.5 s. Costs a few system calls.
   [[nodiscard]] bool broker_alive() const noexcept;
 
  private:

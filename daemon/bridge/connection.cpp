@@ -19,6 +19,9 @@ using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
 /// second. After a longer one this process is no longer connected, for instance because iceoryx
 /// unregistered it while it was stopped.
 constexpr auto kMaxSilence = 5s;
+/// Time limit for ending the threads and for leaving the network before a restart, which take milliseconds: they can
+/// block when isobard was killed in the middle of an exchange.
+constexpr auto kRestartLimit = 500ms;
 /// Longest wait for isobard in one round of the supervise loop; stop signals are seen between two rounds.
 constexpr auto kAttachTimeout = 400ms;
 
@@ -38,14 +41,22 @@ bool Connection::check() {
   forwarding_.put_keys(network_.keys().status());
   if (const auto reason = reason_to_restart()) {
     spdlog::warn("{}; restarting", *reason);
-    // No detaching from shared memory: that blocks without isobard, and the restarted program does not need
-    // it.
-    network_.leave();
-    replace_process();
+    restart();
   }
   const std::uint64_t rounds_before = rounds_;
   rounds_ = forwarding_.rounds();
   return rounds_ != rounds_before;
+}
+
+// Shared memory first: an isobard that ends waits until nobody uses it. The rest of the library's detaching, after
+// main(), is left out: it blocks without isobard, and the restarted program does not need it.
+void Connection::restart() {
+  const TimeLimit limit(kRestartLimit, &replace_process);
+  receiving_.reset();
+  forwarding_.stop();
+  attachment_.reset();
+  network_.leave();
+  replace_process();
 }
 
 void Connection::renew_network() {

@@ -45,6 +45,7 @@ class Connection {
 
  private:
   void receive();
+  [[noreturn]] void restart();
   [[nodiscard]] std::optional<std::string> reason_to_restart() const;
 
   std::unique_ptr<ipc::Attachment> attachment_;

@@ -62,9 +62,11 @@ Forwarding::Forwarding(Outputs& outputs, const dds::DdsConfig& config)
   set_clouds(outputs.clouds.has_value());
 }
 
-Forwarding::~Forwarding() {
+Forwarding::~Forwarding() { stop(); }
+
+void Forwarding::stop() {
   pose_waiter_.stop();
-  pose_thread_.join();
+  if (pose_thread_.joinable()) pose_thread_.join();
   set_clouds(false);
 }
 

@@ -48,6 +48,8 @@ class Forwarding {
   void configure(const dds::DdsConfig& config);
   /// Starts or stops the thread of the clouds, outside of a pause(). Requires outputs for clouds while it runs.
   void set_clouds(bool are_published);
+  /// Ends both threads, for good. Outside of a pause().
+  void stop();
   [[nodiscard]] bool has_clouds() const noexcept { return clouds_in_.has_value(); }
   /// Passes on the state of the network, for the diagnostics.
   void put_network(NetworkState state);

@@ -40,8 +40,9 @@ using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
 constexpr auto kFirstAttachTimeout = 3s;
 /// Time limit for attaching: milliseconds, but it blocks for ever when isobard ends in the middle of it.
 constexpr auto kAttachLimit = 10s;
-/// Time limit for detaching: less than a second, but it blocks for ever when isobard hangs.
-constexpr auto kDetachLimit = 4s;
+/// Time limit for a stop, which takes some 0.1 s: detaching blocks for ever when isobard hangs, and leaving the network
+/// waits for readers that do not acknowledge.
+constexpr auto kStopLimit = 800ms;
 
 /// The log of Cyclone DDS, thinned: a lost address or a stranger's datagrams would give a line each.
 RepeatedLines g_library_lines;
@@ -85,10 +86,7 @@ class Bridge {
   }
 
   /// Ends the forwarding. The library detaches only after main() has returned.
-  void stop() {
-    if (connection_) end_process_after(kDetachLimit);
-    connection_.reset();
-  }
+  void stop() { connection_.reset(); }
 
  private:
   void renew_network() {
@@ -168,6 +166,7 @@ std::unique_ptr<SettingsSource> first_source(const Options& options,
 
 int run(const Options& options) {
   Service service;  // first, so that every thread inherits the blocked signals
+  limit_stop(service, kStopLimit);
   ipc::set_fatal_action(&replace_process_later);
   std::unique_ptr<ipc::Attachment> attachment;
   const auto source = first_source(options, attachment);

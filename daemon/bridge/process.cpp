@@ -17,7 +17,9 @@ std::array<char, PATH_MAX> g_program{};
 char** g_arguments = nullptr;
 
 [[noreturn]] void end_process() noexcept {
-  constexpr std::string_view kReason = "isobar-dds: isobard does not answer; ended without detaching\n";
+  constexpr std::string_view kReason =
+      "isobar-dds: the stop takes too long, isobard or the network does not answer; ended without "
+      "detaching\n";
   static_cast<void>(::write(STDERR_FILENO, kReason.data(), kReason.size()) > 0);
   std::_Exit(0);
 }
@@ -48,7 +50,7 @@ void replace_process_later() noexcept {
   replace_process();
 }
 
-TimeLimit::TimeLimit(std::chrono::seconds limit, void (*action)() noexcept)
+TimeLimit::TimeLimit(std::chrono::milliseconds limit, void (*action)() noexcept)
     : thread_([this, end = std::chrono::steady_clock::now() + limit, action] {
         std::unique_lock lock(mutex_);
         if (!ended_.wait_until(lock, end, [this] { return met_; })) action();
@@ -63,8 +65,11 @@ TimeLimit::~TimeLimit() {
   thread_.join();
 }
 
-void end_process_after(std::chrono::seconds limit) {
-  std::thread([limit] {
+void limit_stop(Service& service, std::chrono::milliseconds limit) {
+  std::thread([&service, limit] {
+    constexpr std::chrono::hours kAgain{1};
+    while (service.wait_for(kAgain)) {
+    }
     std::this_thread::sleep_for(limit);
     end_process();
   }).detach();

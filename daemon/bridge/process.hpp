@@ -7,6 +7,8 @@
 #include <mutex>
 #include <thread>
 
+#include "daemon/service.hpp"
+
 namespace isobar::bridge {
 
 /// Stores program path and arguments for replace_process().
@@ -25,7 +27,7 @@ void remember_arguments(char** argv);
 class TimeLimit {
  public:
   /// @param action called in a thread of its own when this object still exists after `limit`; must not return
-  TimeLimit(std::chrono::seconds limit, void (*action)() noexcept);
+  TimeLimit(std::chrono::milliseconds limit, void (*action)() noexcept);
   ~TimeLimit();
   TimeLimit(const TimeLimit&) = delete;
   TimeLimit& operator=(const TimeLimit&) = delete;
@@ -37,8 +39,9 @@ class TimeLimit {
   std::thread thread_;
 };
 
-/// Ends the process with code 0 and a line on stderr if it has not ended by itself within `limit`: for a
-/// requested stop. Holds beyond the end of main(), during the clean-up of the libraries.
-void end_process_after(std::chrono::seconds limit);
+/// Ends the process with code 0 and a line on stderr if it has not ended by itself within `limit` of a stop signal,
+/// wherever it hangs: while attaching, in the network, or beyond the end of main(), in the clean-up of the libraries.
+/// Once, for a service that lives as long as the program.
+void limit_stop(Service& service, std::chrono::milliseconds limit);
 
 }  // namespace isobar::bridge
