@@ -39,6 +39,8 @@ constexpr double kShareAfterPause = 0.3;
 // along a street.
 constexpr double kFarM = 1.5;
 constexpr double kShareAfterDrive = 0.4;
+// Whatever the last scans matched, at least this must match, if as much was known.
+constexpr double kLowestOverlap = 0.15;
 // Share of the known overlap below which a match must leave no direction free.
 constexpr double kDegenerateShare = 0.42;
 // Distance between the height of the match and that of the altimeter, whose error is 0.1 m, and 0.4 m beside a door
@@ -140,7 +142,8 @@ void PlaceSearch::set_limits(const KnownPlace& place, bool short_pause, double u
   if (place.overlap <= 0.0) return;
   known_overlap_ = place.overlap;
   const double after_pause = unseen_m < kFarM ? kShareAfterPause : kShareAfterDrive;
-  least_overlap_ = (short_pause ? after_pause : kShareOfOverlap) * place.overlap;
+  least_overlap_ = std::max((short_pause ? after_pause : kShareOfOverlap) * place.overlap,
+                            std::min(kLowestOverlap, place.overlap));
   const double residual_m = short_pause ? kTimesAfterPause * place.residual_rms_m + kMoreAfterPauseM
                                         : kTimesResidual * place.residual_rms_m + kMoreResidualM;
   largest_residual_m_ = std::min(residual_m, kLargestResidualM);
