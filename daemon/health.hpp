@@ -49,8 +49,12 @@ class HealthMonitor {
 
   void fill(const StatusSnapshot& now, ipc::HealthReport& report);
   /// True once for each time that the input starts over, see StartOver; fill() reports them.
-  [[nodiscard]] bool input_starts_over(const LidarStatus& lidar, const PriorStatus& prior) noexcept {
-    return start_over_.check({lidar.clock_step_ns, lidar.clock_stepped_ns, prior.imu_resumed_ns});
+  [[nodiscard]] bool input_starts_over(const LidarStatus& lidar, const SampleInputStatus& samples,
+                                       const PriorStatus& prior) noexcept {
+    // Of DDS samples the sender's clock is not known here; there a silence says that the stream began anew.
+    const bool by_datagram = samples.counters.samples[static_cast<std::size_t>(datagram::Kind::kImu)] > 0;
+    return start_over_.check(
+        {lidar.clock_jumped_ns, by_datagram ? samples.imu_began_ns : prior.imu_resumed_ns});
   }
 
  private:

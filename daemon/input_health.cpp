@@ -117,10 +117,11 @@ std::string waiting_for(const BarometerThreadStatus& barometer) {
 
 void add_starts_over(ipc::HealthReport& report, const StartOver& start_over, std::int64_t now_ns) {
   if (start_over.count() == 0) return;
-  add_entry(report, "input/starts_over",
-            is_recent(start_over.last_ns(), now_ns) ? HealthLevel::kWarning : HealthLevel::kOk,
-            "the lidar's clock jumped while the IMU was silent: another recording, or the power was off",
-            static_cast<double>(start_over.count()));
+  add_entry(
+      report, "input/starts_over",
+      is_recent(start_over.last_ns(), now_ns) ? HealthLevel::kWarning : HealthLevel::kOk,
+      "the lidar's clock jumped and the IMU began anew, together: another recording; a new map frame began",
+      static_cast<double>(start_over.count()));
 }
 
 std::string step_text(std::int64_t step_ns) {

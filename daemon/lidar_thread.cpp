@@ -74,8 +74,7 @@ void LidarThread::report() noexcept {
   }
   draft_status_.counters = decoder_.counters();
   draft_status_.sender = sender_.status();
-  draft_status_.clock_step_ns = decoder_.last_step_ns();
-  draft_status_.clock_stepped_ns = decoder_.stepped_ns();
+  draft_status_.clock_jumped_ns = decoder_.clock_jumped_ns();
   draft_status_.punctuality = deadline_.status();
   draft_status_.dropped_by_kernel = receiver_.dropped_by_kernel();
   status_.put(draft_status_);

@@ -28,8 +28,7 @@ struct LidarStatus {
   std::int64_t last_packet_ns = 0;         ///< robot clock; 0: none yet
   StreamPace pace;                         ///< of the scans' ends
   SenderStatus sender;                     ///< port 0
-  std::int64_t clock_step_ns = 0;          ///< last step of the lidar's clock against the robot clock
-  std::int64_t clock_stepped_ns = 0;       ///< when it came, robot clock; 0: never
+  std::int64_t clock_jumped_ns = 0;        ///< last jump of the lidar's clock, robot clock; 0: never
   DeadlineStatus punctuality;              ///< from the end of a scan to its publication
   /// Names the configured and the received model; empty while all packets are of the configured one.
   std::array<char, 120> wrong_model_message{};

@@ -136,7 +136,7 @@ class RobotGraph final : public Graph {
     description_.publish(config_);
   }
   void collect() override {
-    if (monitor_.input_starts_over(lidar_.status(), prior_.status())) {
+    if (monitor_.input_starts_over(lidar_.status(), samples_.status(), prior_.status())) {
       registration_.begin_new_frame(NewFrameReason::kInputStartsOver);
     }
     lidar_.collect();

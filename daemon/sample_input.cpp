@@ -85,14 +85,21 @@ bool SampleInput::to_robot_clock(datagram::Sample& sample) noexcept {
     return base_.check(from_.ipv4, sample.pressure, receive_ns_, stamped ? system_ : nullptr) ==
            BaseVerdict::kAccepted;
   }
-  if (!stamped) return true;
-  Stream& stream = streams_[static_cast<std::size_t>(sample.kind)];
+  const bool is_imu = sample.kind == datagram::Kind::kImu;
+  if (is_imu) imu_beginnings_.add_number(sample.sequence, receive_ns_);
+  if (stamped) to_robot_clock(streams_[static_cast<std::size_t>(sample.kind)], sample);
+  if (is_imu && imu_beginnings_.take()) status_.imu_began_ns = receive_ns_;
+  return true;
+}
+
+void SampleInput::to_robot_clock(Stream& stream, datagram::Sample& sample) noexcept {
   const std::int64_t expected_ns = receive_ns_ - stream.anchor.offset_ns();
-  (void)stream.anchor.add(
-      stream.clock.without_steps_ns(sample.stamp_ns(), expected_ns, stream.anchored, *system_), receive_ns_);
+  const std::int64_t sender_ns =
+      stream.clock.without_steps_ns(sample.stamp_ns(), expected_ns, stream.anchored, *system_);
+  if (sample.kind == datagram::Kind::kImu) imu_beginnings_.add_stamp(sender_ns, receive_ns_);
+  (void)stream.anchor.add(sender_ns, receive_ns_);
   stream.anchored = true;
   sample.set_stamp_ns(stream.anchor.to_host_ns(stream.anchor.device_unwrapped_ns()));
-  return true;
 }
 
 SampleInputStatus SampleInput::status() const noexcept {

@@ -9,6 +9,7 @@
 
 #include "core/time/base_station_stream.hpp"
 #include "core/time/clock_anchor.hpp"
+#include "core/time/stream_beginnings.hpp"
 #include "drivers/datagram/datagram.hpp"
 #include "drivers/udp/sender_lock.hpp"
 
@@ -23,6 +24,7 @@ struct SampleInputStatus {
   std::uint64_t unsigned_base = 0;     ///< base samples while dds.keys_directory is set
   std::uint64_t not_allowed = 0;       ///< datagrams of senders that input.senders does not name
   std::uint32_t not_allowed_ipv4 = 0;  ///< the newest of these senders
+  std::int64_t imu_began_ns = 0;       ///< last time that the IMU's stream began anew, robot clock; 0: never
   std::array<SenderStatus, datagram::kKinds> senders;  ///< by Kind; base stations: see `base`
   BaseStationStatus base;                              ///< of the base station that sends datagrams
 };
@@ -66,11 +68,13 @@ class SampleInput {
                                               datagram::LineStatus status) noexcept;
   [[nodiscard]] datagram::Admission base_admission() noexcept;
   [[nodiscard]] bool to_robot_clock(datagram::Sample& sample) noexcept;
+  void to_robot_clock(Stream& stream, datagram::Sample& sample) noexcept;
 
   Takes takes_;
   std::vector<std::uint32_t> allowed_;
   datagram::DatagramParser parser_;
   std::array<Stream, datagram::kKinds> streams_;
+  StreamBeginnings imu_beginnings_;
   BaseStationStream base_;
   std::uint64_t base_sender_ = 0;  ///< whose sequence numbers are followed
   SampleInputStatus status_;       ///< the counters of this class

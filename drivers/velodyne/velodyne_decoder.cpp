@@ -40,13 +40,11 @@ DecodeResult VelodyneDecoder::add_packet(std::span<const std::uint8_t> payload, 
     return {DecodeStatus::kDuplicate, false};
   }
   const std::int64_t offset_before_ns = anchor_.offset_ns();
-  const auto finding = anchor_.add(static_cast<std::int64_t>(packet.timestamp_us) * 1'000, host_stamp_ns);
+  const std::int64_t sensor_ns = static_cast<std::int64_t>(packet.timestamp_us) * 1'000;
+  if (continuity_.add(sensor_ns, host_stamp_ns)) clock_jumped_ns_ = host_stamp_ns;
+  const auto finding = anchor_.add(sensor_ns, host_stamp_ns);
   packet.device_ns = anchor_.device_unwrapped_ns();
   counters_.clock_steps = anchor_.steps();
-  if (finding == ClockAnchor::Finding::kStep) {
-    last_step_ns_ = offset_before_ns - anchor_.offset_ns();
-    stepped_ns_ = host_stamp_ns;
-  }
   if (pending_) {
     take_pending(current);
   }

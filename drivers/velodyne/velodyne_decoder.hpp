@@ -9,6 +9,7 @@
 
 #include "core/samples.hpp"
 #include "core/time/clock_anchor.hpp"
+#include "core/time/clock_continuity.hpp"
 #include "drivers/velodyne/data_packet.hpp"
 #include "drivers/velodyne/packet_format.hpp"
 #include "drivers/velodyne/return_decoder.hpp"
@@ -72,10 +73,8 @@ class VelodyneDecoder {
   bool flush(Scan& current);
 
   [[nodiscard]] const VelodyneCounters& counters() const { return counters_; }
-  /// Last step of the sensor's clock against the host's [ns], and the host stamp of the packet that showed it; 0:
-  /// none yet.
-  [[nodiscard]] std::int64_t last_step_ns() const { return last_step_ns_; }
-  [[nodiscard]] std::int64_t stepped_ns() const { return stepped_ns_; }
+  /// Host stamp of the packet that showed the last jump of the sensor's clock (ClockContinuity); 0: none yet.
+  [[nodiscard]] std::int64_t clock_jumped_ns() const { return clock_jumped_ns_; }
   /// Status text of a model mismatch: "packets of HDL-32E (product id 0x21), but VLP-16 is configured".
   [[nodiscard]] std::string wrong_model_message() const;
 
@@ -107,8 +106,8 @@ class VelodyneDecoder {
 
   ClockAnchor anchor_;
   VelodyneCounters counters_;
-  std::int64_t last_step_ns_ = 0;
-  std::int64_t stepped_ns_ = 0;
+  ClockContinuity continuity_{kClockPeriodNs};
+  std::int64_t clock_jumped_ns_ = 0;
   std::uint8_t wrong_product_id_ = 0;
   std::array<Identity, 32> recent_{};
   std::size_t recent_next_ = 0;

@@ -113,15 +113,30 @@ TEST_CASE("An input that waits for its address is an error with the reason, thou
   CHECK(std::string(entry(report, "input")->message) == "waiting: " + now->samples_wait_for);
 }
 
-TEST_CASE("The input starts over when the lidar's clock jumps and the IMU resumes, together; once") {
+// What happens                                   lidar's clock            IMU's stream              new map frame
+// isobard stopped and continued, 3 s, 8 s        goes on                  goes on                   no
+// its sender stopped and continued               stands, goes on          stands, goes on           no
+// all packets lost for 5 s                       goes on                  goes on                   no
+// all late by 3 s, in one bunch                  goes on                  goes on                   no
+// lost, then late, then in time (busy machine)   goes on                  goes on                   no
+// this machine and its clock stood, up to 30 s   ahead by the standstill  ahead by the standstill   no
+// lidar restarts, or gets the time, alone        jumps                    goes on                   no
+// IMU restarts alone                             goes on                  begins anew               no
+// both restart, the robot stands                 jumps after 5 s or more  begins anew after 1 s     no
+// the clocks of both are set                     jumps                    is set without a pause    no
+// a recording again, at once or after a pause    jumps back               begins anew, at once      yes
+// another recording                              jumps                    begins anew, at once      yes
+// Streams: ClockContinuity and StreamBeginnings, test_clock_continuity.cpp; below: what both together say.
+TEST_CASE("The input starts over when the lidar's clock jumps and the IMU begins anew, together; once") {
   StartOver start;
   CHECK_FALSE(start.check({}));
-  CHECK_FALSE(start.check({-30 * kSecond, kNow, 0}));                    // a lidar that starts again alone
-  CHECK_FALSE(start.check({-30 * kSecond, kNow, kNow - 60 * kSecond}));  // an earlier silence of the IMU
-  CHECK_FALSE(start.check({kSecond / 20, kNow, kNow}));                  // a lidar whose clock is corrected
-  CHECK(start.check({-30 * kSecond, kNow, kNow + kSecond}));
-  CHECK_FALSE(start.check({-30 * kSecond, kNow, kNow + kSecond}));
-  CHECK(start.check({40 * kSecond, kNow + 90 * kSecond, kNow + 89 * kSecond}));
+  CHECK_FALSE(start.check({0, kNow - 300 * kSecond}));                     // an IMU alone
+  CHECK_FALSE(start.check({kNow - 200 * kSecond, kNow - 300 * kSecond}));  // a lidar alone
+  CHECK_FALSE(start.check({kNow - 88 * kSecond, kNow - 100 * kSecond}));   // both restart
+  CHECK(start.check({kNow, kNow + kSecond}));
+  CHECK_FALSE(start.check({kNow, kNow + kSecond}));
+  CHECK_FALSE(start.check({kNow + 2 * kSecond, kNow + kSecond}));  // a lidar alone, soon after
+  CHECK(start.check({kNow + 90 * kSecond, kNow + 89 * kSecond}));
   CHECK(start.count() == 2);
 }
 
@@ -130,15 +145,15 @@ TEST_CASE("An input that starts over is a warning in the report, counted") {
   HealthMonitor monitor(config);
   const auto now = std::make_unique<StatusSnapshot>();
   now->now_ns = kNow;
-  CHECK_FALSE(monitor.input_starts_over(now->lidar, now->prior));
+  CHECK_FALSE(monitor.input_starts_over(now->lidar, now->samples, now->prior));
   ipc::HealthReport before;
   monitor.fill(*now, before);
   CHECK_FALSE(entry(before, "input/starts_over").has_value());
-  now->lidar.clock_step_ns = -20 * kSecond;
-  now->lidar.clock_stepped_ns = kNow;
-  now->prior.imu_resumed_ns = kNow;
-  CHECK(monitor.input_starts_over(now->lidar, now->prior));
-  CHECK_FALSE(monitor.input_starts_over(now->lidar, now->prior));
+  now->lidar.clock_jumped_ns = kNow;
+  now->samples.imu_began_ns = kNow;
+  now->samples.counters.samples[0] = 1;
+  CHECK(monitor.input_starts_over(now->lidar, now->samples, now->prior));
+  CHECK_FALSE(monitor.input_starts_over(now->lidar, now->samples, now->prior));
   ipc::HealthReport report;
   monitor.fill(*now, report);
   CHECK(entry(report, "input/starts_over")->level == HealthLevel::kWarning);

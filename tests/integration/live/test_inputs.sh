@@ -5,6 +5,7 @@
 set -euo pipefail
 isobar=$1 isobard=$2
 rival=$(dirname "$0")/rival.py
+relay=$(dirname "$0")/unsteady_relay.py
 if [ "${ISOBAR_ISOLATED:-}" != yes ]; then echo "skipped: needs a network namespace of its own"; exit 0; fi
 
 work=$(mktemp -d)
@@ -89,3 +90,20 @@ ss -lun | grep -q '127.0.0.1:7373' || fail "samples are not received on loopback
 kill -TERM "$daemon"
 wait "$daemon"
 ok "by default samples are received on loopback only"
+
+# 4. The network loses everything for 5 s: the sensors have gone on, so does the map frame.
+"$isobard" --config "$work/all.toml" --output "$work/lost" >"$work/lost.log" 2>&1 &
+daemon=$!
+pids+=("$daemon")
+wait_for 'ready:' "$work/lost.log" 10
+python3 "$relay" lost 4 5 >"$work/relay.log" 2>&1 &
+pids+=("$!")
+sleep 0.5
+"$isobar" play "$work/recording" --lidar-port 12368 --input-port 17373 >"$work/play.log" 2>&1 || fail "play"
+kill -TERM "$daemon"
+wait "$daemon" || fail "isobard did not stop with code 0"
+grep -q 'input/starts_over' "$work/lost.log" && fail "5 s without packets are held for another recording"
+[ ! -e "$work/lost/trajectory_2.tum" ] || fail "5 s without packets began a new map frame"
+after=$(awk '!/^#/ && n && $1 - last > 4 { n = 0; gap = 1 } !/^#/ { last = $1; n++ } END { print gap ? n : 0 }' "$work/lost/trajectory.tum")
+[ "$after" -ge 10 ] || fail "only $after poses after 5 s without packets"
+ok "5 s without packets: $after poses after them in the same map frame"
