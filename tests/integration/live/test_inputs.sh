@@ -66,6 +66,7 @@ play=$!
 pids+=("$play")
 sleep 1.5
 python3 "$rival" "$work/recording/lidar.pcap" 12 127.0.0.1 >"$work/forger.log" 2>&1 &
+forger=$!
 pids+=("$!")
 wait "$play" || fail "play"
 kill -TERM "$daemon"
@@ -91,7 +92,8 @@ kill -TERM "$daemon"
 wait "$daemon"
 ok "by default samples are received on loopback only"
 
-# 4. The network loses everything for 5 s: the sensors have gone on, so does the map frame.
+# 4. The network loses everything for 5 s: the sensors have gone on, so does the map frame. Without the rival.
+wait "$forger" || true
 "$isobard" --config "$work/all.toml" --output "$work/lost" >"$work/lost.log" 2>&1 &
 daemon=$!
 pids+=("$daemon")
