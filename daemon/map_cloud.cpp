@@ -111,13 +111,14 @@ void MapCloudPublisher::read(const TileKey& key, FileTileStore& store) {
 void MapCloudPublisher::add_tiles_in_memory(const LocalMap& map) {
   // Tiles that came back to memory after they had been read: from the last one on, so that the points that fill
   // the hole are those of tiles that stay.
-  for (auto tile = stored_.rbegin(); tile != stored_.rend(); ++tile) {
-    if (!map.has_tile(tile->key)) continue;
-    const std::size_t behind = points_.size() - tile->first - tile->count;
-    const std::size_t moved = std::min(tile->count, behind);
+  for (std::size_t i = stored_.size(); i-- > 0;) {
+    const Stored& tile = stored_[i];
+    if (!map.has_tile(tile.key)) continue;
+    const std::size_t behind = points_.size() - tile.first - tile.count;
+    const std::size_t moved = std::min(tile.count, behind);
     std::copy_n(points_.end() - static_cast<std::ptrdiff_t>(moved), moved,
-                points_.begin() + static_cast<std::ptrdiff_t>(tile->first));
-    points_.resize(points_.size() - tile->count);
+                points_.begin() + static_cast<std::ptrdiff_t>(tile.first));
+    points_.resize(points_.size() - tile.count);
   }
   map_points_.clear();
   map.append_points(map_points_);

@@ -61,11 +61,9 @@ void watch(HealthReader& reader, const StatusOptions& options, ipc::HealthReport
       std::fprintf(stderr, "isobar: isobard has ended; waiting for the next one\n");
       run_again();
     }
-    if (reader.next(report, 1s)) {
-      show(report, options);
-    } else if (HealthReader::age_s(report) > kOldReportS && reader.alive()) {
-      show(report, options);  // with its age
-    }
+    const bool is_new = reader.next(report, 1s);
+    // An old one with its age.
+    if (is_new || (HealthReader::age_s(report) > kOldReportS && reader.alive())) show(report, options);
   }
 }
 

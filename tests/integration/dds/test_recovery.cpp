@@ -141,11 +141,13 @@ double stop_s(BridgeState state) {
   return seconds;
 }
 
-TEST_CASE("isobard stops in less than a second whatever the bridge does") {
-  CHECK(stop_s(BridgeState::kForwards) < 0.9);
-  CHECK(stop_s(BridgeState::kHangs) < 0.9);
-  CHECK(stop_s(BridgeState::kKilled) < 0.9);
-  CHECK(stop_s(BridgeState::kStarts) < 0.9);
+TEST_CASE("isobard stops soon whatever the bridge does") {
+  // 0.7 s at most on a machine that is not busy: endure stops. Here a build may run beside it, or a sanitizer in it.
+  constexpr double kLimitS = ISOBAR_STOP_LIMIT_S;
+  CHECK(stop_s(BridgeState::kForwards) < kLimitS);
+  CHECK(stop_s(BridgeState::kHangs) < kLimitS);
+  CHECK(stop_s(BridgeState::kKilled) < kLimitS);
+  CHECK(stop_s(BridgeState::kStarts) < kLimitS);
 }
 
 /// Exit code of a forwarding bridge that gets SIGTERM right after isobard got `number`; -1: not within 1.5 s.
