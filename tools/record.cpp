@@ -134,7 +134,8 @@ class Recorder {
     const int code = source_->exit_code();
     if (code == RecordSource::kRefused && !session_.started())
       throw ServiceError("isobard's inputs cannot be read, see above");
-    if (code == RecordSource::kOtherVersion) {
+    // Of an isobard that starts again on a busy machine the description may only be late.
+    if (code == RecordSource::kOtherVersion && !session_.started()) {
       throw ServiceError(
           "isobard does not describe itself to recorders: install isobard and isobar of one version");
     }
