@@ -59,7 +59,8 @@ TEST_CASE(
     stream.run(2 * kSecond);
     CHECK(stream.jumps == 0);
   }
-  for (const std::int64_t silence_ns : {50 * kSecond, 2 * kHour / 60, kHour / 2, 3 * kHour / 4, kHour, 10 * kHour}) {
+  for (const std::int64_t silence_ns :
+       {50 * kSecond, 2 * kHour / 60, kHour / 2, 3 * kHour / 4, kHour, 10 * kHour}) {
     Stream stream;
     stream.run(2 * kSecond);
     stream.pass(silence_ns, silence_ns);
