@@ -5,6 +5,7 @@
 
 #include "core/pose_carrying.hpp"
 #include "core/prior/prior_state.hpp"
+#include "core/short_pause.hpp"
 #include "core/squared.hpp"
 
 namespace isobar {
@@ -25,15 +26,15 @@ constexpr double kStartClimbOnWheelsMS = 0.05;
 constexpr double kStartClimbHangingMS = 0.3;
 // A continued height waits for pressures up to this long after the alignment: a base station settles in 1 s.
 constexpr double kWaitForPressureS = 1.8;
+// The same for a base station, whose network may come late.
 constexpr double kWaitForBaseS = 10.0;
-// Pause after which a robot may still be climbing as before, and the change of its vertical speed, 1 sigma: stairs
-// begin or end.
-constexpr double kClimbOnS = 10.0;
+// Change of the vertical speed over a short pause, 1 sigma: stairs begin or end.
 constexpr double kUnseenClimbMS = 0.25;
 // Unseen climb that stairs do not explain, and the vertical speed of an elevator, 1 sigma.
 constexpr double kRideM = 0.6;
-constexpr double kStandMS = 0.05;
 constexpr double kRideSigmaMS = 0.7;
+// Speed of the wheels below which a robot stands.
+constexpr double kStandMS = 0.05;
 // Height from one pressure against the base station, with turbulence, 1 sigma.
 constexpr double kPressureSigmaM = 0.2;
 // Vertical motion of a robot that is switched off, 1 sigma: it is pushed over a threshold.
@@ -78,8 +79,7 @@ void PriorEstimator::State::start_height() {
 double PriorEstimator::State::wait_for_pressure_s(std::int64_t now_ns) const {
   const bool had_base = std::any_of(resumed.station_known.begin(), resumed.station_known.end(),
                                     [](bool known) { return known; });
-  const double pause_s = seconds_between(resumed.stamp_ns, now_ns);
-  const bool short_pause = pause_s > 0.0 && pause_s < kClimbOnS;
+  const bool short_pause = is_short_pause(seconds_between(resumed.stamp_ns, now_ns));
   return had_base && !short_pause ? kWaitForBaseS : kWaitForPressureS;
 }
 
@@ -92,7 +92,7 @@ void PriorEstimator::State::continue_height(double vz_sigma_m_s) {
   from.vz_sigma_m_s = vz_sigma_m_s;
   from.offset_m = resumed.offset_m;
   const double pause_s = seconds_between(resumed.stamp_ns, imu_gate.stamp_ns());
-  const bool short_pause = pause_s > 0.0 && pause_s < kClimbOnS;
+  const bool short_pause = is_short_pause(pause_s);
   if (short_pause) keep_climbing(pause_s, from);
   if (reading_source == HeightSource::kDifferential && !resumed.step_open) {
     const double lever_m = above_base(config.p_base_port - p_base_imu);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/geometry.hpp"
+#include "core/short_pause.hpp"
 #include "core/so3.hpp"
 #include "core/squared.hpp"
 

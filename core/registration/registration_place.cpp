@@ -5,6 +5,7 @@
 
 #include "core/registration/registration.hpp"
 #include "core/registration/unseen_motion.hpp"
+#include "core/short_pause.hpp"
 #include "core/squared.hpp"
 #include "core/stamp.hpp"
 
@@ -19,8 +20,6 @@ constexpr double kWaitForBaseS = 11.0;
 // Standard deviation of a pose that no scan has confirmed.
 constexpr double kUnknownM = 10.0;
 constexpr double kUnknownRad = 3.0;
-constexpr double kStoodM = 0.15;
-constexpr double kStoodRad = 0.1;
 // Largest error of the height in which the scans are searched, 1 sigma.
 constexpr double kLargestHeightErrorM = 0.5;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/short_pause.hpp"
 #include "core/so3.hpp"
 #include "core/stamp.hpp"
 
@@ -14,9 +15,6 @@ namespace {
 // Longest way and turn that are predicted: beyond them the motion has changed.
 constexpr double kMostUnseenM = 30.0;
 constexpr double kMostUnseenRad = 1.6;
-// Motion below which a robot stood.
-constexpr double kMostStoodM = 0.15;
-constexpr double kMostStoodRad = 0.1;
 // Longest step between two priors: over a longer one the IMU was silent.
 constexpr double kLongestStepS = 0.5;
 
@@ -111,8 +109,8 @@ ExpectedPlace expected_place(const KnownPlace& place, const PriorHistory& priors
   expected.T_map_base.linear() = rotation_about_z(motion.yaw_rad()) * place.T_map_base.linear();
   expected.T_map_base.translation() = place.T_map_base.translation() + motion.p_map();
   expected.unseen_m = motion.unseen_m();
-  expected.stood = short_pause && priors.newest().velocity_valid && expected.unseen_m < kMostStoodM &&
-                   expected.unseen_rad < kMostStoodRad;
+  expected.stood = short_pause && priors.newest().velocity_valid && expected.unseen_m < kStoodM &&
+                   expected.unseen_rad < kStoodRad;
   return expected;
 }
 

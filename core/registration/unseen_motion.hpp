@@ -8,10 +8,9 @@
 
 namespace isobar {
 
-/// Pause for which a robot may have kept its motion [s]; after a longer one it is expected where it was.
-inline constexpr double kDriveOnS = 10.0;
-/// True for a pause so short that the robot may have kept its motion.
-[[nodiscard]] inline bool is_short_pause(double pause_s) { return pause_s > 0.0 && pause_s < kDriveOnS; }
+/// Unseen motion below which a robot stood, and the error of its pose then, 1 sigma.
+inline constexpr double kStoodM = 0.15;
+inline constexpr double kStoodRad = 0.1;
 
 /// Pose where a robot is expected that was at `place` when its last process ended, and the motion that nobody saw.
 struct ExpectedPlace {

@@ -222,17 +222,22 @@ TEST_CASE("attached processes notice a killed broker, and the next broker starts
   CHECK(next_reader.wait(10s) == 0);
 }
 
-TEST_CASE("a broker that ends waits until the attached processes have detached") {
-  auto broker = std::make_unique<Broker>();
-  auto priors = std::make_unique<Publisher<Prior>>(topics::kPrior);
-  ChildProcess reader({ISOBAR_IPC_PEER, "watch"});
+/// Sends priors until the attached peer says that it has received one.
+void send_until_received(Publisher<Prior>& priors, ChildProcess& reader) {
   std::string line;
   while (!reader.read_line(line, 5ms)) {
     Prior prior;
     prior.height_m = 1.0;
-    REQUIRE(priors->send(prior));
+    REQUIRE(priors.send(prior));
   }
   CHECK(line == "received");
+}
+
+TEST_CASE("a broker that ends waits until the attached processes have detached") {
+  auto broker = std::make_unique<Broker>();
+  auto priors = std::make_unique<Publisher<Prior>>(topics::kPrior);
+  ChildProcess reader({ISOBAR_IPC_PEER, "watch"});
+  send_until_received(*priors, reader);
   const std::uint64_t faults = library_fault_count();
   priors.reset();
   broker.reset();
@@ -245,12 +250,7 @@ TEST_CASE("a broker ends soon although an attached process hangs") {
   auto broker = std::make_unique<Broker>();
   auto priors = std::make_unique<Publisher<Prior>>(topics::kPrior);
   ChildProcess reader({ISOBAR_IPC_PEER, "watch"});
-  std::string line;
-  while (!reader.read_line(line, 5ms)) {
-    Prior prior;
-    prior.height_m = 1.0;
-    REQUIRE(priors->send(prior));
-  }
+  send_until_received(*priors, reader);
   reader.signal(SIGSTOP);
   const auto began = std::chrono::steady_clock::now();
   priors.reset();
