@@ -14,6 +14,7 @@ namespace isobar::simulation {
 namespace {
 
 constexpr double kDryAirGasJKgK = 287.05;  // specific gas constant
+constexpr double kAirKgM3 = 1.2;           // density of air
 
 /// Door pulse: a half sine wave, then one of opposite sign and half the amplitude. `duration_s`: sum of both.
 void add_pulse(std::vector<double>& pressure, double start_s, double duration_s, double peak_pa) {
@@ -29,7 +30,6 @@ void add_pulse(std::vector<double>& pressure, double start_s, double duration_s,
 
 /// Dynamic pressure of driving: half the density of air times the speed squared.
 double dynamic_pressure_pa(const std::vector<RawPose>& raw, std::size_t i) {
-  constexpr double kAirKgM3 = 1.2;
   if (i == 0) return 0.0;
   const double speed =
       std::hypot(raw[i].x_m - raw[i - 1].x_m, raw[i].y_m - raw[i - 1].y_m) / SplineGrid::kStepS;
@@ -49,6 +49,37 @@ void add_zones(std::vector<double>& pressure, const std::vector<int>& zones, dou
     const double wanted = std::clamp(of_zone.normal(sigma_pa), -2.0, 2.0);
     offset = i == 0 ? wanted : offset + (wanted - offset) * SplineGrid::kStepS / 1.5;
     pressure[i] += offset;
+  }
+}
+
+/// Gusts of wind at both ports, each with its own turbulence. Turbulence intensity (rms over mean) of 0.3 and
+/// an integral scale of some tens of metres are usual a metre above open ground (Stull 1988, "An Introduction
+/// to Boundary Layer Meteorology").
+void add_wind(std::vector<double>& pressure, double mean_m_s, double share, Random random) {
+  constexpr double kIntensity = 0.3;
+  constexpr double kScaleM = 25.0;
+  GaussMarkov turbulence(kIntensity * mean_m_s, kScaleM / mean_m_s, random);
+  double wind_m_s = mean_m_s;
+  for (double& pa : pressure) {
+    // A low-pass of 0.5 s: eddies smaller than a few metres average out over a housing and its tube.
+    const double now_m_s = std::max(0.0, mean_m_s + turbulence.step(SplineGrid::kStepS));
+    wind_m_s += (now_m_s - wind_m_s) * SplineGrid::kStepS / 0.5;
+    pa += share * 0.5 * kAirKgM3 * wind_m_s * wind_m_s;
+  }
+}
+
+/// Door pulses at random times: at the robot, and later and weaker at the base station, which is farther away.
+void add_door_pulses(const AirZones& air, double typical_pa, std::vector<double>& robot,
+                     std::vector<double>& base, Random& random) {
+  const double mean_s = 1.0 / air.door_pulses_1_s;
+  const double end_s = SplineGrid::kStepS * static_cast<double>(robot.size());
+  for (double t = random.exponential(mean_s); t < end_s; t += random.exponential(mean_s)) {
+    const double sign = random.sign();
+    const double size = air.pulse_high_pa > 0.0 ? random.uniform(air.pulse_low_pa, air.pulse_high_pa)
+                                                : typical_pa * random.uniform(0.4, 1.6);
+    const double duration_s = random.uniform(0.5, 2.0);
+    add_pulse(robot, t, duration_s, sign * size);
+    add_pulse(base, t + 0.05, duration_s, sign * size * random.uniform(0.0, 0.6));
   }
 }
 
@@ -79,8 +110,10 @@ Atmosphere::Atmosphere(const Scenario& scenario, const AirErrors& errors, Random
   double walk = 0.0;
   for (std::size_t i = 0; i < samples; ++i) {
     walk += random.normal(errors.walk_pa_sqrt_s * std::sqrt(SplineGrid::kStepS));
+    const double time_s = SplineGrid::kStepS * static_cast<double>(i);
     common[i] = scenario.start_pressure_pa + errors.ramp_pa_s * SplineGrid::kStepS * static_cast<double>(i) +
-                walk + turbulence.step(SplineGrid::kStepS);
+                walk + turbulence.step(SplineGrid::kStepS) + scenario.air.common_ramp.at(time_s) +
+                scenario.air.common_gust.at(time_s);
     robot[i] = at_robot.step(SplineGrid::kStepS);
     base[i] = at_base.step(SplineGrid::kStepS);
     const double climb_m_s =
@@ -90,15 +123,11 @@ Atmosphere::Atmosphere(const Scenario& scenario, const AirErrors& errors, Random
   }
   add_zones(robot, scenario.air.zone, errors.zone_sigma_pa, random);
   if (scenario.air.door_pulses_1_s > 0.0 && errors.pulse_pa > 0.0) {
-    const double mean_s = 1.0 / scenario.air.door_pulses_1_s;
-    for (double t = random.exponential(mean_s); t < SplineGrid::kStepS * static_cast<double>(samples);
-         t += random.exponential(mean_s)) {
-      const double peak = random.sign() * errors.pulse_pa * random.uniform(0.4, 1.6);
-      const double duration_s = random.uniform(0.5, 2.0);
-      add_pulse(robot, t, duration_s, peak);
-      add_pulse(base, t + 0.05, duration_s,
-                peak * random.uniform(0.0, 0.6));  // later and weaker: farther away
-    }
+    add_door_pulses(scenario.air, errors.pulse_pa, robot, base, random);
+  }
+  if (scenario.air.wind_m_s > 0.0) {
+    add_wind(robot, scenario.air.wind_m_s, scenario.air.port_wind_share, Random(random.next()));
+    add_wind(base, scenario.air.wind_m_s, scenario.air.base_wind_share, Random(random.next()));
   }
   common_pa_ = Channel(std::move(common));
   robot_pa_ = Channel(std::move(robot));

@@ -20,7 +20,7 @@ constexpr double kPatchM = 4.0;
 
 int patches(double length_m) { return std::max(1, static_cast<int>(std::ceil(length_m / kPatchM))); }
 
-void add_ground(Mesh& mesh, const CityTerrain& terrain, const Rect& rect, double above_m) {
+void add_ground(Mesh& mesh, const Terrain& terrain, const Rect& rect, double above_m) {
   const int nx = patches(rect.x1 - rect.x0);
   const int ny = patches(rect.y1 - rect.y0);
   const auto point = [&](int i, int j) {
@@ -56,7 +56,7 @@ std::array<Side, 4> sides(const CityGrid& grid, const Crossing& block) {
           Side{frame(r.x1, r.y0, ey, ex), dy, &grid.column(block.x + 1)}};
 }
 
-void add_kerb(Mesh& mesh, const CityTerrain& terrain, const Side& side) {
+void add_kerb(Mesh& mesh, const Terrain& terrain, const Side& side) {
   const int n = patches(side.length_m);
   const auto point = [&](int i, double z) {
     const Vector2d xy = side.kerb.plan(side.length_m * i / n, 0.0);
@@ -69,7 +69,7 @@ void add_kerb(Mesh& mesh, const CityTerrain& terrain, const Side& side) {
 
 /// A row of houses with different fronts and a few alleys between them, from one cross street's building line
 /// to the other's.
-void add_row_of_houses(Mesh& mesh, const CityTerrain& terrain, const Side& side, double from_m, double to_m,
+void add_row_of_houses(Mesh& mesh, const Terrain& terrain, const Side& side, double from_m, double to_m,
                        Random& random) {
   double u = from_m;
   while (to_m - u > 4.0) {
@@ -85,7 +85,7 @@ void add_row_of_houses(Mesh& mesh, const CityTerrain& terrain, const Side& side,
 }
 
 /// An open square: trees, hedges, a kiosk and a monument.
-void add_square(Mesh& mesh, const CityTerrain& terrain, const Rect& rect, Random& random) {
+void add_square(Mesh& mesh, const Terrain& terrain, const Rect& rect, Random& random) {
   const Rect inner = rect.grown(-6.0);
   const auto draw_place = [&] {
     const double x = random.uniform(inner.x0, inner.x1);
@@ -111,7 +111,7 @@ void add_square(Mesh& mesh, const CityTerrain& terrain, const Rect& rect, Random
 
 }  // namespace
 
-void add_block(Mesh& mesh, const CityGrid& grid, const CityTerrain& terrain, const Crossing& block,
+void add_block(Mesh& mesh, const CityGrid& grid, const Terrain& terrain, const Crossing& block,
                std::uint64_t seed) {
   Random random(seed, "city block", static_cast<std::uint64_t>(block.x * 4096 + block.y));
   const Rect cell = grid.cell(block);

@@ -14,7 +14,7 @@ namespace {
 constexpr double kCornerM = 4.5;
 
 /// Level frame at (u, d) of another frame, `above_m` above the terrain.
-CityFrame standing(const CityFrame& frame, double u, double d, const CityTerrain& terrain, double above_m) {
+CityFrame standing(const CityFrame& frame, double u, double d, const Terrain& terrain, double above_m) {
   CityFrame at = frame;
   at.origin_m.head<2>() = frame.plan(u, d);
   at.origin_m.z() = terrain.height_m(at.origin_m.head<2>()) + above_m;
@@ -100,7 +100,7 @@ void add_tree(Mesh& mesh, const Vector3d& foot, Random& random) {
 }
 
 void add_kerbside(Mesh& mesh, const CityFrame& kerb, double length_m, const Street& street,
-                  const CityTerrain& terrain, Random& random) {
+                  const Terrain& terrain, Random& random) {
   const double end_m = length_m - kCornerM;
   for (double u = random.uniform(kCornerM, 15.0); u < end_m; u += random.uniform(22.0, 32.0)) {
     add_lamp(mesh, standing(kerb, u, -0.6, terrain, kKerbM), random);

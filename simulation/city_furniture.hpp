@@ -4,8 +4,8 @@
 
 #include "simulation/city_frame.hpp"
 #include "simulation/city_grid.hpp"
-#include "simulation/city_terrain.hpp"
 #include "simulation/random.hpp"
+#include "simulation/terrain.hpp"
 
 namespace isobar::simulation {
 
@@ -21,6 +21,6 @@ void add_tree(Mesh& mesh, const Eigen::Vector3d& foot, Random& random);
 /// Adds lamps, trees, parked cars, posts, bins and benches along one side of a block. `kerb`: u = 0 …
 /// length_m along the kerb, d > 0 on the carriageway, z = 0 at height 0 of the terrain.
 void add_kerbside(Mesh& mesh, const CityFrame& kerb, double length_m, const Street& street,
-                  const CityTerrain& terrain, Random& random);
+                  const Terrain& terrain, Random& random);
 
 }  // namespace isobar::simulation

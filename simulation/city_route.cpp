@@ -200,15 +200,4 @@ Route drive_city_way(const CityGrid& grid, const CityWay& way, Random& random) {
   return Driver(grid, way, random).drive();
 }
 
-void drape(std::vector<RawPose>& poses, const CityTerrain& terrain) {
-  for (RawPose& pose : poses) {
-    const Vector2d at(pose.x_m, pose.y_m);
-    const Vector2d forward(std::cos(pose.yaw_rad), std::sin(pose.yaw_rad));
-    const Vector2d slope = terrain.slope(at);
-    pose.z_m = terrain.height_m(at);
-    pose.pitch_rad = -std::atan(slope.dot(forward));
-    pose.roll_rad = std::atan(slope.dot(Vector2d(-forward.y(), forward.x())) * std::cos(pose.pitch_rad));
-  }
-}
-
 }  // namespace isobar::simulation

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "simulation/city_grid.hpp"
-#include "simulation/city_terrain.hpp"
 #include "simulation/random.hpp"
 #include "simulation/route.hpp"
 
@@ -33,10 +32,7 @@ struct CityWayWish {
 /// Number of rows that is sufficient for a way.
 [[nodiscard]] int rows_for(const CityWayWish& wish);
 
-/// Planar route along the way (height 0; see drape()), in its lane, slow in corners, with random stops.
+/// Planar route along the way (height 0; see drape() of terrain.hpp), in its lane, slow in corners, with random stops.
 [[nodiscard]] Route drive_city_way(const CityGrid& grid, const CityWay& way, Random& random);
-
-/// Sets height, pitch and roll of poses in plan to those of the terrain.
-void drape(std::vector<RawPose>& poses, const CityTerrain& terrain);
 
 }  // namespace isobar::simulation

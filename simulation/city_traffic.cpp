@@ -57,7 +57,7 @@ Visit find_visit(const CityGrid& grid, const Crossing& a, const Crossing& b,
 }
 
 /// A body on the ground; `s`: its distance along the street per sample [m].
-MovingBody follow(const Mesh& shape, const Visit& visit, const CityTerrain& terrain, double right_m,
+MovingBody follow(const Mesh& shape, const Visit& visit, const Terrain& terrain, double right_m,
                   double above_m, const std::vector<double>& s) {
   std::vector<double> x;
   std::vector<double> y;
@@ -72,7 +72,7 @@ MovingBody follow(const Mesh& shape, const Visit& visit, const CityTerrain& terr
 }
 
 /// A person who walks to and fro along a pavement.
-MovingBody make_pedestrian(const Visit& visit, const CityTerrain& terrain, Random& random) {
+MovingBody make_pedestrian(const Visit& visit, const Terrain& terrain, Random& random) {
   const double end_m = visit.length_m - kPersonMarginM;
   const double side = random.sign();
   const double right_m =
@@ -90,7 +90,7 @@ MovingBody make_pedestrian(const Visit& visit, const CityTerrain& terrain, Rando
 }
 
 /// A car that waits at the far end of the street, drives past the robot and waits again at the near end.
-MovingBody make_oncoming_car(const Visit& visit, const CityTerrain& terrain, Random& random) {
+MovingBody make_oncoming_car(const Visit& visit, const Terrain& terrain, Random& random) {
   const double start_m = visit.length_m - kCarMarginM;
   const double way_m = start_m - kCarMarginM;
   const double duration_s = way_m / random.uniform(4.0, 7.0);
@@ -113,7 +113,7 @@ MovingBody make_oncoming_car(const Visit& visit, const CityTerrain& terrain, Ran
 
 }  // namespace
 
-std::vector<MovingBody> make_traffic(const CityGrid& grid, const CityTerrain& terrain, const CityWay& way,
+std::vector<MovingBody> make_traffic(const CityGrid& grid, const Terrain& terrain, const CityWay& way,
                                      const std::vector<RawPose>& poses, Random& random) {
   std::vector<MovingBody> bodies;
   for (std::size_t i = 0; i + 1 < way.crossings.size(); ++i) {

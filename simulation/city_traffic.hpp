@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "simulation/city_route.hpp"
+#include "simulation/terrain.hpp"
 #include "simulation/world.hpp"
 
 namespace isobar::simulation {
 
 /// Pedestrians and oncoming cars in every street that the way uses exactly once. They exist while the robot
 /// can see the street. `poses`: the robot's motion along `way`, every SplineGrid::kStepS.
-[[nodiscard]] std::vector<MovingBody> make_traffic(const CityGrid& grid, const CityTerrain& terrain,
+[[nodiscard]] std::vector<MovingBody> make_traffic(const CityGrid& grid, const Terrain& terrain,
                                                    const CityWay& way, const std::vector<RawPose>& poses,
                                                    Random& random);
 

@@ -129,6 +129,16 @@ void add_clutter(const Leg& leg, double s0, double s1, double side, Mesh& mesh, 
   }
 }
 
+/// A closed door in a niche of the wall. Returns false if there is no space.
+bool cut_niche(const Leg& leg, double s0, double s1, double side, Storey& storey, Random& random) {
+  const Rect niche =
+      leg.rect(s0, s1, side * leg.half_m(), side * (leg.half_m() + random.uniform(0.06, 0.19)));
+  if (!is_free(storey, niche)) return false;
+  storey.plan.cut({niche, 0.0, kDoorHeightM});
+  storey.taken.push_back(niche);
+  return true;
+}
+
 void add_side(const Leg& leg, double side, double ceiling_m, Storey& storey, Mesh& mesh, Random& random) {
   const double end = leg.length_m() - leg.half_m() - 0.5;
   double s = leg.half_m() + 0.4;
@@ -144,13 +154,7 @@ void add_side(const Leg& leg, double side, double ceiling_m, Storey& storey, Mes
     if (leg.bare(door_s - 2.0, s + 2.0)) continue;
     const bool room =
         random.chance(0.35) && add_room(leg, door_s, width, side, ceiling_m - 0.1, storey, mesh, random);
-    if (!room) {  // a closed door in a niche of the wall
-      const Rect niche =
-          leg.rect(door_s, s, side * leg.half_m(), side * (leg.half_m() + random.uniform(0.06, 0.19)));
-      if (!is_free(storey, niche)) continue;
-      storey.plan.cut({niche, 0.0, kDoorHeightM});
-      storey.taken.push_back(niche);
-    }
+    if (!room && !cut_niche(leg, door_s, s, side, storey, random)) continue;
     add_frame(leg, door_s, s, side, mesh);
   }
 }
@@ -239,6 +243,13 @@ void add_corridor(const Corridor& corridor, Storey& storey, Mesh& mesh, Random& 
       add_fire_door(leg, s, corridor.ceiling_m, mesh);
     }
   }
+}
+
+void add_closed_door(const Corridor& corridor, std::size_t leg, double along_m, double side, Storey& storey,
+                     Mesh& mesh, Random& random) {
+  const Leg on(corridor, leg, storey.z_m);
+  const double end_m = along_m + random.uniform(0.85, 1.0);
+  if (cut_niche(on, along_m, end_m, side, storey, random)) add_frame(on, along_m, end_m, side, mesh);
 }
 
 }  // namespace isobar::simulation

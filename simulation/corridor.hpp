@@ -38,4 +38,10 @@ struct Storey {
 /// Cuts the corridor and its rooms out of the storey's plan, and adds furniture to `mesh`.
 void add_corridor(const Corridor& corridor, Storey& storey, Mesh& mesh, Random& random);
 
+/// Cuts a closed door in a niche of the wall of leg `leg`, `along_m` from its start, into the storey's plan
+/// and adds its frame to `mesh`. `side`: +1: left of the leg, -1: right. Does nothing where another area is in
+/// the way.
+void add_closed_door(const Corridor& corridor, std::size_t leg, double along_m, double side, Storey& storey,
+                     Mesh& mesh, Random& random);
+
 }  // namespace isobar::simulation

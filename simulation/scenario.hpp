@@ -9,6 +9,7 @@
 
 #include "core/geometry.hpp"
 #include "simulation/route.hpp"
+#include "simulation/time_course.hpp"
 #include "simulation/trajectory.hpp"
 #include "simulation/world.hpp"
 
@@ -26,8 +27,15 @@ struct SensorMounts {
 struct AirZones {
   std::vector<int> zone;          ///< ventilated zone that the robot is in, per raw sample
   double door_pulses_1_s = 0.0;   ///< mean rate of door movements nearby
+  double pulse_low_pa = 0.0;      ///< least peak of a door pulse; 0 with pulse_high_pa: drawn by AirErrors
+  double pulse_high_pa = 0.0;     ///< largest peak of a door pulse
   double piston_pa_s_m = 0.0;     ///< piston effect of an elevator: pressure in the cabin per m/s of climb
   double port_coefficient = 0.0;  ///< share of the dynamic pressure of driving that acts on the port
+  double wind_m_s = 0.0;          ///< mean wind outdoors, whose gusts act on both ports; 0: indoors
+  double port_wind_share = 0.0;   ///< share of the wind's dynamic pressure at the robot's port, signed
+  double base_wind_share = 0.0;   ///< the same at the base station's port
+  Ramp common_ramp;               ///< of the pressure at height 0, besides the weather
+  Oscillation common_gust;        ///< the same
 };
 
 /// Input of the sensor models.
@@ -44,12 +52,17 @@ struct Scenario {
   double air_temperature_c = 20.0;       ///< mean over the column of air between base station and robot
   double base_height_m = 1.0;            ///< height of the base station's port in the world frame
   double start_pressure_pa = 101'325.0;  ///< at height 0 and time 0
+  std::vector<TimeSpan> base_silent;     ///< the base station is out of reach
 };
 
 [[nodiscard]] Scenario make_three_floors(std::uint64_t seed, bool short_form);
 [[nodiscard]] Scenario make_elevator(std::uint64_t seed, bool short_form);
 [[nodiscard]] Scenario make_moulin(std::uint64_t seed, bool short_form);
 [[nodiscard]] Scenario make_stairs_demo(std::uint64_t seed, bool short_form);
+[[nodiscard]] Scenario make_hill(std::uint64_t seed, bool short_form);
+[[nodiscard]] Scenario make_parking(std::uint64_t seed, bool short_form);
+[[nodiscard]] Scenario make_stairs(std::uint64_t seed, bool short_form);
+[[nodiscard]] Scenario make_corridor(std::uint64_t seed, bool short_form);
 [[nodiscard]] Scenario make_city(std::uint64_t seed, bool short_form);
 [[nodiscard]] Scenario make_city_10km(std::uint64_t seed, bool short_form);
 [[nodiscard]] Scenario make_city_hour(std::uint64_t seed, bool short_form);

@@ -19,7 +19,7 @@ namespace {
 
 /// Builds only the blocks within the lidar's range of the drive, so that memory grows with its length, not
 /// with the area of the city.
-Mesh build_blocks(const CityGrid& grid, const CityTerrain& terrain, const std::vector<RawPose>& poses,
+Mesh build_blocks(const CityGrid& grid, const Terrain& terrain, const std::vector<RawPose>& poses,
                   std::uint64_t seed) {
   constexpr double kReachM = 105.0;
   std::set<std::pair<int, int>> blocks;
@@ -40,7 +40,7 @@ Mesh build_blocks(const CityGrid& grid, const CityTerrain& terrain, const std::v
 
 Scenario make(const char* name, std::uint64_t seed, const CityWayWish& wish) {
   Random random(seed, name);
-  const CityTerrain terrain(Random(random.next()));
+  const Terrain terrain(Random(random.next()));
   const CityGrid grid(Random(random.next()), wish.columns + 2, rows_for(wish));
   const CityWay way = plan_city_way(grid, wish, random);
   const Route route = drive_city_way(grid, way, random);

@@ -4,16 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <thread>
 
-#include "core/errors.hpp"
 #include "run/recording/recording_writer.hpp"
 #include "simulation/atmosphere.hpp"
 #include "simulation/barometer_model.hpp"
 #include "simulation/imu_model.hpp"
 #include "simulation/lidar_model.hpp"
 #include "simulation/scenario.hpp"
+#include "simulation/scenario_list.hpp"
 #include "simulation/wheel_model.hpp"
 
 namespace isobar::simulation {
@@ -21,35 +22,6 @@ namespace isobar::simulation {
 using recording::RecordingWriter;
 
 namespace {
-
-struct Entry {
-  const char* name;
-  const char* description;
-  Scenario (*make)(std::uint64_t seed, bool short_form);
-};
-
-constexpr std::array kEntries{
-    Entry{"three-floors", "tracked robot, 100 m of corridors on each of three floors, two staircases",
-          make_three_floors},
-    Entry{"elevator", "tracked robot, third floor, elevator to the ground floor, a ramp and back",
-          make_elevator},
-    Entry{"moulin", "hanging sphere, lowered into a shaft of ice and pulled up again", make_moulin},
-    Entry{"stairs-demo", "tracked robot, a corridor, down a staircase to the next floor and on",
-          make_stairs_demo},
-    Entry{"city", "wheeled robot, 2 km of hilly streets with traffic at 6 to 10 m/s", make_city},
-    Entry{"city-10km", "the same over 10 km, nearly all of it through streets never seen before",
-          make_city_10km},
-    Entry{"city-hour", "the same for an hour, 20 km: for runs in real time", make_city_hour},
-};
-
-const Entry& find_entry(const std::string& name) {
-  const auto* found =
-      std::find_if(kEntries.begin(), kEntries.end(), [&](const Entry& entry) { return name == entry.name; });
-  if (found != kEntries.end()) return *found;
-  std::string names;
-  for (const Entry& entry : kEntries) names += (names.empty() ? "" : ", ") + std::string(entry.name);
-  throw UsageError("unknown scenario '" + name + "'; known scenarios: " + names);
-}
 
 /// Clock of a machine: converts the time of the run to stamps.
 struct Clock {
@@ -62,32 +34,64 @@ struct Clock {
   }
 };
 
+/// Mount of a sensor as it is: differs from the manifest, since sensors are mounted by hand and measured with a
+/// ruler, and by the deviation asked for.
+Mount true_mount(const Mount& mount, const ScenarioRequest& request, const std::string& sensor,
+                 double angle_sigma_deg) {
+  Random random(request.seed, sensor + " mount");
+  Mount real = mount;
+  for (int axis = 0; axis < 3; ++axis) real.rpy_deg[axis] += random.normal(angle_sigma_deg);
+  for (int axis = 0; axis < 3; ++axis) real.xyz_m[axis] += random.normal(0.002);
+  Random more(request.seed, sensor + " mount deviation");
+  for (int axis = 0; axis < 3; ++axis) {
+    real.rpy_deg[axis] += more.normal(request.deviations.mount_error_deg);
+  }
+  return real;
+}
+
+Mount true_lidar(const ScenarioRequest& request, const Scenario& scenario) {
+  return true_mount(scenario.mounts.lidar, request, "lidar", 0.05);
+}
+
+Mount true_imu(const ScenarioRequest& request, const Scenario& scenario) {
+  return true_mount(scenario.mounts.imu, request, "imu", 0.1);
+}
+
+bool has_wheels(const ScenarioRequest& request, const Scenario& scenario) {
+  return scenario.has_wheels && !request.deviations.without_wheels;
+}
+
 /// Data common to all sensors of a run.
 struct Run {
-  const Scenario& scenario;
-  std::uint64_t seed;
-  Clock robot;
-  RecordingWriter& writer;
+  Run(const ScenarioRequest& of, const Scenario& in, RecordingWriter& to)
+      : request(of),
+        scenario(in),
+        writer(to),
+        lidar(true_lidar(of, in)),
+        imu(true_imu(of, in)),
+        duration_s(std::min(of.stop_after_s, in.trajectory.duration_s())) {
+    Random start(of.seed, "start");
+    robot.start_ns = 1'700'000'000'000'000'000 + std::llround(start.uniform(0.0, 3e7) * 1e9);
+  }
 
+  const ScenarioRequest& request;
+  const Scenario& scenario;
+  RecordingWriter& writer;
+  Mount lidar;  ///< true
+  Mount imu;    ///< true
   double duration_s;
-  [[nodiscard]] Random random(std::string_view name) const { return Random(seed, name); }
+  Clock robot;
+
+  [[nodiscard]] Random random(std::string_view name) const { return Random(request.seed, name); }
+  [[nodiscard]] const Deviations& deviations() const { return request.deviations; }
 };
 
 /// Delay of a stamp by the scheduling of the machine that takes it.
 double stamp_jitter_s(Random& random) { return std::min(random.exponential(60e-6), 2e-3); }
 
-/// True mount of a sensor: differs from the manifest, since sensors are mounted by hand and measured with a
-/// ruler.
-Eigen::Isometry3d true_mount(const Mount& mount, Random random, double angle_sigma_deg) {
-  Mount real = mount;
-  for (int axis = 0; axis < 3; ++axis) real.rpy_deg[axis] += random.normal(angle_sigma_deg);
-  for (int axis = 0; axis < 3; ++axis) real.xyz_m[axis] += random.normal(0.002);
-  return real.T_base_sensor();
-}
-
 void write_imu(const Run& run) {
   const bool tracked = run.scenario.has_wheels;
-  ImuModel imu(run.scenario.trajectory, true_mount(run.scenario.mounts.imu, run.random("imu mount"), 0.1),
+  ImuModel imu(run.scenario.trajectory, run.imu.T_base_sensor(),
                ImuErrors::draw(run.random("imu errors"), tracked), run.random("imu noise"));
   Random jitter = run.random("imu stamps");
   for (double t = 0.0; t <= run.duration_s; t += 1.0 / ImuModel::kRateHz) {
@@ -109,9 +113,49 @@ void write_wheels(const Run& run) {
   }
 }
 
+/// Whether a base station that sends `rate_hz` of its full rate sends its sample number n.
+bool is_sent(std::uint64_t n, double rate_hz) {
+  const double share = rate_hz / Deviations::kFullBaseRateHz;
+  const auto sent_before = [&](std::uint64_t samples) {
+    return std::floor(share * static_cast<double>(samples));
+  };
+  return sent_before(n + 1) > sent_before(n);
+}
+
+void write_robot_pressure(const Run& run, const Atmosphere& air, BarometerModel& model, double time_s,
+                          Random& jitter) {
+  const BarometerDeviation& deviation = run.deviations().robot;
+  const double middle_s = time_s - 0.5 * BarometerModel::kConversionS;
+  const MotionState state = run.scenario.trajectory.at(middle_s);
+  const double height_m = (state.p_world + state.q_world_base * run.scenario.mounts.pressure_port_m).z();
+  PressureSample sample =
+      model.sample(time_s, air.robot_pa(middle_s, height_m), run.scenario.air_temperature_c);
+  sample.pressure_pa += deviation.drift.at(time_s);
+  sample.temperature_c += deviation.thermometer_offset_k;
+  sample.stamp_ns = run.robot.stamp_ns(time_s + stamp_jitter_s(jitter));
+  if (!run.deviations().without_barometer) run.writer.add_pressure(sample);
+}
+
+void write_base_pressure(const Run& run, const Atmosphere& air, BarometerModel& model, std::uint64_t n,
+                         double time_s, const Clock& clock, Random& jitter) {
+  const BarometerDeviation& deviation = run.deviations().base;
+  PressureSample sample = model.sample(time_s, air.base_pa(time_s - 0.5 * BarometerModel::kConversionS),
+                                       run.scenario.air_temperature_c);
+  sample.pressure_pa += deviation.drift.at(time_s);
+  sample.temperature_c += deviation.thermometer_offset_k;
+  sample.stamp_ns = clock.stamp_ns(time_s + stamp_jitter_s(jitter));
+  const auto& silent = run.scenario.base_silent;
+  if (run.deviations().without_base || !is_sent(n, run.deviations().base_rate_hz) ||
+      std::any_of(silent.begin(), silent.end(),
+                  [&](const TimeSpan& span) { return span.contains(time_s); })) {
+    return;
+  }
+  run.writer.add_base_pressure(sample);
+}
+
 void write_pressure(const Run& run) {
-  const Scenario& scenario = run.scenario;
-  const Atmosphere air(scenario, AirErrors::draw(run.random("air errors")), run.random("air"));
+  static_assert(Deviations::kFullBaseRateHz == BarometerModel::kRateHz);
+  const Atmosphere air(run.scenario, AirErrors::draw(run.random("air errors")), run.random("air"));
   BarometerModel robot(BarometerErrors::draw(run.random("barometer errors"), false),
                        run.random("barometer noise"));
   BarometerModel base(BarometerErrors::draw(run.random("base errors"), true), run.random("base noise"));
@@ -122,18 +166,10 @@ void write_pressure(const Run& run) {
   base_clock.offset_s = random.sign() * std::pow(10.0, random.uniform(-2.3, 0.0));
   base_clock.drift = random.normal(20e-6);
   const double phase_s = random.uniform(0.0, 1.0 / BarometerModel::kRateHz);
+  std::uint64_t n = 0;
   for (double t = 0.01; t <= run.duration_s; t += 1.0 / BarometerModel::kRateHz) {
-    const double middle_s = t - 0.5 * BarometerModel::kConversionS;
-    const MotionState state = scenario.trajectory.at(middle_s);
-    const double height_m = (state.p_world + state.q_world_base * scenario.mounts.pressure_port_m).z();
-    PressureSample sample = robot.sample(t, air.robot_pa(middle_s, height_m), scenario.air_temperature_c);
-    sample.stamp_ns = run.robot.stamp_ns(t + stamp_jitter_s(random));
-    run.writer.add_pressure(sample);
-    const double base_s = t + phase_s;
-    sample = base.sample(base_s, air.base_pa(base_s - 0.5 * BarometerModel::kConversionS),
-                         scenario.air_temperature_c);
-    sample.stamp_ns = base_clock.stamp_ns(base_s + stamp_jitter_s(random));
-    run.writer.add_base_pressure(sample);
+    write_robot_pressure(run, air, robot, t, random);
+    write_base_pressure(run, air, base, n++, t + phase_s, base_clock, random);
   }
 }
 
@@ -154,9 +190,8 @@ void write_truth(const Run& run) {
 
 /// Packets in batches, each split among all cores; a packet depends on its number alone.
 void write_lidar(const Run& run, const std::function<void(double)>& progress) {
-  const LidarModel lidar(run.scenario.world, run.scenario.trajectory,
-                         true_mount(run.scenario.mounts.lidar, run.random("lidar mount"), 0.05),
-                         LidarErrors::draw(run.random("lidar errors")), run.seed);
+  const LidarModel lidar(run.scenario.world, run.scenario.trajectory, run.lidar.T_base_sensor(),
+                         LidarErrors::draw(run.random("lidar errors")), run.request.seed);
   const auto total = static_cast<std::uint64_t>(run.duration_s / LidarModel::packet_time_s(1));
   const std::uint64_t workers = std::clamp(std::thread::hardware_concurrency(), 1U, 16U);
   constexpr std::uint64_t kBatch = 512;
@@ -178,36 +213,56 @@ void write_lidar(const Run& run, const std::function<void(double)>& progress) {
   }
 }
 
+/// "lidar rpy_deg [0.1, -0.2, 0.0] xyz_m [0.1, 0, 0.55]"
+std::string mount_text(const std::string& sensor, const Mount& mount) {
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(), "%s rpy_deg [%.4f, %.4f, %.4f] xyz_m [%.4f, %.4f, %.4f]",
+                sensor.c_str(), mount.rpy_deg.x(), mount.rpy_deg.y(), mount.rpy_deg.z(), mount.xyz_m.x(),
+                mount.xyz_m.y(), mount.xyz_m.z());
+  return text.data();
+}
+
 recording::Manifest make_manifest(const ScenarioRequest& request, const Scenario& scenario) {
+  const Deviations& deviations = request.deviations;
   recording::Manifest manifest = recording::Manifest::with_all_sensors();
   manifest.description = request.name + (request.short_form ? " (short)" : "") + ", seed " +
                          std::to_string(request.seed) + ": " + scenario.description;
+  for (const std::string& option : deviations.options()) manifest.description += "; --" + option;
+  manifest.description += "; true mounts: " + mount_text("lidar", true_lidar(request, scenario)) + ", " +
+                          mount_text("imu", true_imu(request, scenario));
   manifest.lidar->mount = scenario.mounts.lidar;
   manifest.imu->mount = scenario.mounts.imu;
   manifest.barometer->mount.xyz_m = scenario.mounts.pressure_port_m;
-  if (!scenario.has_wheels) manifest.wheel.reset();
+  if (!has_wheels(request, scenario)) manifest.wheel.reset();
+  if (deviations.without_imu) manifest.imu.reset();
+  if (deviations.without_base) manifest.base_barometer.reset();
+  if (deviations.without_barometer) manifest.barometer.reset();
   return manifest;
+}
+
+/// Scenario of a request, with the deviations of its air and its base station.
+Scenario make_scenario(const ScenarioRequest& request) {
+  Scenario scenario = find_scenario(request.name).make(request.seed, request.short_form);
+  scenario.air.common_ramp = request.deviations.common_ramp;
+  scenario.air.common_gust = request.deviations.common_gust;
+  if (request.deviations.base_silent) scenario.base_silent.push_back(*request.deviations.base_silent);
+  return scenario;
 }
 
 }  // namespace
 
-std::vector<ScenarioInfo> scenarios() {
-  std::vector<ScenarioInfo> infos;
-  infos.reserve(kEntries.size());
-  for (const Entry& entry : kEntries) infos.push_back({entry.name, entry.description});
-  return infos;
+std::string recording_name(const ScenarioRequest& request) {
+  return request.name + "-" + std::to_string(request.seed) + (request.short_form ? "-short" : "") +
+         request.deviations.suffix();
 }
 
 void simulate(const ScenarioRequest& request, const std::filesystem::path& out_dir,
               const std::function<void(double)>& progress) {
-  const Scenario scenario = find_entry(request.name).make(request.seed, request.short_form);
+  const Scenario scenario = make_scenario(request);
   RecordingWriter writer(out_dir, make_manifest(request, scenario));
-  Random random(request.seed, "start");
-  Run run{
-      scenario, request.seed, {}, writer, std::min(request.stop_after_s, scenario.trajectory.duration_s())};
-  run.robot.start_ns = 1'700'000'000'000'000'000 + std::llround(random.uniform(0.0, 3e7) * 1e9);
-  write_imu(run);
-  if (scenario.has_wheels) write_wheels(run);
+  const Run run(request, scenario, writer);
+  if (!request.deviations.without_imu) write_imu(run);
+  if (has_wheels(request, scenario)) write_wheels(run);
   write_pressure(run);
   write_truth(run);
   write_lidar(run, progress);

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "simulation/deviations.hpp"
+
 namespace isobar::simulation {
 
 /// Arguments of simulate().
@@ -17,6 +19,7 @@ struct ScenarioRequest {
   std::uint64_t seed = 1;   ///< random seed of world, path and sensor errors
   bool short_form = false;  ///< a reduced run of 30 to 60 s
   double stop_after_s = std::numeric_limits<double>::infinity();  ///< ends the recording at this time
+  Deviations deviations{};  ///< faults asked for, besides the usual errors
 };
 
 /// Name and description of a scenario.
@@ -28,8 +31,12 @@ struct ScenarioInfo {
 /// All scenarios, those of the paper's experiments first.
 [[nodiscard]] std::vector<ScenarioInfo> scenarios();
 
+/// Name of the recording of a request, for files: "SCENARIO-SEED", with "-short" and the deviations.
+[[nodiscard]] std::string recording_name(const ScenarioRequest& request);
+
 /// Writes a complete recording (recording.toml, lidar.pcap, CSV files, reference.tum, segments.csv) to
-/// `out_dir`, which is created if missing. On one machine, the same request gives byte-identical files,
+/// `out_dir`, which is created if missing. The manifest holds the mounts that the robot believes; its
+/// description the deviations and the true mounts. On one machine, the same request gives byte-identical files,
 /// independent of the number of cores. `progress` is called with 0 … 1 from the calling thread; it may be
 /// empty.
 /// @throws UsageError when the scenario is unknown

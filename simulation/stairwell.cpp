@@ -54,6 +54,15 @@ void Stairwell::cut_upper(FloorPlan& storey, double ceiling_m) const {
               false, true});
 }
 
+void Stairwell::cut_middle(FloorPlan& storey) const {
+  const double end = kLandingM + run_m() + kHalfLandingM;
+  const double top = sizes_.storey_m();
+  storey.cut(
+      {Rect::around(plan(0.0, -kHalfLaneM), plan(kLandingM, kLaneGapM + kHalfLaneM)), 0.0, top - kSlabM});
+  storey.cut({Rect::around(plan(kLandingM, -kHalfLaneM), plan(end, kLaneGapM + kHalfLaneM)), 0.0, top, false,
+              false});
+}
+
 void Stairwell::add_flight(Mesh& mesh, double start_u, double direction, double v, double z_m) const {
   const double low = v - kHalfLaneM;
   const double high = v + kHalfLaneM;
@@ -81,7 +90,7 @@ void Stairwell::add_parapet(Mesh& mesh, double start_u, double direction, double
             point(end_u, v, top_z + 0.9), point(start_u, v, z_m + sizes_.rise_m + 0.9), Surface::kMetal);
 }
 
-void Stairwell::build(Mesh& mesh, double z_m) const {
+void Stairwell::build(Mesh& mesh, double z_m, bool goes_on) const {
   const double far_u = kLandingM + run_m();
   const double half_z = z_m + sizes_.flight_m();
   add_flight(mesh, kLandingM, 1.0, 0.0, z_m);
@@ -97,6 +106,7 @@ void Stairwell::build(Mesh& mesh, double z_m) const {
   slab(half_z - 0.2);
   mesh.quad(point(far_u, -kHalfLaneM, half_z - 0.2), point(far_u, kLaneGapM + kHalfLaneM, half_z - 0.2),
             point(far_u, kLaneGapM + kHalfLaneM, half_z), point(far_u, -kHalfLaneM, half_z), kStone);
+  if (goes_on) return;
   // Balustrade of the upper landing, beside the upper flight.
   const double top_z = z_m + sizes_.storey_m();
   mesh.quad(point(kLandingM, -kHalfLaneM, top_z), point(kLandingM, kLaneGapM - kHalfLaneM, top_z),

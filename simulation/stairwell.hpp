@@ -36,8 +36,11 @@ class Stairwell {
   void cut_lower(FloorPlan& plan) const;
   /// Cuts the stairwell out of the plan of the upper storey, whose ceiling is at `ceiling_m`.
   void cut_upper(FloorPlan& plan, double ceiling_m) const;
-  /// Adds steps, landings and parapets. `z_m`: floor of the lower storey.
-  void build(Mesh& mesh, double z_m) const;
+  /// Cuts the stairwell out of the plan of a storey from which stairs lead up and down.
+  void cut_middle(FloorPlan& plan) const;
+  /// Adds steps, landings and parapets. `z_m`: floor of the lower storey; `goes_on`: more stairs lead up from
+  /// the upper storey, so that no balustrade closes its landing.
+  void build(Mesh& mesh, double z_m, bool goes_on = false) const;
   /// Appends the way from the corridor's end on the lower storey to that on the upper one. `z_m`: as in
   /// build().
   void route_up(std::vector<Waypoint>& way, double z_m, double speed_m_s) const;

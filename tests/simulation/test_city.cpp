@@ -11,9 +11,9 @@
 #include "simulation/city_block.hpp"
 #include "simulation/city_furniture.hpp"
 #include "simulation/city_route.hpp"
-#include "simulation/city_terrain.hpp"
 #include "simulation/city_traffic.hpp"
 #include "simulation/scenario.hpp"
+#include "simulation/terrain.hpp"
 
 namespace isobar::test::test_city {
 
@@ -60,7 +60,7 @@ TEST_CASE(
     "the terrain is 0 at the origin, never steeper than 6 %, and its slope is the derivative of its height") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Random random(seed);
-    const CityTerrain terrain{Random(random.next())};
+    const Terrain terrain{Random(random.next())};
     CHECK(terrain.height_m(Vector2d::Zero()) == doctest::Approx(0.0));
     double steepest = 0.0;
     double worst = 0.0;
@@ -75,7 +75,7 @@ TEST_CASE(
                              terrain.height_m(at + dy) - terrain.height_m(at - dy));
       worst = std::max(worst, (slope - numeric / (2.0 * kH)).norm());
     }
-    CHECK(steepest <= CityTerrain::kSteepest);
+    CHECK(steepest <= Terrain::kSteepest);
     CHECK(steepest > 0.03);  // not flat
     CHECK(worst < 1e-8);     // h^2 times the third derivative: 1e-4 * 1e-5, plus rounding
   }
@@ -117,7 +117,7 @@ TEST_CASE(
 
 TEST_CASE("a block does not depend on what else is built, and differs from its neighbour") {
   Random random(3);
-  const CityTerrain terrain{Random(random.next())};
+  const Terrain terrain{Random(random.next())};
   const CityGrid grid(Random(random.next()), 5, 5);
   Mesh alone;
   add_block(alone, grid, terrain, {2, 1}, 77);
@@ -138,7 +138,7 @@ TEST_CASE("a block does not depend on what else is built, and differs from its n
 
 TEST_CASE("seen from above, streets and pavements lie on the terrain and houses stand on it") {
   Random random(8);
-  const CityTerrain terrain{Random(random.next())};
+  const Terrain terrain{Random(random.next())};
   const CityGrid grid(Random(random.next()), 4, 4);
   Mesh mesh;
   add_block(mesh, grid, terrain, {1, 1}, 5);
@@ -227,7 +227,7 @@ TEST_CASE(
 TEST_CASE("traffic moves on the ground, exists while the robot is near, and on both sides of the way") {
   Random random(4);
   const CityWayWish wish{3, 400.0, 0.0};
-  const CityTerrain terrain{Random(random.next())};
+  const Terrain terrain{Random(random.next())};
   const CityGrid grid(Random(random.next()), wish.columns + 2, rows_for(wish));
   const CityWay way = plan_city_way(grid, wish, random);
   std::vector<RawPose> poses = drive_city_way(grid, way, random).samples();

@@ -76,7 +76,9 @@ TEST_CASE("in every building, the robot stays clear of walls and people and on t
   };
   for (const Case& test :
        {Case{make_three_floors, true}, Case{make_three_floors, false}, Case{make_stairs_demo, false},
-        Case{make_stairs_demo, true}, Case{make_elevator, true}, Case{make_elevator, false}}) {
+        Case{make_stairs_demo, true}, Case{make_elevator, true}, Case{make_elevator, false},
+        Case{make_stairs, true}, Case{make_stairs, false}, Case{make_corridor, true},
+        Case{make_corridor, false}, Case{make_parking, true}, Case{make_parking, false}}) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const Scenario scenario = test.make(seed, test.short_form);
       CAPTURE(scenario.description);
@@ -108,8 +110,10 @@ TEST_CASE("three-floors is the paper's run: 311 m of corridors, 12 m of height, 
 }
 
 TEST_CASE("short forms last 30 to 90 s; full runs start with 3 to 8 s at rest") {
-  for (const auto make : {make_three_floors, make_elevator, make_moulin, make_stairs_demo, make_city}) {
+  for (const auto make : {make_three_floors, make_elevator, make_moulin, make_stairs_demo, make_hill,
+                          make_parking, make_stairs, make_corridor, make_city}) {
     const Scenario brief = make(4, true);
+    CAPTURE(brief.description);
     CHECK(brief.trajectory.duration_s() > 30.0);
     CHECK(brief.trajectory.duration_s() < 90.0);
     const Scenario whole = make(4, false);
