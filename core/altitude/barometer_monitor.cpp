@@ -13,6 +13,8 @@ namespace {
 // Tolerated silence, and time without a change of the value, in the sensor's own sample intervals.
 constexpr double kSilentIntervals = 3.0;
 constexpr double kUnchangedIntervals = 6.0;
+// Tolerated silence after the first sample, while the interval is unknown: base stations send at 1 Hz and faster.
+constexpr double kFirstSilenceS = 3.0;
 // Longest interval that is learnt: a slower sensor counts as lost between two samples.
 constexpr double kLongestIntervalS = 10.0;
 // Gain of the interval's exponential mean: a memory of ten samples.
@@ -75,7 +77,8 @@ double BarometerMonitor::stuck_after_s() const {
 }
 
 BarometerFault BarometerMonitor::fault(std::int64_t now_ns) const {
-  const double silent_s = std::max(config_.silent_timeout_s, kSilentIntervals * interval_s_);
+  const double tolerated_s = interval_s_ > 0.0 ? kSilentIntervals * interval_s_ : kFirstSilenceS;
+  const double silent_s = std::max(config_.silent_timeout_s, tolerated_s);
   if (!heard_ || seconds_between(arrived_ns_, now_ns) > silent_s) return BarometerFault::kOff;
   if (refusing_ && seconds_between(refused_since_ns_, now_ns) > kRefusedS) return BarometerFault::kWrong;
   if (gate_.started() && seconds_between(gate_.fresh_stamp_ns(), gate_.alive_stamp_ns()) > stuck_after_s())

@@ -2,6 +2,7 @@
 // Fault detection of one barometer from its samples.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "core/altitude/altitude_config.hpp"
@@ -43,6 +44,8 @@ class BarometerMonitor {
   [[nodiscard]] bool lost(std::int64_t now_ns, double timeout_s) const;
 
   [[nodiscard]] const PressureGate& gate() const { return gate_; }
+  /// Learnt interval between new values [s]; 0: unknown.
+  [[nodiscard]] double interval_s() const { return std::max(interval_s_, fresh_interval_s_); }
   void restart_clock();
 
  private:

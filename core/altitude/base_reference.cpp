@@ -49,9 +49,17 @@ void BaseReference::describe(HeightDatum& datum) const {
   }
 }
 
-PressureStatus BaseReference::add(const PressureSample& sample, std::int64_t now_ns) {
+PressureStatus BaseReference::add(const PressureSample& sample, std::int64_t now_ns, double air_log) {
   if (sample.station >= kStations) return PressureStatus::kBadValue;
-  return stations_[sample.station].add(sample, now_ns);
+  return stations_[sample.station].add(sample, now_ns, air_log);
+}
+
+std::optional<BaseReference::Sample> BaseReference::reference_sample(std::size_t station,
+                                                                     std::int64_t now_ns) const {
+  if (state_ != State::kPresent || station != active_ || !usable(station, now_ns)) return std::nullopt;
+  const BaseStation& source = stations_[station];
+  if (!source.used_last()) return std::nullopt;
+  return Sample{source.sample_log() + offset_log_[station], source.sample_variance()};
 }
 
 void BaseReference::restart_clock() {

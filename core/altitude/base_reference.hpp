@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "core/altitude/altitude_config.hpp"
 #include "core/altitude/base_station.hpp"
@@ -39,7 +40,18 @@ class BaseReference {
   /// Fills the base stations of the datum.
   void describe(HeightDatum& datum) const;
 
-  PressureStatus add(const PressureSample& sample, std::int64_t now_ns);
+  /// `air_log`: see BaseStation::add().
+  PressureStatus add(const PressureSample& sample, std::int64_t now_ns, double air_log);
+
+  /// The sample added last, if it belongs to the reference: ln of its pressure [Pa] in the datum of log_pa(), but
+  /// not smoothed, and its relative variance. Null otherwise.
+  struct Sample {
+    double log_pa = 0.0;
+    double variance = 0.0;
+  };
+  [[nodiscard]] std::optional<Sample> reference_sample(std::size_t station, std::int64_t now_ns) const;
+  /// Learnt sample interval of the reference station [s]; 0: unknown.
+  [[nodiscard]] double interval_s() const { return stations_[active_].interval_s(); }
 
   /// Call with every robot sample. `witness_log`: ln of the robot's pressure reduced to a common height by
   /// dead reckoning; NaN without dead reckoning.

@@ -25,6 +25,9 @@ constexpr double kNewLevelS = 5.0;
 constexpr double kLevelSamples = 30.0;
 // A jump that lasts longer is a fault, not a gust.
 constexpr double kJumpFaultS = 1.0;
+// Upper bound of the filter's lag: at 1 Hz the walk alone would give 8 s, behind which a common ramp of 1 Pa/s is
+// 8 Pa.
+constexpr double kLongestLagS = 1.5;
 
 }  // namespace
 
@@ -37,7 +40,8 @@ BaseStation::BaseStation(const AltimeterConfig& config)
       monitor_(config),
       noise_({config.initial_noise_pa, config.noise_floor_pa, config.noise_ceiling_pa,
               NoiseEstimator::kBarometerMemorySamples}),
-      filter_(config.base_walk_pa_sqrt_s) {}
+      filter_(config.base_walk_pa_sqrt_s, kLongestLagS),
+      air_(config.base_walk_pa_sqrt_s, kLongestLagS) {}
 
 double BaseStation::value() const { return std::log(filter_.pressure_pa()) - jump_log_; }
 
@@ -70,28 +74,49 @@ BarometerFault BaseStation::fault(std::int64_t now_ns) const {
 
 void BaseStation::restart_clock() {
   monitor_.restart_clock();
-  jumping_ = false;
+  jumping_ = used_last_ = false;
   // The elapsed time, and so the change by weather, is unknown: the filter starts again.
-  filter_.restart();
+  restart_filter();
 }
 
-PressureStatus BaseStation::add(const PressureSample& sample, std::int64_t now_ns) {
+void BaseStation::restart_filter() {
+  filter_.restart();
+  air_.restart();
+}
+
+// The robot's air with the same gain, so that what is common to both stays so.
+void BaseStation::filter(double pressure_pa, double air_pa, double gap_s, double noise_variance_pa2) {
+  filter_.add(pressure_pa, gap_s, noise_variance_pa2);
+  if (std::isfinite(air_pa)) {
+    air_.add(air_pa, gap_s, noise_variance_pa2);
+  } else {
+    air_.restart();
+  }
+}
+
+PressureStatus BaseStation::add(const PressureSample& sample, std::int64_t now_ns, double air_log) {
+  used_last_ = false;
   if (plausible_stamp(sample.stamp_ns) && seconds_between(sample.stamp_ns, now_ns) > config_.base_timeout_s)
     return PressureStatus::kStale;
   const PressureStatus status = monitor_.check(sample, now_ns);
   if (status != PressureStatus::kAccepted) return status;
   const double gap_s = std::max(0.0, seconds_between(used_ns_, sample.stamp_ns));
+  const double air_pa = std::exp(air_log);
   if (!filter_.started()) {
     since_ns_ = sample.stamp_ns;
     noise_.restart();
   } else if (!jumping_ && gap_s > config_.base_timeout_s) {
     rejoin(sample, gap_s);
-  } else if (jumps(sample, gap_s, noise_variance_pa2(sample, noise_, config_))) {
+  } else if (jumps(sample, gap_s, noise_variance_pa2(sample, noise_, config_), air_pa)) {
     return status;
   }
   noise_.add(sample.pressure_pa);
-  filter_.add(sample.pressure_pa, gap_s, noise_variance_pa2(sample, noise_, config_));
+  const double variance_pa2 = noise_variance_pa2(sample, noise_, config_);
+  filter(sample.pressure_pa, air_pa, gap_s, variance_pa2);
   used_ns_ = sample.stamp_ns;
+  sample_log_ = std::log(sample.pressure_pa) - jump_log_;
+  sample_variance_ = variance_pa2 / squared(sample.pressure_pa);
+  used_last_ = true;
   return status;
 }
 
@@ -100,16 +125,21 @@ void BaseStation::rejoin(const PressureSample& sample, double gap_s) {
   const double moved_pa = sample.pressure_pa - filter_.pressure_pa();
   if (std::abs(moved_pa) > kStillPa + kLargestWeatherSigmas * weather_sigma_pa(gap_s))
     settle(sample.pressure_pa);
-  filter_.restart();
+  restart_filter();
   noise_.restart();
   since_ns_ = sample.stamp_ns;
 }
 
-bool BaseStation::jumps(const PressureSample& sample, double gap_s, double noise_variance_pa2) {
+bool BaseStation::jumps(const PressureSample& sample, double gap_s, double noise_variance_pa2,
+                        double air_pa) {
   const double still_pa = std::max(kStillPa, kNoiseSigmas * std::sqrt(noise_variance_pa2));
   const double allowed_pa =
       still_pa + (gap_s > kSettlingS ? kLargestWeatherSigmas * weather_sigma_pa(gap_s) : 0.0);
-  if (std::abs(sample.pressure_pa - filter_.pressure_pa()) <= allowed_pa) {
+  const double moved_pa = sample.pressure_pa - filter_.pressure_pa();
+  // Change of the robot's air since the filter's level. A disturbance of the robot alone cannot make a jump here:
+  // both differences must be large.
+  const double common_pa = std::isfinite(air_pa) && air_.started() ? air_pa - air_.pressure_pa() : 0.0;
+  if (std::abs(moved_pa) <= allowed_pa || std::abs(moved_pa - common_pa) <= allowed_pa) {
     jumping_ = false;
     return false;
   }
@@ -131,8 +161,8 @@ bool BaseStation::jumps(const PressureSample& sample, double gap_s, double noise
   if (seconds_between(candidate_ns_, sample.stamp_ns) < kNewLevelS) return true;
   settle(candidate_pa_);
   jumping_ = false;
-  filter_.restart();
-  filter_.add(candidate_pa_, 0.0, noise_variance_pa2 / candidate_count_);
+  restart_filter();
+  filter(candidate_pa_, air_pa, 0.0, noise_variance_pa2 / candidate_count_);
   noise_.restart();
   since_ns_ = sample.stamp_ns;
   return false;

@@ -18,17 +18,29 @@ double weather_sigma_pa(double age_s);
 inline constexpr double kLargestWeatherSigmas = 4.0;
 
 /// Kalman filter that runs on the station's stamps and holds its value between samples, so that slow and
-/// delayed stations are usable.
+/// delayed stations are usable. Its lag is bounded, also at 1 Hz.
 ///
-/// A static barometer does not jump: values that no weather explains (a gust into the housing, a door, a
-/// fault) are left out and the last good value is held. A lasting new level is followed without moving the
-/// reference: the jump is stored as an offset, which is dropped when the station returns to its old level.
+/// A static barometer does not jump: values that neither weather nor the robot's own barometer explains (a gust
+/// into the housing, a door, a fault) are left out and the last good value is held. What the robot's air does, too,
+/// is no fault: a ramp or a gust over the whole site. For that comparison the robot's pressure passes the same
+/// filter at the same times. A lasting new level is followed without moving the reference: the jump is stored as an
+/// offset, which is dropped when the station returns to its old level.
 class BaseStation {
  public:
   explicit BaseStation(const AltimeterConfig& config);
 
-  /// `now_ns`: robot clock at arrival, to refuse stale samples.
-  PressureStatus add(const PressureSample& sample, std::int64_t now_ns);
+  /// `now_ns`: robot clock at arrival, to refuse stale samples. `air_log`: ln of the robot's pressure [Pa] at the
+  /// sample's time, its own climb subtracted; NaN: unknown.
+  PressureStatus add(const PressureSample& sample, std::int64_t now_ns, double air_log);
+
+  /// True if the last sample added is in the filter: neither refused nor a jump.
+  [[nodiscard]] bool used_last() const { return used_last_; }
+  /// ln of that sample [Pa] without jumps, not smoothed.
+  [[nodiscard]] double sample_log() const { return sample_log_; }
+  /// Relative variance of that sample.
+  [[nodiscard]] double sample_variance() const { return sample_variance_; }
+  /// Learnt sample interval [s]; 0: unknown.
+  [[nodiscard]] double interval_s() const { return monitor_.interval_s(); }
 
   /// ln of the pressure [Pa] without jumps: changes with the weather alone.
   [[nodiscard]] double value() const;
@@ -49,13 +61,16 @@ class BaseStation {
 
  private:
   void rejoin(const PressureSample& sample, double gap_s);
-  bool jumps(const PressureSample& sample, double gap_s, double noise_variance_pa2);
+  bool jumps(const PressureSample& sample, double gap_s, double noise_variance_pa2, double air_pa);
   void settle(double pressure_pa);
+  void filter(double pressure_pa, double air_pa, double gap_s, double noise_variance_pa2);
+  void restart_filter();
 
   AltimeterConfig config_;
   BarometerMonitor monitor_;
   NoiseEstimator noise_;
   PressureFilter filter_;
+  PressureFilter air_;            // the robot's, climb subtracted, at this station's times
   double jump_log_ = 0.0;         // sum of followed jumps, subtracted in value()
   double level_pa_ = 0.0;         // filtered pressure before the first jump
   double candidate_pa_ = 0.0;     // mean of the samples at a possible new level
@@ -65,7 +80,10 @@ class BaseStation {
   std::int64_t level_ns_ = 0;
   std::int64_t jumping_ns_ = 0;
   std::int64_t candidate_ns_ = 0;
+  double sample_log_ = 0.0;
+  double sample_variance_ = 0.0;
   bool jumping_ = false;
+  bool used_last_ = false;
 };
 
 }  // namespace isobar

@@ -10,6 +10,7 @@
 #include "core/altitude/barometer_monitor.hpp"
 #include "core/altitude/base_reference.hpp"
 #include "core/altitude/noise_estimator.hpp"
+#include "core/altitude/pressure_pairs.hpp"
 #include "core/estimates.hpp"
 #include "core/samples.hpp"
 
@@ -17,8 +18,10 @@ namespace isobar {
 
 /// One height, with what a filter needs to use it.
 struct AltimeterReading {
+  /// Time of the height: with a base station that of its sample, up to seconds ago.
   std::int64_t stamp_ns = 0;
   double height_m = 0.0;           ///< of the port above its height at the first reading
+  double climb_since_m = 0.0;      ///< climb of the port from stamp_ns to the robot's sample, see set_climb()
   double noise_variance_m2 = 0.0;  ///< white noise of this reading
   double scale_m = 1.0;            ///< scale height: height_m = scale_m ln(reference / pressure)
   /// Total: noise of this and of the first reading, age of the base station's pressure, air temperature.
@@ -29,11 +32,18 @@ struct AltimeterReading {
   ReferenceEvent event = ReferenceEvent::kNone;
   /// Step of height_m at kBaseReturned and kBaseSwitched.
   double weather_shift_m = 0.0;
+  /// False: the base station's sample of that time is still to come, so that there is no height yet.
+  bool complete = true;
 };
 
 /// Hypsometric height of the robot's barometer against the base station's, or, without a base station,
 /// against the robot's own first pressure (see `source`). Continuous when a base station joins or jumps;
 /// steps by weather_shift_m when one returns or takes over.
+///
+/// While a base station sends, heights come from simultaneous pressures (PressurePairs): as many a second as the
+/// slower of both barometers has samples. When it pauses they come from the robot's pressure against the last
+/// smoothed reference, with the weather's variance. A height belongs to stamp_ns: the robot's motion is never
+/// delayed, but dated.
 class DifferentialAltimeter {
  public:
   explicit DifferentialAltimeter(const AltimeterConfig& config);
@@ -51,6 +61,9 @@ class DifferentialAltimeter {
   /// Height of the port by dead reckoning [m]; NaN where it is invalid (no wheels, an elevator). Lets the
   /// robot's barometer decide between two base stations.
   void set_witness(double height_m) { witness_m_ = height_m; }
+
+  /// Climb of the port by accelerometer, wheels and attitude, from any zero [m], at the robot's next sample.
+  void set_climb(double climb_m) { climb_m_ = climb_m; }
 
   /// `sample.stamp_ns`: robot clock.
   PressureStatus add_base(const PressureSample& sample);
@@ -79,18 +92,25 @@ class DifferentialAltimeter {
  private:
   void learn_noise(const PressureSample& sample, double gap_s);
   void fill_height(const PressureSample& sample, AltimeterReading& out) const;
+  void fill_pair(const PressureSample& sample, const PressurePairs::Mean& pair, AltimeterReading& out) const;
+  void fill_variance(std::int64_t stamp_ns, double pressure_pa, AltimeterReading& out) const;
+  [[nodiscard]] double air_log(std::int64_t stamp_ns) const;
+  [[nodiscard]] bool pausing(std::int64_t now_ns) const;
 
   AltimeterConfig config_;
   BarometerMonitor robot_;
   NoiseEstimator robot_noise_;
   BaseReference base_;
   AirTemperatureTracker air_;
+  PressurePairs pairs_;
+  double climb_m_ = 0.0;
   double first_height_m_ = 0.0;  // of the port at the first reading
   double witness_m_ = std::numeric_limits<double>::quiet_NaN();
   double last_pa_ = 0.0;
   double first_noise_variance_m2_ = 0.0;
   std::int64_t now_ns_ = 0;
   std::int64_t first_stamp_ns_ = 0;  // of the robot
+  std::int64_t paired_ns_ = 0;       // last robot sample with a pair
   bool started_ = false;
 };
 

@@ -2,6 +2,9 @@
 // Scalar Kalman filter of a random-walk pressure: the paper's low-pass.
 #pragma once
 
+#include <algorithm>
+#include <limits>
+
 #include "core/squared.hpp"
 
 namespace isobar {
@@ -11,8 +14,11 @@ namespace isobar {
 /// wanted lag.
 class PressureFilter {
  public:
-  /// `walk_pa_sqrt_s`: random walk of the true pressure [Pa/sqrt(s)], > 0.
-  explicit PressureFilter(double walk_pa_sqrt_s) : walk_variance_pa2_s_(squared(walk_pa_sqrt_s)) {}
+  /// `walk_pa_sqrt_s`: random walk of the true pressure [Pa/sqrt(s)], > 0. `longest_lag_s`: upper bound of the time
+  /// constant in steady state [s], by a larger walk where samples are few or noisy.
+  explicit PressureFilter(double walk_pa_sqrt_s,
+                          double longest_lag_s = std::numeric_limits<double>::infinity())
+      : walk_variance_pa2_s_(squared(walk_pa_sqrt_s)), longest_lag_s_(longest_lag_s) {}
 
   /// Updates with a sample `dt_s` (>= 0) after the previous one, of white noise `noise_variance_pa2` (> 0).
   void add(double pressure_pa, double dt_s, double noise_variance_pa2) {
@@ -23,7 +29,9 @@ class PressureFilter {
       started_ = true;
       return;
     }
-    variance_pa2_ += walk_variance_pa2_s_ * dt_s;
+    // Time constant sqrt(R dt / q): q >= R dt / lag^2 bounds it.
+    variance_pa2_ +=
+        std::max(walk_variance_pa2_s_, noise_variance_pa2 * dt_s / squared(longest_lag_s_)) * dt_s;
     const double gain = variance_pa2_ / (variance_pa2_ + noise_variance_pa2);
     pressure_pa_ += gain * (pressure_pa - pressure_pa_);
     variance_pa2_ *= 1.0 - gain;
@@ -42,6 +50,7 @@ class PressureFilter {
 
  private:
   double walk_variance_pa2_s_;
+  double longest_lag_s_;
   double pressure_pa_ = 0.0;
   double variance_pa2_ = 0.0;
   double delay_s_ = 0.0;

@@ -37,8 +37,8 @@ constexpr double kHeldS = 0.5;
 // Share of the weather's standard deviation added to the reported variance: the filter's own is too small,
 // because the wheels' correlated errors hinder the separation of weather and climb.
 constexpr double kWeatherDoubt = 0.5;
-// Largest delay of a pressure sample that is compensated.
-constexpr double kMaxDelayS = 1.0;
+// Largest delay of a pressure that is compensated: that of a base station's sample.
+constexpr double kMaxDelayS = 6.0;
 // Limits between ramp and step: change of the innovation while gated, as a share of the innovation and in
 // metres. A ramp exceeds both.
 constexpr double kRampShare = 0.5;

@@ -113,6 +113,8 @@ void PriorEstimator::add_pressure(const PressureSample& measured) {
                                             s.counters.pressure_without_temperature);
   AltimeterReading reading;
   s.altimeter.set_witness(s.witness_m());
+  const double lever_m = s.above_base(s.config.p_base_port - s.p_base_imu);
+  s.altimeter.set_climb(s.climbed_m + lever_m);
   switch (s.altimeter.add_robot(sample, reading)) {
     case PressureStatus::kBadValue:
       ++s.counters.pressure_bad_value;
@@ -131,9 +133,12 @@ void PriorEstimator::add_pressure(const PressureSample& measured) {
   if (reading.event == ReferenceEvent::kBaseLost) ++s.counters.base_lost;
   if (reading.event == ReferenceEvent::kBaseSwitched) ++s.counters.base_switched;
   s.reading_source = reading.source;
+  if (!reading.complete) return;
   s.reading_m = reading.height_m;
   if (!s.attitude.started() || !s.height.started()) return;
-  const double lever_m = s.above_base(s.config.p_base_port - s.p_base_imu);
+  // The filter extrapolates with its present speed: what the acceleration has changed since is added here.
+  const double delay_s = seconds_between(reading.stamp_ns, s.imu_gate.stamp_ns());
+  if (delay_s > 0.0) reading.height_m += reading.climb_since_m - s.height.vz_m_s() * delay_s;
   const PressureUse use = s.height.update_pressure(reading, lever_m, s.imu_gate.stamp_ns());
   if (use == PressureUse::kGated) ++s.counters.pressure_gated;
   if (use == PressureUse::kStep) ++s.counters.pressure_steps;

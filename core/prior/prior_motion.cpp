@@ -33,6 +33,8 @@ constexpr double kUnseenClimbMS = 0.25;
 // Unseen climb that stairs do not explain, and the vertical speed of an elevator, 1 sigma.
 constexpr double kRideM = 0.6;
 constexpr double kRideSigmaMS = 0.7;
+// Fastest lift in a high building; more is a shock to the accelerometer.
+constexpr double kFastestClimbMS = 10.0;
 // Speed of the wheels below which a robot stands.
 constexpr double kStandMS = 0.05;
 // Height from one pressure against the base station, with turbulence, 1 sigma.
@@ -232,6 +234,7 @@ void PriorEstimator::State::step(const Eigen::Vector3d& gyro, const Eigen::Vecto
     height.predict(up_accel, dt_s, noise.up_accel_density(dt_s));
     use_standstill(gyro, force, dt_s, on_wheels);
   }
+  if (height.started()) climbed_m += std::clamp(height.vz_m_s(), -kFastestClimbMS, kFastestClimbMS) * dt_s;
   use_wheels(stamp_ns, dt_s, on_wheels);
   const bool pressure_lost = altimeter.robot_lost(stamp_ns, config.height.barometer_timeout_s);
   if (!gap) use_climb(dt_s, on_wheels, pressure_lost);

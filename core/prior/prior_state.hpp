@@ -71,6 +71,7 @@ struct PriorEstimator::State {
   double since_bounded_s = 0.0;                           // since the last bounded-velocity update
   HeightSource reading_source = HeightSource::kNone;      // of the last altimeter reading
   double reading_m = 0.0;                                 // of the last altimeter reading
+  double climbed_m = 0.0;                                 // integral of the height filter's vertical speed
   std::int64_t height_start_ns = 0;
   HeightDatum resumed;          // of an earlier run; !known: none
   std::int64_t aligned_ns = 0;  // first alignment; 0: not yet

@@ -66,6 +66,7 @@ std::vector<Row> run(const Scene& scene, unsigned seed = 3) {
     row.t = t;
     const double pa = hypsometric_pressure_pa(ground_pa, 2.0, kAirK) + 80.0 + noise(random);
     if (altimeter.add_robot({at(t), pa, 20.0}, row.reading) != PressureStatus::kAccepted) continue;
+    if (!row.reading.complete) continue;
     for (std::size_t k = 0; k < 2; ++k) row.fault[k] = altimeter.base_fault(k);
     row.active = altimeter.base_active();
     row.usable = altimeter.base_usable_count();
@@ -113,9 +114,9 @@ TEST_CASE("with a base station, weather of 3 hPa in three hours moves the height
   scene.hz = 2.0;
   const auto rows = run(scene);
   for (double t = 60.0; t < 10'790.0; t += 30.0)
-    CHECK(std::abs(height_at(rows, t) - height_at(rows, 60.0)) < 0.03 + 0.03);
-  // 3 cm more for noise: six samples leave 0.35 Pa / sqrt(6), 1.2 cm, at each end. Means over 100 s need
-  // none:
+    CHECK(std::abs(height_at(rows, t) - height_at(rows, 60.0)) < 0.03 + 0.06);
+  // 6 cm more for noise: six pairs of samples leave 0.35 Pa / sqrt(3), 1.7 cm, at each end, 2.4 cm together.
+  // Means over 100 s need none:
   double late = 0.0;
   double early = 0.0;
   for (int i = 0; i < 200; ++i) {

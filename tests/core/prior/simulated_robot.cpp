@@ -100,7 +100,7 @@ struct Generator {
     turbulence[sensor] = keep * turbulence[sensor] + e.turbulence * std::sqrt(1.0 - keep * keep) * draw();
     turbulence_t[sensor] = t;
     const double warm = 1.0 - std::exp(-t / 300.0);
-    double pa = kBasePa + e.weather_pa_s * t;
+    double pa = kBasePa + e.weather_pa_s * t + robot.common_pa(t);
     if (sensor == 0) {
       const Pose pose = robot.motion(t);
       const double z = (pose.p + pose.q * robot.p_base_port).z();

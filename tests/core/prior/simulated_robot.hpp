@@ -91,6 +91,7 @@ struct SimulatedRobot {
   Eigen::Isometry3d T_base_imu = Eigen::Isometry3d(Eigen::Translation3d(0.05, 0.02, 0.2));
   Eigen::Vector3d p_base_port{-0.2, 0.05, 0.3};
   std::function<double(double)> extra_robot_pa = [](double) { return 0.0; };  ///< doors, ventilation zones
+  std::function<double(double)> common_pa = [](double) { return 0.0; };       ///< at robot and base station
   std::function<bool(double)> base_on = [](double) { return true; };
   std::function<bool(double)> robot_on = [](double) { return true; };
   std::function<bool(double)> imu_on = [](double) { return true; };

@@ -95,7 +95,7 @@ TEST_CASE("the pulse of a slamming door is rejected") {
   // 40 Pa are 3.4 m.
   CHECK(std::abs(error_at(comparisons, 31.4) - error_at(comparisons, 29.9)) < 0.05);
   CHECK(std::abs(error_at(comparisons, 34.0) - error_at(comparisons, 29.9)) < 0.05);
-  CHECK(counters.pressure_gated > 40);
+  CHECK(counters.pressure_gated >= 12);  // 1.5 s at eight heights a second
   CHECK(counters.pressure_steps == 0);
   CHECK(counters.moving_ground == 0);
 }
