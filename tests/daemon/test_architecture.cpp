@@ -81,7 +81,8 @@ const std::map<std::string, Names> kMayIncludeInCore{
     {"core/calibration", {"core/altitude", "core/statistics"}},
     {"core/map", {}},
     {"core/prior", {"core/altitude"}},
-    {"core/registration", {"core/map", "core/prior"}},
+    {"core/mounts", {"core/prior"}},
+    {"core/registration", {"core/map", "core/mounts", "core/prior"}},
 };
 
 /// Libraries and the places that may include them. A library that is not listed may be included anywhere.
