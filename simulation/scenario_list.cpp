@@ -30,8 +30,8 @@ constexpr std::array kEntries{
                   make_corridor},
     ScenarioEntry{"city", "wheeled robot, 2 km of hilly streets with traffic at 6 to 10 m/s", make_city},
     ScenarioEntry{"city-10km", "the same over 10 km, nearly all of it through streets never seen before",
-                  make_city_10km},
-    ScenarioEntry{"city-hour", "the same for an hour, 20 km: for runs in real time", make_city_hour},
+                  make_city_10km, true},
+    ScenarioEntry{"city-hour", "the same for an hour, 20 km: for runs in real time", make_city_hour, true},
 };
 
 }  // namespace
@@ -48,7 +48,7 @@ const ScenarioEntry& find_scenario(const std::string& name) {
 std::vector<ScenarioInfo> scenarios() {
   std::vector<ScenarioInfo> infos;
   infos.reserve(kEntries.size());
-  for (const ScenarioEntry& entry : kEntries) infos.push_back({entry.name, entry.description});
+  for (const ScenarioEntry& entry : kEntries) infos.push_back({entry.name, entry.description, entry.is_long});
   return infos;
 }
 

@@ -13,6 +13,7 @@ struct ScenarioEntry {
   const char* name;
   const char* description;
   Scenario (*make)(std::uint64_t seed, bool short_form);
+  bool is_long = false;  ///< as in ScenarioInfo
 };
 
 /// @throws UsageError naming all scenarios when there is none of this name

@@ -26,6 +26,7 @@ struct ScenarioRequest {
 struct ScenarioInfo {
   std::string name;
   std::string description;
+  bool is_long = false;  ///< an hour or gigabytes: not part of a survey of all scenarios
 };
 
 /// All scenarios, those of the paper's experiments first.

@@ -18,9 +18,10 @@
 #include "core/names.hpp"
 #include "daemon/replay.hpp"
 #include "run/evaluation/evaluated_run.hpp"
-#include "run/recording/manifest.hpp"
 #include "simulation/simulate.hpp"
 #include "tools/commands.hpp"
+#include "tools/deviation_options.hpp"
+#include "tools/experiment_recording.hpp"
 #include "tools/method_option.hpp"
 #include "tools/progress.hpp"
 #include "tools/report/figures_json.hpp"
@@ -33,39 +34,19 @@ namespace isobar::tools {
 namespace {
 
 struct ExperimentOptions {
-  std::string scenario;
-  std::uint64_t seed = 1;
-  bool short_form = false;
+  simulation::ScenarioRequest request;
   std::filesystem::path out;
   std::filesystem::path config;
   std::vector<std::string> methods;
   std::size_t jobs = std::max(1U, std::thread::hardware_concurrency());
 };
 
-std::vector<Method> chosen_methods(const ExperimentOptions& options) {
-  if (options.methods.empty()) return {kAllMethods.begin(), kAllMethods.end()};
-  std::vector<Method> methods;
-  for (const std::string& name : options.methods) {
-    const auto method = kMethodNames.value(name);
-    if (!method) throw UsageError("--methods: \"" + name + "\" is none of " + method_names());
-    methods.push_back(*method);
-  }
-  return methods;
-}
-
-void simulate_if_missing(const ExperimentOptions& options, const std::filesystem::path& recording) {
-  if (std::filesystem::exists(recording / recording::kManifestFile)) {
-    std::printf("using the existing recording %s\n", recording.c_str());
-    return;
-  }
-  // Renamed when complete, so that an interrupted simulation is not taken for a recording.
-  const std::filesystem::path unfinished = recording.string() + ".unfinished";
-  std::filesystem::remove_all(unfinished);
+void simulate_with_progress(const ExperimentOptions& options, const std::filesystem::path& recording) {
   Progress progress("simulating");
-  simulation::simulate({options.scenario, options.seed, options.short_form}, unfinished,
-                       [&](double fraction) { progress.update(fraction); });
+  const bool simulated =
+      simulate_if_missing(options.request, recording, [&](double fraction) { progress.update(fraction); });
   progress.finish();
-  std::filesystem::rename(unfinished, recording);
+  if (!simulated) std::printf("using the existing recording %s\n", recording.c_str());
 }
 
 /// Mean progress of several replays on one bar. Thread-safe.
@@ -132,6 +113,13 @@ std::string title_of(const std::string& scenario) {
   return scenario;
 }
 
+/// " (with mount-error 0.5, base-rate 4)"; empty without deviations.
+std::string deviations_text(const simulation::Deviations& deviations) {
+  std::string text;
+  for (const std::string& option : deviations.options()) text += (text.empty() ? " (with " : ", ") + option;
+  return text.empty() ? text : text + ")";
+}
+
 void evaluate_all(const ExperimentOptions& options, const std::filesystem::path& recording,
                   const std::vector<Method>& methods, const std::string& command) {
   std::vector<evaluation::EstimateSource> sources;
@@ -141,9 +129,10 @@ void evaluate_all(const ExperimentOptions& options, const std::filesystem::path&
   }
   report::ReportInput input;
   input.run = evaluation::evaluate_methods(evaluation::load_reference(recording), sources);
-  input.title = title_of(options.scenario) + ", seed " + std::to_string(options.seed);
-  input.description = "Simulated recording \"" + options.scenario + "\"" +
-                      (options.short_form ? " in its short form" : "") +
+  input.title = title_of(options.request.name) + ", seed " + std::to_string(options.request.seed);
+  input.description = "Simulated recording \"" + options.request.name + "\"" +
+                      (options.request.short_form ? " in its short form" : "") +
+                      deviations_text(options.request.deviations) +
                       ", replayed with each method on the same sensor data.";
   input.command = command;
   report::print_table(stdout, input.run);
@@ -153,19 +142,15 @@ void evaluate_all(const ExperimentOptions& options, const std::filesystem::path&
   write_output(options.out / "overview.svg", report::render_overview_svg(input));
 }
 
-/// "SCENARIO-SEED", with "-short" for the short form.
-std::string run_name(const ExperimentOptions& options) {
-  return options.scenario + "-" + std::to_string(options.seed) + (options.short_form ? "-short" : "");
-}
-
 void run_experiment(ExperimentOptions options, const std::string& command) {
-  if (options.scenario.empty())
+  if (options.request.name.empty())
     throw UsageError("SCENARIO: missing; `isobar experiment --help` shows the names");
-  if (options.out.empty()) options.out = "out/" + run_name(options);
-  const std::vector<Method> methods = chosen_methods(options);
+  const std::string name = simulation::recording_name(options.request);
+  if (options.out.empty()) options.out = "out/" + name;
+  const std::vector<Method> methods = chosen_methods(options.methods);
   std::filesystem::create_directories(options.out);
-  const std::filesystem::path recording = options.out / ("recording-" + run_name(options));
-  simulate_if_missing(options, recording);
+  const std::filesystem::path recording = options.out / ("recording-" + name);
+  simulate_with_progress(options, recording);
   replay_all(options, recording, methods);
   evaluate_all(options, recording, methods, command);
 }
@@ -177,19 +162,22 @@ void add_experiment_command(CLI::App& app) {
       app, "experiment", "One of the paper's experiments: simulate, replay with all methods, evaluate",
       run_experiment);
   add_sensitivity_command(command);
-  command.add_option("SCENARIO", options.scenario,
+  add_experiment_all_command(command);
+  command.add_option("SCENARIO", options.request.name,
                      "three-floors, elevator, moulin; `isobar simulate --list` shows all");
-  command.add_option("--seed", options.seed, "random seed of world and sensor errors")
+  command.add_option("--seed", options.request.seed, "random seed of world and sensor errors")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
-  command.add_flag("--short", options.short_form, "the short form of the scenario");
-  command.add_option("--out", options.out,
-                     "folder for recording, runs and report (default: out/SCENARIO-SEED)");
+  command.add_flag("--short", options.request.short_form, "the short form of the scenario");
+  command.add_option(
+      "--out", options.out,
+      "folder for recording, runs and report (default: out/SCENARIO-SEED and the faults asked for)");
   command.add_option("--config", options.config, "TOML file with the estimator's settings");
   command.add_option("--methods", options.methods, method_names() + " (default: all)")->delimiter(',');
   command.add_option("--jobs", options.jobs, "replays at a time")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
+  add_deviation_options(command, options.request.deviations);
 }
 
 }  // namespace isobar::tools

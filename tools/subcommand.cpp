@@ -30,10 +30,15 @@ std::string typed_command(const CLI::App& command) {
   std::string text = command_path(command);
   for (const CLI::Option* option : command.get_options()) {
     if (option->count() == 0) continue;
-    if (!option->get_lnames().empty()) text += " --" + option->get_lnames().front();
+    const std::string name = option->get_lnames().empty() ? "" : " --" + option->get_lnames().front();
     const bool is_flag = option->get_expected_max() == 0;
+    // A list either follows its option once, or repeats the option before each word.
+    const bool repeats = option->get_expected_max() > 1 && !option->get_allow_extra_args();
+    if (is_flag || !repeats) text += name;
     if (is_flag) continue;
-    for (const std::string& word : option->results()) text += " " + shell_quoted(word);
+    for (const std::string& word : option->results()) {
+      text += (repeats ? name : "") + " " + shell_quoted(word);
+    }
   }
   return text;
 }
