@@ -56,8 +56,9 @@ void add_air(AirTemperatureConfig& air, std::vector<Setting>& settings) {
   s.choice("mode", &air.mode, air_temperature_choices(),
            "Source of the air temperature. auto: the barometers' own thermometers. fixed: fixed_c.");
   s.number("fixed_c", &air.fixed_c, "degC", -60.0, 60.0,
-           "Air temperature where mode is \"fixed\", and in mode \"auto\" until a thermometer is heard. 20: "
-           "buildings are heated to it; set it outdoors.");
+           "Air temperature where mode is \"fixed\", and in mode \"auto\" until a thermometer is heard and "
+           "to tell "
+           "which of two thermometers is wrong. 20: buildings are heated to it; set it outdoors.");
   s.number("expected_self_heating_k", &air.expected_self_heating_k, "K", -10.0, 30.0,
            "Self-heating of the coldest barometer, subtracted from its reading. 0.5: a ventilated chip warms "
            "itself by 0.3 to 1.2.");

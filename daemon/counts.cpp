@@ -56,6 +56,7 @@ std::vector<files::RunCount> counts_of(const PriorCounters& counters) {
       {"base station switched", counters.base_switched, ""},
       {"barometer faults", counters.robot_faults, ""},
       {"base station faults", counters.base_faults, ""},
+      {"thermometer faults", counters.thermometer_faults, ""},
       {"wheel samples", counters.wheel_accepted, ""},
       {"wheel samples with bad values", counters.wheel_bad_value, ""},
       {"wheel samples with bad times", counters.wheel_bad_time, ""},

@@ -177,6 +177,19 @@ void HealthMonitor::fill_faults(const StatusSnapshot& now, HealthReport& report)
   if (now.prior.counters.pressure_accepted > 0) add("barometer/fault", health.robot);
   if (health.base_heard[0]) add("base_station/fault", health.base[0]);
   if (health.base_heard[1]) add("second_base_station/fault", health.base[1]);
+  constexpr std::array<const char*, 3> kThermometers = {"barometer/temperature", "base_station/temperature",
+                                                        "second_base_station/temperature"};
+  for (std::size_t i = 0; i < kThermometers.size(); ++i) {
+    if (now.prior.counters.thermometer_faults == 0 || (i > 0 && !health.base_heard[i - 1])) continue;
+    const bool wrong = health.thermometer_wrong[i];
+    add_entry(
+        report, kThermometers[i],
+        !judged ? HealthLevel::kStale
+        : wrong ? HealthLevel::kWarning
+                : HealthLevel::kOk,
+        wrong ? "contradicts the other thermometer or stepped: left out of the air temperature" : "used",
+        0.0);
+  }
   if (!health.base_heard[0] || !health.base_heard[1]) return;
   const char* sentence = health.base_undecided      ? "both send and disagree; which one is wrong is unknown"
                          : health.base_usable == 2  ? "both agree"

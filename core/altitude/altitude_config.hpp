@@ -25,8 +25,8 @@ inline constexpr NameTable<AirTemperatureMode, 2> kAirTemperatureModeNames{{{
 struct AirTemperatureConfig {
   AirTemperatureMode mode = AirTemperatureMode::kAuto;
 
-  /// Air temperature [degC]: with kFixed always, with kAuto until the first reading of a thermometer.
-  /// Buildings are heated to 20; outdoors set the actual value.
+  /// Air temperature [degC]: with kFixed always, with kAuto until the first reading of a thermometer, and to tell
+  /// which of two thermometers is wrong. Buildings are heated to 20; outdoors set the actual value.
   double fixed_c = 20.0;
 
   /// Expected self-heating of the coldest barometer [K], subtracted. The chip of even a ventilated base

@@ -34,7 +34,7 @@ double DifferentialAltimeter::scale_m() const {
 }
 
 double DifferentialAltimeter::scale_uncertainty() const {
-  return config_.air.sigma_k / (air_.temperature_c() + kZeroCelsiusK);
+  return air_.sigma_k() / (air_.temperature_c() + kZeroCelsiusK);
 }
 
 void DifferentialAltimeter::resume(const HeightDatum& datum, double port_height_m) {

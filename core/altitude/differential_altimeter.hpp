@@ -84,6 +84,8 @@ class DifferentialAltimeter {
   [[nodiscard]] bool base_undecided() const { return base_.undecided(); }
 
   [[nodiscard]] double air_temperature_c() const { return air_.temperature_c(); }
+  /// The thermometer of the robot (0) or of a base station (1, 2) is left out: it contradicts the others.
+  [[nodiscard]] bool thermometer_wrong(std::size_t sensor) const { return air_.wrong(sensor); }
   /// Scale height R_dry T_v / g at the present air temperature [m].
   [[nodiscard]] double scale_m() const;
   /// Relative 1-sigma uncertainty of scale_m().

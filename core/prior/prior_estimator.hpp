@@ -37,11 +37,12 @@ struct PriorCounters {
   std::uint64_t base_bad_value = 0;
   std::uint64_t base_bad_time = 0;
   std::uint64_t base_repeated = 0;
-  std::uint64_t base_stale = 0;     ///< too old on arrival, by the robot's clock
-  std::uint64_t base_lost = 0;      ///< events: the last base station was lost
-  std::uint64_t base_switched = 0;  ///< events: one base station took over from another
-  std::uint64_t robot_faults = 0;   ///< events: the robot's barometer became faulty
-  std::uint64_t base_faults = 0;    ///< events: a base station became faulty
+  std::uint64_t base_stale = 0;          ///< too old on arrival, by the robot's clock
+  std::uint64_t base_lost = 0;           ///< events: the last base station was lost
+  std::uint64_t base_switched = 0;       ///< events: one base station took over from another
+  std::uint64_t robot_faults = 0;        ///< events: the robot's barometer became faulty
+  std::uint64_t base_faults = 0;         ///< events: a base station became faulty
+  std::uint64_t thermometer_faults = 0;  ///< events: the thermometer of a barometer was left out
   std::uint64_t wheel_accepted = 0;
   std::uint64_t wheel_bad_value = 0;
   std::uint64_t wheel_bad_time = 0;
@@ -52,12 +53,13 @@ struct PriorCounters {
 struct BarometerHealth {
   BarometerFault robot = BarometerFault::kOff;
   std::array<BarometerFault, 2> base{BarometerFault::kOff, BarometerFault::kOff};
-  std::uint8_t base_active = 0;      ///< index of the base station in use, or of the last one in use
-  std::uint8_t base_usable = 0;      ///< number of usable base stations
-  std::array<bool, 2> base_heard{};  ///< at least one sample has arrived
-  bool base_undecided = false;       ///< two stations disagree and neither is known to be wrong
-  double height_bias_m = 0.0;        ///< estimated offset of the barometric height from the height
-  double height_bias_sd_m = 0.0;     ///< of the offset's part that is still estimated
+  std::uint8_t base_active = 0;             ///< index of the base station in use, or of the last one in use
+  std::uint8_t base_usable = 0;             ///< number of usable base stations
+  std::array<bool, 2> base_heard{};         ///< at least one sample has arrived
+  std::array<bool, 3> thermometer_wrong{};  ///< left out; of the robot, of each base station
+  bool base_undecided = false;              ///< two stations disagree and neither is known to be wrong
+  double height_bias_m = 0.0;               ///< estimated offset of the barometric height from the height
+  double height_bias_sd_m = 0.0;            ///< of the offset's part that is still estimated
 };
 
 /// Takes samples in order of arrival and returns one Prior per accepted IMU sample; how it works is drawn in

@@ -90,6 +90,11 @@ void PriorEstimator::State::watch_barometers() {
     barometers.base_heard[station] =
         barometers.base_heard[station] || barometers.base[station] != BarometerFault::kOff;
   }
+  for (std::size_t sensor = 0; sensor < barometers.thermometer_wrong.size(); ++sensor) {
+    const bool wrong = altimeter.thermometer_wrong(sensor);
+    if (wrong && !barometers.thermometer_wrong[sensor]) ++counters.thermometer_faults;
+    barometers.thermometer_wrong[sensor] = wrong;
+  }
   barometers.base_active = static_cast<std::uint8_t>(altimeter.base_active());
   barometers.base_usable = static_cast<std::uint8_t>(altimeter.base_usable_count());
   barometers.base_undecided = altimeter.base_undecided();
