@@ -42,7 +42,7 @@ std::string cut_note(const std::string& name, const StampRepairs& repairs) {
 
 RunFolder load_estimate(const fs::path& path) {
   if (fs::is_directory(path)) return read_run_folder(path, kMaxMapPoints);
-  return {parse_tum(files::read_text_file(path), path.string()), {}, {}, {}};
+  return {parse_tum(files::read_text_file(path), path.string()), {}, {}, {}, {}};
 }
 
 EvaluatedMethod evaluate_one(const ReferenceData& reference, const EstimateSource& source,
@@ -51,8 +51,8 @@ EvaluatedMethod evaluate_one(const ReferenceData& reference, const EstimateSourc
   EvaluatedMethod method{
       source.name, {}, source.path, std::move(run.status), std::move(run.map.points), std::move(run.notes)};
   try {
-    method.evaluation =
-        evaluate(reference.trajectory, reference.segments, run.trajectory, sigmas_of(method.status), options);
+    method.evaluation = evaluate(reference.trajectory, reference.segments, run.trajectory,
+                                 sigmas_of(method.status), options, std::move(run.covariances));
   } catch (const DataError& error) {
     throw DataError(source.path.string() + ": " + error.what());
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/errors.hpp"
 #include "run/evaluation/floors.hpp"
@@ -49,6 +50,22 @@ void add_height_figures(Evaluation& evaluation, const std::vector<Segment>& flat
       figures.largest_height_error_m = error_m;
   }
   figures.floors = floor_heights(evaluation.pairs, flat, options.floor_gap_m);
+}
+
+void add_settled_floors(Evaluation& evaluation, std::vector<Segment> flat, const EvaluationOptions& options) {
+  const std::int64_t from_ns = evaluation.pairs.front().stamp_ns + std::llround(1e9 * options.settling_s);
+  for (Segment& segment : flat) segment.start_ns = std::max(segment.start_ns, from_ns);
+  std::erase_if(flat, [](const Segment& segment) { return segment.start_ns >= segment.end_ns; });
+  const std::vector<FloorHeight> floors = floor_heights(evaluation.pairs, flat, options.floor_gap_m);
+  if (floors.empty()) return;
+  MethodFigures& figures = evaluation.figures;
+  figures.settled_floors_mean_m = 0.0;
+  figures.settled_floors_worst_m = 0.0;
+  for (const FloorHeight& floor : floors) {
+    const double error_m = std::abs(floor.mean_error_m);
+    figures.settled_floors_mean_m += error_m / static_cast<double>(floors.size());
+    figures.settled_floors_worst_m = std::max(figures.settled_floors_worst_m, error_m);
+  }
 }
 
 void add_absolute_figures(Evaluation& evaluation, const EvaluationOptions& options) {
@@ -104,7 +121,7 @@ bool is_lost(const Evaluation& evaluation, const EvaluationOptions& options) {
 
 Evaluation evaluate(const Trajectory& reference, const std::vector<Segment>& segments,
                     const Trajectory& estimate, const std::vector<HeightSigma>& sigmas,
-                    const EvaluationOptions& options) {
+                    const EvaluationOptions& options, std::vector<PoseCovariance> covariances) {
   Evaluation evaluation;
   evaluation.pairs = associate(reference, estimate, options.max_gap_s);
   if (evaluation.pairs.empty()) throw DataError("no pose lies within the time of the reference");
@@ -120,7 +137,10 @@ Evaluation evaluate(const Trajectory& reference, const std::vector<Segment>& seg
   const std::vector<Segment> flat = flat_segments(segments);
   add_relative_figures(evaluation, flat, options);
   add_height_figures(evaluation, flat, options);
+  add_settled_floors(evaluation, flat, options);
   add_absolute_figures(evaluation, options);
+  figures.consistency =
+      consistency_of(evaluation.pairs, std::move(covariances), evaluation.T_reference_estimate);
   figures.sigma_share = share_within_two_sigma(evaluation.pairs, sigmas);
   figures.lost = is_lost(evaluation, options);
   return evaluation;

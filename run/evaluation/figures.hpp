@@ -9,6 +9,7 @@
 
 #include "core/statistics/distribution.hpp"
 #include "run/evaluation/association.hpp"
+#include "run/evaluation/consistency.hpp"
 #include "run/evaluation/relative_error.hpp"
 #include "run/evaluation/segments.hpp"
 #include "run/evaluation/trajectory.hpp"
@@ -26,6 +27,8 @@ struct EvaluationOptions {
   Alignment ate_alignment = Alignment::kStart;
   /// Largest difference of mean heights of flat segments on one floor [m], > 0: well below a storey.
   double floor_gap_m = 1.0;
+  /// Time at the start that MethodFigures::settled_floors_mean_m leaves out [s].
+  double settling_s = 60.0;
   /// Smallest coverage of a run that is not lost.
   double lost_below_coverage = 0.99;
   /// A run is also lost if its position error ever exceeds both limits: below them a drift is a poor
@@ -71,7 +74,11 @@ struct MethodFigures {
   double ate_share = kNone;        ///< ate_rms_m / travelled_m [1]
   double yaw_drift_rad = kNone;    ///< at the last pose, signed
   double yaw_drift_rad_m = kNone;  ///< |yaw_drift_rad| / travelled_m
-  double sigma_share = kNone;      ///< share of poses with a height error of at most two sigma, 0 … 1
+  /// Magnitudes of the floors' mean height errors without the first minute: mean and largest.
+  double settled_floors_mean_m = kNone;
+  double settled_floors_worst_m = kNone;
+  ConsistencyFigures consistency;
+  double sigma_share = kNone;  ///< share of poses with a height error of at most two sigma, 0 … 1
 };
 
 /// Figures, and what they are computed from.
@@ -82,10 +89,10 @@ struct Evaluation {
   std::vector<double> z_rpe;                                               ///< of each window [1]
 };
 
-/// Evaluates one estimate. `segments` and `sigmas` may be empty.
+/// Evaluates one estimate. `segments`, `sigmas` and `covariances` may be empty.
 /// @throws DataError when the two trajectories have no time in common
 Evaluation evaluate(const Trajectory& reference, const std::vector<Segment>& segments,
                     const Trajectory& estimate, const std::vector<HeightSigma>& sigmas,
-                    const EvaluationOptions& options = {});
+                    const EvaluationOptions& options = {}, std::vector<PoseCovariance> covariances = {});
 
 }  // namespace isobar::evaluation

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "run/evaluation/consistency.hpp"
 #include "run/evaluation/trajectory.hpp"
 #include "run/files/ply_reader.hpp"
 
@@ -29,9 +30,10 @@ struct StatusRow {
 /// A run's output. Only the trajectory is required.
 struct RunFolder {
   Trajectory trajectory;
-  std::vector<StatusRow> status;   ///< empty without status.csv
-  files::PlyPoints map;            ///< map frame [m]; empty without map.ply
-  std::vector<std::string> notes;  ///< what was left out, in sentences
+  std::vector<StatusRow> status;            ///< empty without status.csv
+  std::vector<PoseCovariance> covariances;  ///< empty without covariance.csv: a run of an older version
+  files::PlyPoints map;                     ///< map frame [m]; empty without map.ply
+  std::vector<std::string> notes;           ///< what was left out, in sentences
 };
 
 /// Reads the folder of a run. A map.ply that cannot be read is left out: a run that was killed leaves one.
@@ -43,5 +45,10 @@ RunFolder read_run_folder(const std::filesystem::path& directory, std::size_t ma
 /// mean unknown. A last line that is cut is left out.
 /// @throws DataError "name:line: rule" when a line breaks the format
 std::vector<StatusRow> parse_status_csv(std::string_view text, const std::string& name);
+
+/// Parses covariance.csv: files::kCovarianceColumns in any order, all required, unknown ones ignored. A last line
+/// that is cut is left out.
+/// @throws DataError "name:line: rule" when a line breaks the format
+std::vector<PoseCovariance> parse_covariance_csv(std::string_view text, const std::string& name);
 
 }  // namespace isobar::evaluation

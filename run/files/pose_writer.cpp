@@ -61,29 +61,47 @@ std::string_view status_line(const PoseEstimate& pose, double altimeter_height_m
   return text_of(line, length);
 }
 
+/// Upper triangle, row by row. Nine digits: fewer could make a nearly singular matrix indefinite.
+std::string_view covariance_line(const PoseEstimate& pose, Line& line) {
+  int length = std::snprintf(line.data(), line.size(), "%lld", static_cast<long long>(pose.stamp_ns));
+  for (int i = 0; i < 6; ++i) {
+    for (int j = i; j < 6; ++j) {
+      const auto at = static_cast<std::size_t>(length);
+      length += std::snprintf(line.data() + at, line.size() - at, ",%.9g", pose.covariance(i, j));
+    }
+  }
+  line[static_cast<std::size_t>(length++)] = '\n';
+  return text_of(line, length);
+}
+
 }  // namespace
 
 PoseWriter::PoseWriter(const std::filesystem::path& directory, Start start, std::uint32_t session)
     : trajectory_(made_directory(directory) / name_of_session(kTrajectoryFile, session),
                   "# t_s x_m y_m z_m qx qy qz qw: base_link in " + name_of_session("map", session) + "\n",
                   start),
-      status_(directory / name_of_session(kStatusFile, session), std::string(kStatusColumns) + "\n", start) {}
+      status_(directory / name_of_session(kStatusFile, session), std::string(kStatusColumns) + "\n", start),
+      covariance_(directory / name_of_session(kCovarianceFile, session),
+                  std::string(kCovarianceColumns) + "\n", start) {}
 
 void PoseWriter::add(const PoseEstimate& pose, double altimeter_height_m, double altimeter_sd_m) {
   Line line;
   trajectory_.add(trajectory_line(pose, line));
   status_.add(status_line(pose, altimeter_height_m, altimeter_sd_m, line));
+  covariance_.add(covariance_line(pose, line));
   ++count_;
 }
 
 void PoseWriter::flush() {
   trajectory_.flush();
   status_.flush();
+  covariance_.flush();
 }
 
 void PoseWriter::sync() {
   trajectory_.sync();
   status_.sync();
+  covariance_.sync();
 }
 
 }  // namespace isobar::files

@@ -17,7 +17,13 @@ inline constexpr std::string_view kStatusColumns =
     "residual_rms_m,eigenvalue_0,eigenvalue_1,eigenvalue_2,scan_ms,altimeter_height_m,altimeter_sd_m,"
     "x_m,y_m,z_m,sd_x_m,sd_y_m,sd_z_m,sd_yaw_rad";
 
-/// Writes poses into trajectory.tum and status.csv of a folder, which it creates, as whole lines. Those of a
+/// Header line of covariance.csv: the upper triangle of PoseEstimate::covariance, in m, rad and their products.
+/// A file of its own, so that a run begun by an older version, whose status.csv has other columns, goes on.
+inline constexpr std::string_view kCovarianceColumns =
+    "t_ns,x_x,x_y,x_z,x_roll,x_pitch,x_yaw,y_y,y_z,y_roll,y_pitch,y_yaw,z_z,z_roll,z_pitch,z_yaw,"
+    "roll_roll,roll_pitch,roll_yaw,pitch_pitch,pitch_yaw,yaw_yaw";
+
+/// Writes poses into trajectory.tum, status.csv and covariance.csv of a folder, which it creates, as whole lines. Those of a
 /// later map frame have the names of name_of_session(). Not thread-safe.
 class PoseWriter {
  public:
@@ -36,17 +42,18 @@ class PoseWriter {
   void sync();
   [[nodiscard]] std::uint64_t count() const { return count_; }
   [[nodiscard]] std::size_t pending_bytes() const {
-    return trajectory_.pending_bytes() + status_.pending_bytes();
+    return trajectory_.pending_bytes() + status_.pending_bytes() + covariance_.pending_bytes();
   }
   [[nodiscard]] std::uint64_t dropped_lines() const { return trajectory_.dropped_lines(); }
   /// Bytes of incomplete last lines that were removed at the start.
   [[nodiscard]] std::uint64_t removed_bytes() const {
-    return trajectory_.removed_bytes() + status_.removed_bytes();
+    return trajectory_.removed_bytes() + status_.removed_bytes() + covariance_.removed_bytes();
   }
 
  private:
   LineFile trajectory_;
   LineFile status_;
+  LineFile covariance_;
   std::uint64_t count_ = 0;
 };
 

@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::array<const char*, 4> kOfSession{kTrajectoryFile, kStatusFile, kMapPointsFile, kMapDirectory};
+constexpr std::array<const char*, 5> kOfSession{kTrajectoryFile, kStatusFile, kCovarianceFile, kMapPointsFile,
+                                                kMapDirectory};
 constexpr std::array<const char*, 3> kOfRun{kSettingsFile, kCountersFile, kCheckpointFile};
 
 /// Number of the map frame to which a file belongs; 0 for a file of none.

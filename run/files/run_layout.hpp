@@ -9,12 +9,13 @@
 namespace isobar::files {
 
 inline constexpr const char* kTrajectoryFile = "trajectory.tum";  ///< pose of base_link per scan (TUM format)
-inline constexpr const char* kStatusFile = "status.csv";       ///< how each pose came about: kStatusColumns
-inline constexpr const char* kMapPointsFile = "map.ply";       ///< the map's points: x, y, z, intensity
-inline constexpr const char* kSettingsFile = "settings.toml";  ///< every setting of the run
-inline constexpr const char* kCountersFile = "counters.csv";   ///< name, count, first message
-inline constexpr const char* kMapDirectory = "map";            ///< the map's tiles (run/tile_store)
-inline constexpr const char* kCheckpointFile = "checkpoint";   ///< where a later run goes on: Checkpoint
+inline constexpr const char* kStatusFile = "status.csv";  ///< how each pose came about: kStatusColumns
+inline constexpr const char* kCovarianceFile = "covariance.csv";  ///< of each pose: kCovarianceColumns
+inline constexpr const char* kMapPointsFile = "map.ply";          ///< the map's points: x, y, z, intensity
+inline constexpr const char* kSettingsFile = "settings.toml";     ///< every setting of the run
+inline constexpr const char* kCountersFile = "counters.csv";      ///< name, count, first message
+inline constexpr const char* kMapDirectory = "map";               ///< the map's tiles (run/tile_store)
+inline constexpr const char* kCheckpointFile = "checkpoint";      ///< where a later run goes on: Checkpoint
 
 /// Name of a file or of a frame for a map frame: the name itself for the first one, with _2, _3 … before its
 /// extension for later ones.

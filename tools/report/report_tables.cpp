@@ -135,6 +135,14 @@ std::string definitions(const evaluation::EvaluatedRun& run) {
   html += definition("RPE, relative pose error",
                      "Error of the motion over " + fixed(options.pose_window.length_m, 0) +
                          " m of travel, divided by that distance (Sturm et al. 2012).");
+  html += definition("Floors after the first minute", "Mean height error of each floor without the first " +
+                                                          fixed(options.settling_s, 0) +
+                                                          " s: mean and largest of their magnitudes.");
+  html += definition(
+      "Covariance",
+      "NEES: e\u1d40 C\u207b\u00b9 e of the error e and the estimate's covariance C of x, y, z, roll, pitch, "
+      "yaw, "
+      "over its expectation 6; an honest covariance has 1, and 95 % of the poses within the 95 % ellipsoid.");
   html += definition("Time covered",
                      "Share of the reference's time between consecutive poses of the estimate less than " +
                          fixed(options.max_gap_s, 1) + " s apart.");

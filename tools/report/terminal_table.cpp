@@ -46,6 +46,26 @@ void print_figures(std::FILE* out, const evaluation::EvaluatedRun& run) {
   std::fputs(aligned_rows(table).c_str(), out);
 }
 
+/// Shares of poses within the 95 % ellipsoid; prints nothing for runs without covariances.
+void print_consistency(std::FILE* out, const evaluation::EvaluatedRun& run) {
+  std::vector<Cells> table{
+      {"method", "NEES/6", "all", "position", "orientation", "x", "y", "z", "roll", "pitch", "yaw"}};
+  for (const evaluation::EvaluatedMethod& method : run.methods) {
+    const evaluation::ConsistencyFigures& figures = method.evaluation.figures.consistency;
+    if (figures.poses == 0) continue;
+    Cells cells{evaluation::display_name(method.name), plain(fixed(figures.nees, 2))};
+    for (const double share :
+         {figures.within_95, figures.within_95_position, figures.within_95_orientation}) {
+      cells.push_back(plain(fixed(100.0 * share, 1)));
+    }
+    for (const double share : figures.within_95_component) cells.push_back(plain(fixed(100.0 * share, 1)));
+    table.push_back(std::move(cells));
+  }
+  if (table.size() == 1) return;
+  std::fprintf(out, "\nErrors within the 95 %% ellipsoid of their covariance [%% of poses]\n");
+  std::fputs(aligned_rows(table).c_str(), out);
+}
+
 /// One column per floor; prints nothing without flat segments.
 void print_floors(std::FILE* out, const evaluation::EvaluatedRun& run) {
   const std::vector<double> floors = evaluation::floor_levels_m(run);
@@ -53,12 +73,15 @@ void print_floors(std::FILE* out, const evaluation::EvaluatedRun& run) {
   std::fprintf(out, "\nMean height error of each floor [m]\n");
   std::vector<Cells> table{{"floor at"}};
   for (const double level_m : floors) table[0].push_back(fixed(level_m, 2) + " m");
+  table[0].insert(table[0].end(), {"after 1 min: mean", "largest"});
   for (const evaluation::EvaluatedMethod& method : run.methods) {
     Cells cells{evaluation::display_name(method.name)};
     for (const double level_m : floors) {
       const evaluation::FloorHeight* floor = evaluation::floor_at(method, level_m, run.options.floor_gap_m);
       cells.push_back(plain(fixed_signed(floor == nullptr ? kNone : floor->mean_error_m, 3)));
     }
+    cells.push_back(plain(fixed(method.evaluation.figures.settled_floors_mean_m, 3)));
+    cells.push_back(plain(fixed(method.evaluation.figures.settled_floors_worst_m, 3)));
     table.push_back(std::move(cells));
   }
   std::fputs(aligned_rows(table).c_str(), out);
@@ -73,6 +96,7 @@ void print_table(std::FILE* out, const evaluation::EvaluatedRun& run) {
   if (run.methods.empty()) return;
   print_figures(out, run);
   print_floors(out, run);
+  print_consistency(out, run);
   if (!run.notes.empty()) std::fprintf(out, "\n");
   for (const std::string& note : run.notes) std::fprintf(out, "Note: %s\n", note.c_str());
 }

@@ -130,4 +130,21 @@ TEST_CASE("trajectories without a common time are refused") {
   CHECK_THROWS_AS(evaluate(straight(10.0, 0.1), {}, late, {}), isobar::DataError);
 }
 
+TEST_CASE("floors after the first minute: errors of the first 60 s do not count") {
+  // 1 m/s: a floor of 100 s, of which the estimate is 0.5 m too high from 10 to 40 s and 3 cm from 70 s on.
+  Trajectory estimate = stepped(straight(100.0, 0.1), 10.0, 0.5);
+  estimate = stepped(stepped(estimate, 40.0, -0.5), 70.0, 0.03);
+  const std::vector<Segment> flat{{at_ns(0.0), at_ns(100.0), "flat"}};
+  const MethodFigures figures = evaluate(straight(100.0, 0.01), flat, estimate, {}).figures;
+  // 31 of the 41 s after the first minute, at 10 Hz and with both ends.
+  CHECK(figures.settled_floors_mean_m == Approx(0.03 * 301.0 / 401.0).epsilon(1e-6));
+  CHECK(figures.settled_floors_worst_m == Approx(figures.settled_floors_mean_m));
+  CHECK(figures.floors.front().mean_error_m > 0.1);
+  // A run of less than a minute, and one without floors.
+  const std::vector<Segment> brief{{at_ns(0.0), at_ns(50.0), "flat"}};
+  CHECK(std::isnan(
+      evaluate(straight(50.0, 0.01), brief, straight(50.0, 0.1), {}).figures.settled_floors_mean_m));
+  CHECK(std::isnan(evaluate(straight(100.0, 0.01), {}, estimate, {}).figures.settled_floors_worst_m));
+}
+
 }  // namespace isobar::test::test_figures

@@ -27,6 +27,11 @@ PoseEstimate some_pose(std::uint32_t i) {
   pose.T_map_base.translation() = Eigen::Vector3d(0.1 * i, -2.5, 1e-3 * i);
   pose.T_map_base.linear() =
       Eigen::AngleAxisd(0.01 * i, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row; column < 6; ++column) {
+      pose.covariance(row, column) = pose.covariance(column, row) = 0.1 * i + 0.01 * row + 1e-9 * column;
+    }
+  }
   pose.covariance(2, 2) = 0.0004;
   pose.registration_ms = 12.5;
   return pose;
@@ -44,6 +49,7 @@ TEST_CASE("poses and status rows come back from the folder of a run as they were
   const RunFolder run = read_run_folder(folder.path() / "new" / "run", 100);
   REQUIRE(run.trajectory.poses.size() == 50);
   REQUIRE(run.status.size() == 50);
+  REQUIRE(run.covariances.size() == 50);
   for (std::uint32_t i = 0; i < 50; ++i) {
     const PoseEstimate pose = some_pose(i);
     CHECK(run.trajectory.poses[i].stamp_ns == pose.stamp_ns);
@@ -51,6 +57,9 @@ TEST_CASE("poses and status rows come back from the folder of a run as they were
     CHECK((run.trajectory.poses[i].position_m - pose.T_map_base.translation()).norm() < 1e-6);
     CHECK(run.trajectory.poses[i].attitude.angularDistance(Eigen::Quaterniond(pose.T_map_base.linear())) <
           1e-7);
+    CHECK(run.covariances[i].stamp_ns == pose.stamp_ns);
+    CHECK((run.covariances[i].covariance - pose.covariance).cwiseAbs().maxCoeff() <
+          6e-9);  // nine digits of 5
     CHECK(run.status[i].stamp_ns == pose.stamp_ns);
     CHECK(run.status[i].mode == "registered");
     CHECK(run.status[i].scan_ms == doctest::Approx(12.5));
@@ -105,6 +114,22 @@ TEST_CASE("status.csv and map.ply of a run that was killed are used as far as th
 TEST_CASE("a folder without a trajectory is refused") {
   const TemporaryFolder folder;
   CHECK_THROWS_AS(read_run_folder(folder.path(), 100), DataError);
+}
+
+TEST_CASE("a run without covariance.csv is read; a cut last line is left out, a bad one is an error") {
+  const TemporaryFolder folder;
+  files::PoseWriter writer(folder.path());
+  for (std::uint32_t i = 0; i < 3; ++i) writer.add(some_pose(i), 0.0, 0.05);
+  writer.flush();
+  const std::string whole = files::read_text_file(folder.path() / "covariance.csv");
+  CHECK(parse_covariance_csv(whole, "c").size() == 3);
+  CHECK(parse_covariance_csv(whole.substr(0, whole.size() - 40), "c").size() == 2);
+  CHECK(message_of([] { parse_covariance_csv("t_ns,x_x\n1,2\n", "c"); }) == "c:1: column 'x_y' is missing");
+  std::string bad = whole;
+  bad.replace(bad.find('\n') + 21, 1, "x");
+  CHECK_THROWS_AS(parse_covariance_csv(bad, "c"), DataError);
+  std::filesystem::remove(folder.path() / "covariance.csv");
+  CHECK(read_run_folder(folder.path(), 100).covariances.empty());
 }
 
 }  // namespace isobar::test::test_run_folder

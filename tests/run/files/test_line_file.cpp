@@ -131,8 +131,9 @@ TEST_CASE("a folder of others is refused, and nothing in it is touched") {
 
 TEST_CASE("removing a run leaves the files of others") {
   const TemporaryFolder folder;
-  for (const char* name : {"trajectory.tum", "trajectory_2.tum", "status.csv", "map.ply", "settings.toml",
-                           "counters.csv", "checkpoint", "notes.txt", "trajectory_old.tum"}) {
+  for (const char* name :
+       {"trajectory.tum", "trajectory_2.tum", "status.csv", "covariance.csv", "map.ply", "settings.toml",
+        "counters.csv", "checkpoint", "notes.txt", "trajectory_old.tum"}) {
     files::write_text_file(folder.path() / name, "x");
   }
   CHECK(files::holds_run(folder.path()));
