@@ -163,6 +163,29 @@ void AttitudeFilter::update_gyro_bias(const Eigen::Vector3d& bias_rad_s, double 
   }
 }
 
+void AttitudeFilter::update_rest(const Eigen::Vector3d& up_force, double variance) {
+  // f = R^T g e_z + bias. Of the length only g is used: it differs with the place by as much as the bias.
+  const Eigen::Vector3d measured = kGravity * up_force.normalized();
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Matrix3d R_base_world = q_world_base_.toRotationMatrix().transpose();
+    Row H = Row::Zero();
+    H.segment<3>(kAngle) = kGravity * (R_base_world * skew(Eigen::Vector3d::UnitZ())).row(axis);
+    H(kAccelBiasRow + axis) = 1.0;
+    const double predicted = kGravity * R_base_world(axis, 2) + accel_bias_[axis];
+    update(H, measured[axis] - predicted, variance, kNoGateSigmas);
+  }
+}
+
+void AttitudeFilter::update_level_rate(const Eigen::Vector3d& mean_gyro_rad_s, double variance) {
+  const Eigen::Matrix3d R_base_world = q_world_base_.toRotationMatrix().transpose();
+  for (int axis = 0; axis < 2; ++axis) {
+    const Eigen::Vector3d level = R_base_world.col(axis);
+    Row H = Row::Zero();
+    H.segment<3>(kGyroBias) = level.transpose();
+    update(H, level.dot(mean_gyro_rad_s - gyro_bias_), variance, kBiasGateSigmas);
+  }
+}
+
 void AttitudeFilter::update_up_direction(const Eigen::Vector3d& up_base, double dt_s) {
   const double variance = squared(config_.imu_attitude_sigma_rad) *
                           std::max(1.0, 2.0 * config_.imu_attitude_correlation_s / dt_s);

@@ -61,6 +61,13 @@ class AttitudeFilter {
   /// Zero-rate update: the mean gyro reading of a standing robot over the last `dt_s` is the bias.
   void update_zero_rate(const Eigen::Vector3d& mean_gyro_rad_s, double dt_s, double gyro_variance_of_mean);
 
+  /// Gravity of a robot at rest: its mean specific force (base axes, any scale), with the variance of an axis
+  /// [m^2/s^4].
+  void update_rest(const Eigen::Vector3d& up_force, double variance);
+
+  /// The mean gyro reading over a window in which the platform did not turn about level axes: their part of the bias.
+  void update_level_rate(const Eigen::Vector3d& mean_gyro_rad_s, double variance);
+
   /// Up direction of the IMU's own attitude, unit vector in base axes, over the last `dt_s`.
   void update_up_direction(const Eigen::Vector3d& up_base, double dt_s);
 

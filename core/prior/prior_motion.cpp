@@ -169,11 +169,23 @@ void PriorEstimator::State::use_standstill(const Eigen::Vector3d& gyro, const Ei
   const double bias_sigma = std::sqrt(std::max(
       {attitude.gyro_bias_variance(0), attitude.gyro_bias_variance(1), attitude.gyro_bias_variance(2)}));
   standstill.add_imu(gyro, attitude.gyro_bias_rad_s(), bias_sigma, force, dt_s);
+  use_rest(on_wheels);
   // Zero-rate updates need wheels: a hanging platform may turn slowly and evenly, which the gyro alone cannot
   // tell from its bias.
   if (!standstill.take_window() || !on_wheels) return;
   attitude.update_zero_rate(standstill.mean_gyro_rad_s(), standstill.window_s(),
                             standstill.gyro_variance_of_mean());
+}
+
+void PriorEstimator::State::use_rest(bool on_wheels) {
+  if (!standstill.resting()) rest_gravity.restart();
+  StandstillDetector::Rest rest;
+  if (!standstill.take_rest(rest)) return;
+  RestGravity::Measurement measured;
+  if (!rest_gravity.add(rest, on_wheels, measured)) return;
+  attitude.update_rest(rest.force_m_s2, measured.variance);
+  // On wheels a standstill measures all axes.
+  if (!on_wheels) attitude.update_level_rate(rest.gyro_rad_s, measured.rate_variance);
 }
 
 void PriorEstimator::State::use_wheels(std::int64_t stamp_ns, double dt_s, bool on_wheels) {

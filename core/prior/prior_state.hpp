@@ -24,6 +24,7 @@
 #include "core/prior/imu_gate.hpp"
 #include "core/prior/imu_noise.hpp"
 #include "core/prior/prior_estimator.hpp"
+#include "core/prior/rest_gravity.hpp"
 #include "core/prior/standstill.hpp"
 #include "core/stamp.hpp"
 
@@ -57,6 +58,7 @@ struct PriorEstimator::State {
   AttitudeFilter attitude;
   DeviceAttitude device;
   StandstillDetector standstill;
+  RestGravity rest_gravity;
   WheelOdometer wheels;
   ClimbMeter climb;
   SensorCompensation compensation;
@@ -88,6 +90,7 @@ struct PriorEstimator::State {
   void restart_clock(double dt_s);
   void use_device_attitude(const ImuSample& sample, const Eigen::Vector3d& gyro, double dt_s);
   void use_standstill(const Eigen::Vector3d& gyro, const Eigen::Vector3d& force, double dt_s, bool on_wheels);
+  void use_rest(bool on_wheels);
   void use_wheels(std::int64_t stamp_ns, double dt_s, bool on_wheels);
   void use_climb(double dt_s, bool on_wheels, bool pressure_lost);
 

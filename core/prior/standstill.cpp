@@ -13,6 +13,13 @@ constexpr double kBreakFactor = 6.0;
 constexpr double kBiasSigmas = 3.0;
 // Fewer samples give no useful variance.
 constexpr double kLeastSamples = 8.0;
+// Factors on the limits of rms where wheels stand: an engine idles, gusts shake. A robot that is carried turns more.
+constexpr double kShakenGyro = 5.0;
+constexpr double kShakenForce = 3.0;
+// Correlation of neighbouring parts of a window, as a factor on the variance of their mean.
+constexpr double kCorrelated = 2.0;
+// Least standard deviation of a window's mean force [m/s^2]: 0.06 deg, half an hour's wander of a MEMS.
+constexpr double kLeastForceSigmaMS2 = 0.01;
 
 }  // namespace
 
@@ -23,20 +30,25 @@ void StandstillDetector::clear_sums() {
   force_square_sum_.setZero();
   elapsed_s_ = 0.0;
   count_ = 0.0;
+  part_sum_.setZero();
+  parts_sum_.setZero();
+  parts_square_sum_.setZero();
+  part_count_ = 0.0;
+  parts_ = 0;
   wheels_moved_ = false;
 }
 
 void StandstillDetector::restart() {
   clear_sums();
-  standing_ = false;
-  window_ready_ = false;
+  standing_ = resting_ = false;
+  window_ready_ = rest_ready_ = false;
 }
 
 void StandstillDetector::add_wheel(double speed_m_s, double turn_rate_rad_s) {
   if (speed_m_s <= config_.max_wheel_speed_m_s && std::abs(turn_rate_rad_s) <= config_.max_wheel_rate_rad_s)
     return;
   wheels_moved_ = true;
-  standing_ = false;
+  standing_ = resting_ = false;
 }
 
 void StandstillDetector::add_imu(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& gyro_bias_rad_s,
@@ -45,13 +57,47 @@ void StandstillDetector::add_imu(const Eigen::Vector3d& gyro_rad_s, const Eigen:
   gyro_square_sum_ += gyro_rad_s.cwiseAbs2();
   force_sum_ += force_m_s2;
   force_square_sum_ += force_m_s2.cwiseAbs2();
+  part_sum_ += force_m_s2;
+  part_count_ += 1.0;
   elapsed_s_ += dt_s;
   count_ += 1.0;
+  if (elapsed_s_ * kParts >= config_.window_s * (parts_ + 1)) close_part();
   const double limit =
       kBreakFactor * config_.max_gyro_rms_rad_s + config_.max_rate_rad_s + kBiasSigmas * bias_sigma_rad_s;
   if ((gyro_rad_s - gyro_bias_rad_s).cwiseAbs().maxCoeff() > limit) standing_ = false;
   if (elapsed_s_ >= config_.window_s && count_ >= kLeastSamples)
     close_window(gyro_bias_rad_s, bias_sigma_rad_s);
+}
+
+void StandstillDetector::close_part() {
+  const Eigen::Vector3d mean = part_sum_ / part_count_;
+  parts_sum_ += mean;
+  parts_square_sum_ += mean.cwiseAbs2();
+  ++parts_;
+  part_sum_.setZero();
+  part_count_ = 0.0;
+}
+
+void StandstillDetector::close_rest(double gyro_variance, double force_variance, double rate_rad_s,
+                                    double rate_limit_rad_s) {
+  const double gyro_limit = kShakenGyro * config_.max_gyro_rms_rad_s;
+  const double force_limit = kShakenForce * config_.max_accel_rms_m_s2;
+  resting_ = !wheels_moved_ && gyro_variance <= gyro_limit * gyro_limit &&
+             force_variance <= force_limit * force_limit && rate_rad_s <= rate_limit_rad_s && parts_ > 1;
+  rest_ready_ = resting_;
+  if (!resting_) return;
+  const double n = parts_;
+  const Eigen::Vector3d scatter = (parts_square_sum_ - parts_sum_.cwiseAbs2() / n).cwiseMax(0.0) / (n - 1.0);
+  rest_.force_m_s2 = force_sum_ / count_;
+  rest_.gyro_rad_s = gyro_sum_ / count_;
+  rest_.force_variance = kCorrelated * scatter.mean() / n + kLeastForceSigmaMS2 * kLeastForceSigmaMS2;
+}
+
+bool StandstillDetector::take_rest(Rest& out) {
+  const bool ready = rest_ready_;
+  rest_ready_ = false;
+  if (ready) out = rest_;
+  return ready;
 }
 
 void StandstillDetector::close_window(const Eigen::Vector3d& gyro_bias_rad_s, double bias_sigma_rad_s) {
@@ -63,6 +109,7 @@ void StandstillDetector::close_window(const Eigen::Vector3d& gyro_bias_rad_s, do
   standing_ = !wheels_moved_ && gyro_variance <= config_.max_gyro_rms_rad_s * config_.max_gyro_rms_rad_s &&
               force_variance <= config_.max_accel_rms_m_s2 * config_.max_accel_rms_m_s2 &&
               rate <= config_.max_rate_rad_s + kBiasSigmas * bias_sigma_rad_s;
+  close_rest(gyro_variance, force_variance, rate, config_.max_rate_rad_s + kBiasSigmas * bias_sigma_rad_s);
   window_ready_ = standing_;
   window_mean_gyro_ = gyro_mean;
   window_gyro_variance_ = std::max(0.0, gyro_variance) / count_;

@@ -14,6 +14,16 @@ class StandstillDetector {
  public:
   explicit StandstillDetector(const StandstillConfig& config) : config_(config) {}
 
+  /// A window in which the wheels, if there are any, stood and nothing turned; shaken more than a standstill at most
+  /// by an engine.
+  struct Rest {
+    Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();  ///< mean
+    Eigen::Vector3d gyro_rad_s = Eigen::Vector3d::Zero();  ///< mean
+    /// Variance of an axis of the mean force [m^2/s^4], from the scatter of the means of four parts of the window: an
+    /// engine's lines above 5 Hz average out much faster than white noise of the same rms, rocking does not.
+    double force_variance = 0.0;
+  };
+
   void configure(const StandstillConfig& config) { config_ = config; }
 
   /// One IMU sample, base axes. `bias_sigma_rad_s`: standard deviation of the gyro bias. Of `force_m_s2` only
@@ -27,6 +37,10 @@ class StandstillDetector {
   [[nodiscard]] bool standing() const { return standing_; }
   /// True once per quiet window; mean_gyro_rad_s(), window_s() and gyro_variance_of_mean() are that window's.
   bool take_window();
+  /// True once per window of rest.
+  bool take_rest(Rest& out);
+  /// The last window was one of rest, and nothing has moved since.
+  [[nodiscard]] bool resting() const { return resting_; }
   [[nodiscard]] const Eigen::Vector3d& mean_gyro_rad_s() const { return window_mean_gyro_; }
   [[nodiscard]] double window_s() const { return window_length_s_; }
   [[nodiscard]] double gyro_variance_of_mean() const { return window_gyro_variance_; }
@@ -34,8 +48,20 @@ class StandstillDetector {
  private:
   void close_window(const Eigen::Vector3d& gyro_bias_rad_s, double bias_sigma_rad_s);
   void clear_sums();
+  void close_part();
+  void close_rest(double gyro_variance, double force_variance, double rate_rad_s, double rate_limit_rad_s);
+
+  static constexpr int kParts = 4;
 
   StandstillConfig config_;
+  Rest rest_;
+  Eigen::Vector3d part_sum_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d parts_sum_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d parts_square_sum_ = Eigen::Vector3d::Zero();
+  double part_count_ = 0.0;
+  int parts_ = 0;
+  bool resting_ = false;
+  bool rest_ready_ = false;
   Eigen::Vector3d gyro_sum_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d gyro_square_sum_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d force_sum_ = Eigen::Vector3d::Zero();
