@@ -23,7 +23,7 @@ constexpr double kWheelYawFloorRad = 0.07 * kRadPerDeg;
 // Systematic error of the scale of the distance: slip differs between floors.
 constexpr double kScaleFloor = 0.002;
 // Standard deviation at which an angle counts as found.
-constexpr double kFoundRad = 0.3 * kRadPerDeg;
+constexpr double kFoundRad = 0.4 * kRadPerDeg;
 // Straight stretches from which on their mean is used.
 constexpr std::uint32_t kLeastStretches = 4;
 
@@ -84,11 +84,10 @@ void MountEstimator::compare_wheels(const ScanMotionEvidence& scan, const Prior&
   wheels_.add(motion);
 }
 
-void MountEstimator::add_level(const Eigen::Vector3d& up_by_gravity, const Eigen::Vector3d& up_by_surfaces,
-                               double sigma_rad) {
+void MountEstimator::add_level(const LevelEvidence& level) {
   if (level_used_) return;
   level_used_ = true;
-  filter_.add_level(up_by_gravity, up_by_surfaces, sigma_rad);
+  filter_.add_level(level);
 }
 
 MountEstimate MountEstimator::estimate() const {

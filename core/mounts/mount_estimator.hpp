@@ -20,8 +20,8 @@ namespace isobar {
 
 /// How far a MountEstimate can be used.
 enum class MountVerdict : std::uint8_t {
-  kUnknown,       ///< roll or pitch is not observed yet: no turns
-  kFound,         ///< roll and pitch are observed, and scans and gyro agree
+  kUnknown,       ///< roll or pitch is not observed yet: no turns, no level surfaces
+  kFound,         ///< sigma of roll and pitch is below 0.4 deg, and scans and gyro agree
   kInconsistent,  ///< scans and gyro contradict each other: lost registration, moving ground; do not use
 };
 
@@ -37,7 +37,7 @@ struct MountEstimate {
   Eigen::Vector3d error_rad =
       Eigen::Vector3d::Zero();  ///< rotation vector, axes of base_link: roll, pitch, yaw
   Eigen::Matrix3d covariance_rad2 = Eigen::Matrix3d::Zero();  ///< of error_rad, systematic errors included
-  bool yaw_found = false;                                     ///< sigma of yaw is below 0.3 deg
+  bool yaw_found = false;                                     ///< sigma of yaw is below 0.4 deg
   double outlier_share = 0.0;                                 ///< scans that contradict the gyro, 0 … 1
   ScaleEstimate wheel_distance;                               ///< true distance = scale x the wheels'
   ScaleEstimate wheel_turn;  ///< true turn = scale x the wheels': nominal over effective track width
@@ -55,10 +55,9 @@ class MountEstimator {
   /// A registered scan. `history`: priors that reach from the scan before to this one.
   void add(const ScanMotionEvidence& scan, const PriorHistory& history);
 
-  /// Level surfaces around a robot at rest, see level_surfaces.hpp: up directions in base axes by the configured
-  /// mount, unit vectors. Once: gravity has the same error, that of the accelerometer, at every halt.
-  void add_level(const Eigen::Vector3d& up_by_gravity, const Eigen::Vector3d& up_by_surfaces,
-                 double sigma_rad);
+  /// Level surfaces around a robot at rest (level_surfaces.hpp). The first ones count: gravity has the same error,
+  /// that of the accelerometer, at every halt.
+  void add_level(const LevelEvidence& level);
 
   [[nodiscard]] MountEstimate estimate() const;
 

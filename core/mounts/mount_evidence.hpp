@@ -23,4 +23,12 @@ struct ScanMotionEvidence {
   double wheel_turn_rad = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// Level surfaces around a robot at rest: up directions in base axes by the configured mount, unit vectors.
+struct LevelEvidence {
+  Eigen::Vector3d up_by_gravity = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d up_by_surfaces = Eigen::Vector3d::UnitZ();
+  /// Of the difference, in base axes, with the error of gravity [rad^2].
+  Eigen::Matrix3d covariance_rad2 = Eigen::Matrix3d::Zero();
+};
+
 }  // namespace isobar

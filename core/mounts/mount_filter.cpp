@@ -98,14 +98,13 @@ Eigen::Matrix3d MountFilter::noise(double dt_s, const Eigen::Vector3d& turn_rad)
 }
 
 // up(surfaces) = exp(-e) up(gravity): first order up(gravity) x e beyond the estimate.
-void MountFilter::add_level(const Eigen::Vector3d& up_by_gravity, const Eigen::Vector3d& up_by_surfaces,
-                            double sigma_rad) {
-  const Eigen::Vector3d expected = q_mount_.conjugate() * up_by_gravity;
+void MountFilter::add_level(const LevelEvidence& level) {
+  const Eigen::Vector3d expected = q_mount_.conjugate() * level.up_by_gravity;
   Eigen::Matrix<double, 3, 6> H = Eigen::Matrix<double, 3, 6>::Zero();
-  H.leftCols<3>() = q_mount_.toRotationMatrix().transpose() * skew(up_by_gravity);
-  const Eigen::Matrix3d S = H * P_ * H.transpose() + squared(sigma_rad) * Eigen::Matrix3d::Identity();
+  H.leftCols<3>() = q_mount_.toRotationMatrix().transpose() * skew(level.up_by_gravity);
+  const Eigen::Matrix3d S = H * P_ * H.transpose() + level.covariance_rad2;
   const Eigen::Matrix<double, 6, 3> K = P_ * H.transpose() * S.inverse();
-  apply(K * (up_by_surfaces - expected));
+  apply(K * (level.up_by_surfaces - expected));
   P_ -= (K * H * P_).eval();
   P_ = (0.5 * (P_ + P_.transpose())).eval();
 }

@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "core/mounts/mount_evidence.hpp"
+
 namespace isobar {
 
 /// Errors of gyro and scans that the filter reckons with.
@@ -49,10 +51,8 @@ class MountFilter {
   void add(double dt_s, const Eigen::Quaterniond& turn, double way_m,
            const Eigen::Quaterniond& q_map_base_scan);
 
-  /// Level surfaces: `up_by_gravity` and `up_by_surfaces` in base axes (configured mount), unit vectors;
-  /// `sigma_rad` of roll and of pitch.
-  void add_level(const Eigen::Vector3d& up_by_gravity, const Eigen::Vector3d& up_by_surfaces,
-                 double sigma_rad);
+  /// Level surfaces around the robot at rest.
+  void add_level(const LevelEvidence& level);
 
   /// e [rad] and its covariance, which holds no systematic errors.
   [[nodiscard]] Eigen::Vector3d mount_error_rad() const;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/squared.hpp"
 #include "synthetic_drive.hpp"
 #include "tests/support/allocation_count.hpp"
 
@@ -144,12 +145,14 @@ TEST_CASE("level surfaces tell roll and pitch before the first turn, once, and t
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d up_seen = exp_so3(Eigen::Vector3d(-0.5, 0.8, 0.0) * kRadPerDeg) * up;
   robot.drive(1.0, 0.0, kNoTurn);
-  robot.estimator().add_level(up, up_seen, 0.2 * kRadPerDeg);
+  const double variance = squared(0.2 * kRadPerDeg);
+  const LevelEvidence level{up, up_seen, variance * Eigen::Matrix3d::Identity()};
+  robot.estimator().add_level(level);
   const MountEstimate first = robot.estimate();
   CHECK(first.verdict == MountVerdict::kFound);
   CHECK(robot.error_deg().head<2>().cwiseAbs().maxCoeff() <
         0.05);  // 4 % of 0.8 deg are the share of 1 deg a priori
-  robot.estimator().add_level(up, up_seen, 0.2 * kRadPerDeg);
+  robot.estimator().add_level(level);
   CHECK(robot.estimate().covariance_rad2 == first.covariance_rad2);
   hundred_metres(robot);
   CHECK(robot.estimate().sigma_rad().x() < 0.6 * first.sigma_rad().x());
