@@ -32,7 +32,25 @@ void RegistrationStage::register_scan(const Scan& scan, const MapSnapshot& map, 
   const CpuTimer timer;
   registration_->register_scan(scan, map, out);
   out.pose.registration_ms = timer.elapsed_ms();
-  emit(out.pose, true);
+  silence_.scanned(out.pose.stamp_ns);
+  if (silence_.in_order(out.pose.stamp_ns)) {
+    emit(out.pose, true);
+  } else {
+    emit_late(out.pose);
+  }
+}
+
+// A pose of the prior is newer than this scan, as at the beginning of a slow lidar: the scan's pose, carried on to
+// the newest prior.
+void RegistrationStage::emit_late(const PoseEstimate& of_scan) {
+  PoseEstimate now;
+  if (!registration_->propagate(now)) return;
+  PoseEstimate carried = of_scan;
+  carried.stamp_ns = now.stamp_ns;
+  carried.T_map_base = now.T_map_base;
+  carried.T_map_odom = now.T_map_odom;
+  carried.covariance = now.covariance;
+  emit(carried, true);
 }
 
 // A scan without points: Registration predicts the motion up to its end, and the pose is the prior's.
@@ -41,6 +59,7 @@ void RegistrationStage::skip_scan(const DroppedScan& scan, const MapSnapshot& ma
   without_points_->sequence = scan.sequence;
   registration_->register_scan(*without_points_, map, scratch);
   scratch.pose.registration_ms = 0.0;
+  silence_.scanned(scratch.pose.stamp_ns);
   emit(scratch.pose, true);
 }
 

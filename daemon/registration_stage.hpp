@@ -24,7 +24,8 @@ class EstimateSink {
 };
 
 /// Registration as a stage: every scan of a ScanQueue gets one pose at its end, from the map or from the
-/// prior, and a silent lidar gets poses from the prior. Live runs (RegistrationThread) and replay (LockStep)
+/// prior, and a silent lidar gets poses from the prior. A scan that ends before a pose of silence yields its pose
+/// at the newest prior. Live runs (RegistrationThread) and replay (LockStep)
 /// run this same object. Allocates nothing after construction beyond what Registration does. One thread.
 class RegistrationStage {
  public:
@@ -61,6 +62,7 @@ class RegistrationStage {
 
  private:
   void emit(const PoseEstimate& pose, bool from_scan);
+  void emit_late(const PoseEstimate& of_scan);
 
   std::unique_ptr<Registration> registration_;
   EstimateSink& sink_;
