@@ -38,15 +38,15 @@ double dynamic_pressure_pa(const std::vector<RawPose>& raw, std::size_t i) {
 
 /// A pressure step at every change of zone, behind a low-pass of 1.5 s: after a door opens, the pressure
 /// settles within a second or two.
-void add_zones(std::vector<double>& pressure, const std::vector<int>& zones, double sigma_pa,
-               Random& random) {
-  if (zones.empty() || sigma_pa <= 0.0) return;
+void add_zones(std::vector<double>& pressure, const AirZones& air, double sigma_pa, Random& random) {
+  if (air.zone.empty() || (sigma_pa <= 0.0 && !air.zones)) return;
   // The paper's runs show steps of 2 to 35 cm: 0.2 to 4 Pa.
   const std::uint64_t seed = random.next();
   double offset = 0.0;
   for (std::size_t i = 0; i < pressure.size(); ++i) {
-    Random of_zone(seed, "zone", static_cast<std::uint64_t>(zones[std::min(i, zones.size() - 1)]));
-    const double wanted = std::clamp(of_zone.normal(sigma_pa), -2.0, 2.0);
+    Random of_zone(seed, "zone", static_cast<std::uint64_t>(air.zone[std::min(i, air.zone.size() - 1)]));
+    const double wanted = air.zones ? of_zone.sign() * of_zone.uniform(air.zones->low_pa, air.zones->high_pa)
+                                    : std::clamp(of_zone.normal(sigma_pa), -2.0, 2.0);
     offset = i == 0 ? wanted : offset + (wanted - offset) * SplineGrid::kStepS / 1.5;
     pressure[i] += offset;
   }
@@ -75,8 +75,8 @@ void add_door_pulses(const AirZones& air, double typical_pa, std::vector<double>
   const double end_s = SplineGrid::kStepS * static_cast<double>(robot.size());
   for (double t = random.exponential(mean_s); t < end_s; t += random.exponential(mean_s)) {
     const double sign = random.sign();
-    const double size = air.pulse_high_pa > 0.0 ? random.uniform(air.pulse_low_pa, air.pulse_high_pa)
-                                                : typical_pa * random.uniform(0.4, 1.6);
+    const double size = air.pulses ? random.uniform(air.pulses->low_pa, air.pulses->high_pa)
+                                   : typical_pa * random.uniform(0.4, 1.6);
     const double duration_s = random.uniform(0.5, 2.0);
     add_pulse(robot, t, duration_s, sign * size);
     add_pulse(base, t + 0.05, duration_s, sign * size * random.uniform(0.0, 0.6));
@@ -121,7 +121,7 @@ Atmosphere::Atmosphere(const Scenario& scenario, const AirErrors& errors, Random
     robot[i] += scenario.air.piston_pa_s_m * (errors.pulse_pa > 0.0 ? climb_m_s : 0.0);
     robot[i] += scenario.air.port_coefficient * dynamic_pressure_pa(scenario.raw, i);
   }
-  add_zones(robot, scenario.air.zone, errors.zone_sigma_pa, random);
+  add_zones(robot, scenario.air, errors.zone_sigma_pa, random);
   if (scenario.air.door_pulses_1_s > 0.0 && errors.pulse_pa > 0.0) {
     add_door_pulses(scenario.air, errors.pulse_pa, robot, base, random);
   }

@@ -23,6 +23,10 @@ std::string ramp_text(const Ramp& ramp) {
   return std::isinf(ramp.duration_s) ? text : text + ":" + number(ramp.duration_s);
 }
 
+std::string range_text(const PressureRange& range) {
+  return number(range.low_pa) + ":" + number(range.high_pa);
+}
+
 void add_barometer(std::vector<std::string>& options, const std::string& name,
                    const BarometerDeviation& deviation) {
   if (deviation.drift.rate_pa_s != 0.0) {
@@ -50,6 +54,10 @@ std::vector<std::string> Deviations::options() const {
     options.push_back("base-silent " + number(base_silent->start_s) + ":" +
                       number(base_silent->end_s - base_silent->start_s));
   }
+  if (airflow) options.push_back("airflow " + number(*airflow));
+  if (zones) options.push_back("zones " + range_text(*zones));
+  if (pulses) options.push_back("door-pulses " + range_text(*pulses));
+  if (start_at_s != 0.0) options.push_back("start-at " + number(start_at_s));
   if (without_imu) options.emplace_back("without imu");
   if (without_wheels) options.emplace_back("without wheels");
   if (without_base) options.emplace_back("without base");

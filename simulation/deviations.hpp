@@ -30,6 +30,10 @@ struct Deviations {
   Ramp common_ramp;                     ///< of the air at both barometers
   Oscillation common_gust;              ///< of the air at both barometers
   std::optional<TimeSpan> base_silent;  ///< the base station sends nothing
+  std::optional<double> airflow;  ///< share of the dynamic pressure of driving at the robot's port, signed
+  std::optional<PressureRange> zones;   ///< offsets of ventilated zones
+  std::optional<PressureRange> pulses;  ///< peaks of door pulses
+  double start_at_s = 0.0;  ///< the recording leaves out the run before this time: it begins in motion
   bool without_imu = false;
   bool without_wheels = false;
   bool without_base = false;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,10 +26,10 @@ struct SensorMounts {
 
 /// Sources of local pressure disturbances.
 struct AirZones {
-  std::vector<int> zone;          ///< ventilated zone that the robot is in, per raw sample
-  double door_pulses_1_s = 0.0;   ///< mean rate of door movements nearby
-  double pulse_low_pa = 0.0;      ///< least peak of a door pulse; 0 with pulse_high_pa: drawn by AirErrors
-  double pulse_high_pa = 0.0;     ///< largest peak of a door pulse
+  std::vector<int> zone;                ///< ventilated zone that the robot is in, per raw sample
+  double door_pulses_1_s = 0.0;         ///< mean rate of door movements nearby
+  std::optional<PressureRange> pulses;  ///< peaks of door pulses; none: drawn by AirErrors
+  std::optional<PressureRange> zones;   ///< offsets of zones, of either sign; none: drawn by AirErrors
   double piston_pa_s_m = 0.0;     ///< piston effect of an elevator: pressure in the cabin per m/s of climb
   double port_coefficient = 0.0;  ///< share of the dynamic pressure of driving that acts on the port
   double wind_m_s = 0.0;          ///< mean wind outdoors, whose gusts act on both ports; 0: indoors

@@ -69,8 +69,7 @@ Scenario make_corridor(std::uint64_t seed, bool short_form) {
     scenario.air.zone.push_back(static_cast<int>(3.0 * pose.x_m / length_m));
   }
   scenario.air.door_pulses_1_s = 1.0 / random.uniform(15.0, 30.0);
-  scenario.air.pulse_low_pa = 1.0;
-  scenario.air.pulse_high_pa = 8.0;
+  scenario.air.pulses = PressureRange{1.0, 8.0};
   scenario.air_temperature_c = random.uniform(18.5, 24.0);
   scenario.base_height_m = random.uniform(0.5, 1.5);
   scenario.start_pressure_pa = 101'325.0 + random.normal(900.0);

@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "core/errors.hpp"
 #include "run/recording/recording_writer.hpp"
 #include "simulation/atmosphere.hpp"
 #include "simulation/barometer_model.hpp"
@@ -84,6 +85,7 @@ struct Run {
 
   [[nodiscard]] Random random(std::string_view name) const { return Random(request.seed, name); }
   [[nodiscard]] const Deviations& deviations() const { return request.deviations; }
+  [[nodiscard]] bool is_recorded(double time_s) const { return time_s >= deviations().start_at_s; }
 };
 
 /// Delay of a stamp by the scheduling of the machine that takes it.
@@ -96,7 +98,9 @@ void write_imu(const Run& run) {
   Random jitter = run.random("imu stamps");
   for (double t = 0.0; t <= run.duration_s; t += 1.0 / ImuModel::kRateHz) {
     ImuSample sample = imu.sample(t);
-    sample.stamp_ns = run.robot.stamp_ns(t + stamp_jitter_s(jitter));
+    const double jitter_s = stamp_jitter_s(jitter);
+    if (!run.is_recorded(t)) continue;
+    sample.stamp_ns = run.robot.stamp_ns(t + jitter_s);
     run.writer.add_imu(sample);
   }
 }
@@ -108,7 +112,9 @@ void write_wheels(const Run& run) {
   Random jitter = run.random("wheel stamps");
   for (double t = 0.003; t <= run.duration_s; t += 1.0 / WheelModel::kRateHz) {
     WheelSample sample = wheels.sample(t);
-    sample.stamp_ns = run.robot.stamp_ns(t + stamp_jitter_s(jitter));
+    const double jitter_s = stamp_jitter_s(jitter);
+    if (!run.is_recorded(t)) continue;
+    sample.stamp_ns = run.robot.stamp_ns(t + jitter_s);
     run.writer.add_wheel(sample);
   }
 }
@@ -133,7 +139,7 @@ void write_robot_pressure(const Run& run, const Atmosphere& air, BarometerModel&
   sample.pressure_pa += deviation.drift.at(time_s);
   sample.temperature_c += deviation.thermometer_offset_k;
   sample.stamp_ns = run.robot.stamp_ns(time_s + stamp_jitter_s(jitter));
-  if (!run.deviations().without_barometer) run.writer.add_pressure(sample);
+  if (!run.deviations().without_barometer && run.is_recorded(time_s)) run.writer.add_pressure(sample);
 }
 
 void write_base_pressure(const Run& run, const Atmosphere& air, BarometerModel& model, std::uint64_t n,
@@ -145,7 +151,8 @@ void write_base_pressure(const Run& run, const Atmosphere& air, BarometerModel& 
   sample.temperature_c += deviation.thermometer_offset_k;
   sample.stamp_ns = clock.stamp_ns(time_s + stamp_jitter_s(jitter));
   const auto& silent = run.scenario.base_silent;
-  if (run.deviations().without_base || !is_sent(n, run.deviations().base_rate_hz) ||
+  if (run.deviations().without_base || !run.is_recorded(time_s) ||
+      !is_sent(n, run.deviations().base_rate_hz) ||
       std::any_of(silent.begin(), silent.end(),
                   [&](const TimeSpan& span) { return span.contains(time_s); })) {
     return;
@@ -175,6 +182,7 @@ void write_pressure(const Run& run) {
 
 void write_truth(const Run& run) {
   for (double t = 0.0; t <= run.duration_s; t += 0.01) {
+    if (!run.is_recorded(t)) continue;
     const MotionState state = run.scenario.trajectory.at(t);
     Eigen::Isometry3d T_world_base = Eigen::Isometry3d::Identity();
     T_world_base.linear() = state.q_world_base.toRotationMatrix();
@@ -183,8 +191,10 @@ void write_truth(const Run& run) {
   }
   for (const LabelledSpan& span : run.scenario.labels) {
     if (span.start_s >= run.duration_s) break;
+    const double start_s = std::max(span.start_s, run.deviations().start_at_s);
     const double end_s = std::min(span.end_s, run.duration_s);
-    run.writer.add_segment({run.robot.stamp_ns(span.start_s), run.robot.stamp_ns(end_s), span.label});
+    if (start_s > end_s) continue;
+    run.writer.add_segment({run.robot.stamp_ns(start_s), run.robot.stamp_ns(end_s), span.label});
   }
 }
 
@@ -196,7 +206,8 @@ void write_lidar(const Run& run, const std::function<void(double)>& progress) {
   const std::uint64_t workers = std::clamp(std::thread::hardware_concurrency(), 1U, 16U);
   constexpr std::uint64_t kBatch = 512;
   std::vector<ReceivedPacket> batch(kBatch);
-  for (std::uint64_t first = 0; first < total; first += kBatch) {
+  const auto begin = static_cast<std::uint64_t>(run.deviations().start_at_s / LidarModel::packet_time_s(1));
+  for (std::uint64_t first = begin; first < total; first += kBatch) {
     const std::uint64_t count = std::min(kBatch, total - first);
     const auto work = [&](std::uint64_t worker) {
       for (std::uint64_t i = worker; i < count; i += workers) batch[i] = lidar.packet(first + i);
@@ -243,9 +254,23 @@ recording::Manifest make_manifest(const ScenarioRequest& request, const Scenario
 /// Scenario of a request, with the deviations of its air and its base station.
 Scenario make_scenario(const ScenarioRequest& request) {
   Scenario scenario = find_scenario(request.name).make(request.seed, request.short_form);
-  scenario.air.common_ramp = request.deviations.common_ramp;
-  scenario.air.common_gust = request.deviations.common_gust;
-  if (request.deviations.base_silent) scenario.base_silent.push_back(*request.deviations.base_silent);
+  const Deviations& deviations = request.deviations;
+  scenario.air.common_ramp = deviations.common_ramp;
+  scenario.air.common_gust = deviations.common_gust;
+  if (deviations.base_silent) scenario.base_silent.push_back(*deviations.base_silent);
+  if (deviations.airflow) scenario.air.port_coefficient = *deviations.airflow;
+  if (deviations.zones && scenario.air.zone.empty()) {
+    throw UsageError("zones: scenario '" + request.name + "' has no ventilated zones");
+  }
+  if (deviations.zones) scenario.air.zones = deviations.zones;
+  if (deviations.pulses) {
+    constexpr double kUsualPulses1S = 1.0 / 60.0;  // of a building
+    scenario.air.pulses = deviations.pulses;
+    if (scenario.air.door_pulses_1_s == 0.0) scenario.air.door_pulses_1_s = kUsualPulses1S;
+  }
+  if (deviations.start_at_s >= std::min(request.stop_after_s, scenario.trajectory.duration_s())) {
+    throw UsageError("start-at: the run of scenario '" + request.name + "' ends before that");
+  }
   return scenario;
 }
 

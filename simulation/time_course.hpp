@@ -17,6 +17,12 @@ struct TimeSpan {
   [[nodiscard]] bool contains(double time_s) const { return time_s >= start_s && time_s < end_s; }
 };
 
+/// Magnitudes of random pressures, low_pa … high_pa.
+struct PressureRange {
+  double low_pa = 0.0;
+  double high_pa = 0.0;  ///< > 0
+};
+
 /// Pressure that changes at a constant rate for a while and keeps its value afterwards.
 struct Ramp {
   double rate_pa_s = 0.0;

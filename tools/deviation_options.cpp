@@ -62,6 +62,16 @@ class Words {
     return ramp;
   }
 
+  /// LOW_PA:HIGH_PA.
+  [[nodiscard]] simulation::PressureRange range() const {
+    require_count(2, 2, "LOW_PA:HIGH_PA");
+    const simulation::PressureRange range{number(0), number(1)};
+    if (range.low_pa < 0.0 || range.high_pa <= 0.0 || range.low_pa > range.high_pa) {
+      fail("must be two pressures, 0 Pa or more, the lower one first");
+    }
+    return range;
+  }
+
  private:
   std::string option_;
   std::string text_;
@@ -97,6 +107,13 @@ void add_air_options(CLI::App& command, Deviations& deviations) {
           words.fail("the frequency must be more than 0 and at most 2 Hz");
         }
       });
+}
+
+void add_indoor_options(CLI::App& command, Deviations& deviations) {
+  add(command, "zones", "LOW_PA:HIGH_PA", "offsets of the ventilated zones that the robot passes",
+      [&deviations](const Words& words) { deviations.zones = words.range(); });
+  add(command, "door-pulses", "LOW_PA:HIGH_PA", "peaks of the pressure pulses of doors",
+      [&deviations](const Words& words) { deviations.pulses = words.range(); });
 }
 
 void add_barometer_options(CLI::App& command, Deviations& deviations) {
@@ -139,6 +156,19 @@ void add_deviation_options(CLI::App& command, Deviations& deviations) {
       ->group(kGroup);
   add_barometer_options(command, deviations);
   add_air_options(command, deviations);
+  add_indoor_options(command, deviations);
+  add(command, "airflow", "SHARE",
+      "share of the dynamic pressure of driving at the robot's port, of either sign",
+      [&deviations](const Words& words) {
+        words.require_count(1, 1, "SHARE");
+        deviations.airflow = words.number(0);
+      });
+  command
+      .add_option("--start-at", deviations.start_at_s,
+                  "leave out the run before this time [s]: the recording begins in motion")
+      ->check(CLI::NonNegativeNumber)
+      ->option_text("S")
+      ->group(kGroup);
   add(command, "without", "imu|wheels|base|barometer", "leaves a sensor out; may be given several times",
       [&deviations](const Words& words) {
         words.require_count(1, 1, "imu, wheels, base or barometer");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "simulation/atmosphere.hpp"
@@ -89,6 +90,82 @@ TEST_CASE("a door causes a short pulse that is over two seconds later") {
   CHECK(peak < 20.0);
   CHECK(disturbed > 50);  // 1000 s with one pulse per minute, of about one second each
   CHECK(disturbed < 600);
+}
+
+TEST_CASE("zones, door pulses and the flow at the port have the sizes asked for") {
+  Scenario scenario = make_still_scenario();
+  for (std::size_t i = 0; i < scenario.air.zone.size(); ++i) {
+    scenario.air.zone[i] = static_cast<int>(i / 1000);  // twenty zones of 50 s
+  }
+  scenario.air.zones = PressureRange{1.0, 4.0};
+  const Atmosphere zoned(scenario, AirErrors{}, Random(1));
+  int up = 0;
+  for (int zone = 0; zone < 20; ++zone) {
+    const double offset_pa = zoned.robot_pa(50.0 * zone + 45.0, 0.0) - scenario.start_pressure_pa;
+    CHECK(std::abs(offset_pa) > 0.99);
+    CHECK(std::abs(offset_pa) < 4.01);
+    up += offset_pa > 0.0 ? 1 : 0;
+  }
+  CHECK(up > 2);
+  CHECK(up < 18);
+
+  scenario = make_still_scenario();
+  scenario.air.door_pulses_1_s = 1.0 / 60.0;
+  scenario.air.pulses = PressureRange{7.0, 8.0};
+  AirErrors errors;
+  errors.pulse_pa = 1.0;
+  const Atmosphere pulsed(scenario, errors, Random(2));
+  double largest_pa = 0.0;
+  for (double t = 0.0; t < 1000.0; t += 0.01) {
+    largest_pa = std::max(largest_pa, std::abs(pulsed.robot_pa(t, 0.0) - scenario.start_pressure_pa));
+  }
+  CHECK(largest_pa > 6.0);   // the spline of 0.05 s rounds the peak of a half sine wave of 0.3 s or more
+  CHECK(largest_pa < 16.1);  // two at once
+
+  scenario = make_still_scenario();
+  for (std::size_t i = 0; i < scenario.raw.size(); ++i) scenario.raw[i].x_m = 0.15 * static_cast<double>(i);
+  scenario.air.port_coefficient = -1.0 / 3.0;
+  const Atmosphere flown(scenario, AirErrors{}, Random(3));
+  CHECK(flown.robot_pa(500.0, 0.0) - scenario.start_pressure_pa == doctest::Approx(-1.8));  // at 3 m/s
+}
+
+TEST_CASE(
+    "gusts of wind: pascals at both ports, independent of each other; the mean is the share of the "
+    "dynamic pressure") {
+  Scenario scenario = make_still_scenario();
+  scenario.air.wind_m_s = 5.0;
+  scenario.air.port_wind_share = 0.2;
+  scenario.air.base_wind_share = -0.1;
+  const Atmosphere air(scenario, AirErrors{}, Random(8));
+  const double base_rest_pa = Atmosphere(make_still_scenario(), AirErrors{}, Random(8)).base_pa(10.0);
+  double robot_sum = 0.0;
+  double base_sum = 0.0;
+  double robot_square = 0.0;
+  double base_square = 0.0;
+  double product = 0.0;
+  int count = 0;
+  for (double t = 20.0; t < 1000.0; t += 0.5) {
+    const double robot_pa = air.robot_pa(t, 0.0) - scenario.start_pressure_pa;
+    const double base_pa = air.base_pa(t) - base_rest_pa;
+    robot_sum += robot_pa;
+    base_sum += base_pa;
+    robot_square += robot_pa * robot_pa;
+    base_square += base_pa * base_pa;
+    product += robot_pa * base_pa;
+    ++count;
+  }
+  const double robot_mean = robot_sum / count;
+  const double base_mean = base_sum / count;
+  // 0.6 kg/m^3 (25 + 0.09 * 25) m^2/s^2 = 16.4 Pa, less the low-pass. Eddies of 5 s in 980 s: 98 independent
+  // ones, an rms of 60 % of the mean: 6 %, at three sigma 18 %.
+  CHECK(robot_mean == doctest::Approx(0.2 * 16.2).epsilon(0.2));
+  CHECK(base_mean == doctest::Approx(-0.1 * 16.2).epsilon(0.2));
+  const double robot_sd = std::sqrt(robot_square / count - robot_mean * robot_mean);
+  const double base_sd = std::sqrt(base_square / count - base_mean * base_mean);
+  CHECK(robot_sd > 1.0);
+  CHECK(robot_sd < 3.0);
+  const double correlation = (product / count - robot_mean * base_mean) / (robot_sd * base_sd);
+  CHECK(std::abs(correlation) < 0.4);  // of 98 independent samples: 0.1, at four sigma
 }
 
 TEST_CASE("during warm-up, pressure and temperature follow the same exponential") {

@@ -17,6 +17,7 @@
 
 #include <sstream>
 
+#include "core/errors.hpp"
 #include "run/recording/manifest.hpp"
 #include "simulation/simulate.hpp"
 
@@ -121,6 +122,10 @@ TEST_CASE("a deviation changes its own files only: the other files are those of 
          d.common_gust = {3.0, 0.2};
        }},
       {"lidar.pcap imu.csv", [](Deviations& d) { d.mount_error_deg = 0.5; }},
+      {"barometer.csv",
+       [](Deviations& d) {
+         d.zones = PressureRange{1.0, 4.0};
+       }},
       {"imu.csv", [](Deviations& d) { d.without_imu = true; }},
       {"wheel.csv", [](Deviations& d) { d.without_wheels = true; }},
       {"base_barometer.csv", [](Deviations& d) { d.without_base = true; }},
@@ -224,9 +229,46 @@ TEST_CASE("mounting errors have the size asked for; the manifest keeps what the 
   CHECK(sum / count < 4.0 * 1.52);
 }
 
+TEST_CASE("a recording that starts later is the rest of the whole one, row by row and packet by packet") {
+  Recordings recordings;
+  Deviations deviations;
+  deviations.start_at_s = 1.0;
+  const fs::path whole = recordings.make({});
+  const fs::path rest = recordings.make(deviations);
+  for (const char* name : {"imu.csv", "wheel.csv", "barometer.csv", "base_barometer.csv", "reference.tum"}) {
+    CAPTURE(name);
+    const std::string later = content(rest / name);
+    const std::string all = content(whole / name);
+    const std::string body = later.substr(later.find('\n') + 1);
+    CHECK(later.size() > all.size() / 3);
+    CHECK(later.size() < 2 * all.size() / 3);
+    CHECK(all.ends_with(body));
+  }
+  // A record of the pcap file: 16 bytes, Ethernet, IPv4 and UDP headers of 42, a packet of 1206.
+  constexpr std::size_t kRecordBytes = 16 + 42 + 1206;
+  constexpr std::size_t kPacketBytes = 1206;
+  const std::string packets = content(rest / "lidar.pcap");
+  const std::string all = content(whole / "lidar.pcap");
+  CHECK(packets.size() > all.size() / 3);
+  CHECK(packets.size() < 2 * all.size() / 3);
+  for (std::size_t last = kPacketBytes; last < packets.size(); last += kRecordBytes) {
+    CHECK(
+        (packets.substr(packets.size() - last, kPacketBytes) == all.substr(all.size() - last, kPacketBytes)));
+  }
+  deviations.start_at_s = 100'000.0;
+  CHECK_THROWS_AS(recordings.make(deviations), UsageError);
+}
+
+TEST_CASE("a place without ventilated zones refuses to give them offsets") {
+  Recordings recordings;
+  Deviations deviations;
+  deviations.zones = PressureRange{3.0, 4.0};
+  CHECK_THROWS_AS(recordings.make(deviations, 0.1, "moulin"), UsageError);
+}
+
 TEST_CASE("names of recordings differ by scenario, seed, form and every deviation") {
   std::set<std::string> names;
-  std::vector<Deviations> all(11);
+  std::vector<Deviations> all(15);
   all[1].mount_error_deg = 0.5;
   all[2].robot.drift = {0.5, 60.0, 70.0};
   all[3].base.drift = {0.5, 60.0, 70.0};
@@ -237,6 +279,10 @@ TEST_CASE("names of recordings differ by scenario, seed, form and every deviatio
   all[8].common_gust = {3.0, 0.2};
   all[9].base_silent = TimeSpan{60.0, 180.0};
   all[10].without_wheels = true;
+  all[11].airflow = -0.3;
+  all[12].zones = PressureRange{1.0, 4.0};
+  all[13].pulses = PressureRange{1.0, 4.0};
+  all[14].start_at_s = 20.0;
   for (const Deviations& deviations : all) {
     const std::string name = recording_name({"hill", 2, true, INFINITY, deviations});
     CHECK(name.find_first_of(" :/") == std::string::npos);

@@ -37,12 +37,14 @@ TEST_CASE("every fault that isobar simulate offers reaches the recording; each m
   CHECK(simulate({"--out",       out,         "--mount-error", "0.5",      "--drift",       "robot:0.5:60:70",
                   "--drift",     "base:-0.1", "--thermometer", "base:-20", "--base-silent", "60:120",
                   "--base-rate", "4",         "--common-ramp", "1:10",     "--common-gust", "3:0.2",
-                  "--without",   "imu",       "--without",     "wheels"}) == 0);
+                  "--airflow",   "-0.3",      "--zones",       "1:4",      "--door-pulses", "1:8",
+                  "--start-at",  "0.01",      "--without",     "imu",      "--without",     "wheels"}) == 0);
   const std::string manifest = read_text_file(out + "/recording.toml");
-  for (const char* option :
+  for (const std::string option :
        {"--mount-error 0.5;", "--drift robot:0.5:60:70;", "--drift base:-0.1;", "--thermometer base:-20;",
         "--base-silent 60:120;", "--base-rate 4;", "--common-ramp 1:10;", "--common-gust 3:0.2;",
-        "--without imu;", "--without wheels;"}) {
+        "--airflow -0.3;", "--zones 1:4;", "--door-pulses 1:8;", "--start-at 0.01;", "--without imu;",
+        "--without wheels;"}) {
     CAPTURE(option);
     CHECK(manifest.find(option) != std::string::npos);
   }
@@ -70,7 +72,13 @@ TEST_CASE("every fault that isobar simulate offers reaches the recording; each m
                                                         {"--common-gust", "3:5"},
                                                         {"--common-ramp", ""},
                                                         {"--without", "lidar"},
-                                                        {"--mount-error", "-1"}}) {
+                                                        {"--mount-error", "-1"},
+                                                        {"--zones", "4:1"},
+                                                        {"--zones", "-1:2"},
+                                                        {"--door-pulses", "3"},
+                                                        {"--airflow", "much"},
+                                                        {"--start-at", "-1"},
+                                                        {"--start-at", "5"}}) {
     CAPTURE(option);
     CAPTURE(value);
     CHECK(simulate({"--out", never, option, value}) == 64);
