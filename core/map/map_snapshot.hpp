@@ -22,9 +22,9 @@ struct PlaneMatch {
   Eigen::Vector3f q_local = Eigen::Vector3f::Zero();  ///< the plane's point [m]
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();   ///< the plane's unit normal, towards the observer
   bool found = false;
+  bool in_own_cell = false;  ///< the plane is that of the point's own cell, and not extrapolated to the point
 
   // Cache: written and read by the matcher only.
-  bool in_own_cell = false;            ///< the plane is that of the point's own cell
   CellIndex cell = CellIndex::Zero();  ///< cell of the point in the last call
   Eigen::Vector3f p_searched =
       Eigen::Vector3f::Zero();  ///< point at the last search for the nearest plane [m]

@@ -129,7 +129,9 @@ bool NearestPlane::match_one(const MatchQuery& query, const Eigen::Vector3f& p_l
 void NearestPlane::match(const MatchQuery& query, std::span<const Eigen::Vector3f> p_local,
                          std::span<PlaneMatch> matches) const {
   for (std::size_t i = 0; i < p_local.size(); ++i) {
-    matches[i].found = match_one(query, p_local[i], matches[i]);
+    PlaneMatch& match = matches[i];
+    match.found = match_one(query, p_local[i], match);
+    match.in_own_cell = match.found && query.frame.cell_of(match.q_local) == query.frame.cell_of(p_local[i]);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/map/plane_fitter.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bitset>
 #include <cmath>
@@ -22,6 +23,18 @@ PlaneCriteria criteria_of(const MapConfig& config) {
 // True if both cells were seen from the same side.
 bool same_way(const MapCell& a, const MapCell& b) {
   return a.facing[0] * b.facing[0] + a.facing[1] * b.facing[1] + a.facing[2] * b.facing[2] > 0;
+}
+
+// Noise of a single point along the normal, standard deviation [m].
+constexpr float kPointNoiseM = 0.01F;
+
+// Share of the distance between a cell's own mean and the plane of its neighbourhood that the cell keeps, 0 … 1: the
+// posterior mean under the roughness of the surface (variance of the cells' means about the plane) and the noise of
+// `count` points. A plane moved off its own points would pull each scan that sees them again.
+float own_share(float count, float thickness_m) {
+  const float noise2 = kPointNoiseM * kPointNoiseM;
+  const float roughness2 = std::max(0.0F, thickness_m * thickness_m - noise2);
+  return count * roughness2 / (count * roughness2 + noise2);
 }
 
 }  // namespace
@@ -114,14 +127,15 @@ bool PlaneFitter::fit(Surroundings& around, const MapCell& cell, PackedPlane& pa
       !fit_plane(cube_around(around.centre(), cell.slot), criteria_, plane)) {
     return false;
   }
-  // The stored point is the cell's own mean, projected onto the plane. A plane far from the mean is not the
-  // cell's own surface.
+  // The stored point is the cell's own mean, moved towards the plane. A plane far from the mean is not the cell's
+  // own surface.
   const Eigen::Vector3f mean = cell.moments.mean_m(cell_m_);
   const float off_plane = plane.normal.dot(mean - plane.mean);
   if (std::abs(off_plane) > 2.0F * criteria_.max_thickness_m) {
     return false;
   }
-  const Eigen::Vector3f q_cell = mean - off_plane * plane.normal;
+  const float kept = own_share(static_cast<float>(cell.moments.count()), plane.thickness_m);
+  const Eigen::Vector3f q_cell = mean - (1.0F - kept) * off_plane * plane.normal;
   const CellIndex offset = offset_of(cell.slot % kPlacesPerBlock);
   const Eigen::Vector3f centre_block = (offset.cast<float>().array() + 0.5F * (1 - kBlockCells)) * cell_m_;
   const bool away = plane.normal.dot(cell.facing_vector()) < 0.0F;

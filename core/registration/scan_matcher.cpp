@@ -46,14 +46,15 @@ ScanMatcher::Iteration ScanMatcher::iterate(const MatchProblem& problem, const P
                                             const SearchSchedule& schedule,
                                             const Eigen::Isometry3d& T_map_base) {
   const double distance_m = schedule.distance_m();
-  const std::span<const Pair> pairs = correspondences_.find(problem.map, problem.p_base, schedule.stride(),
-                                                            T_map_base, p_base_lidar_, distance_m);
+  const std::span<const Pair> pairs =
+      correspondences_.find(problem.map, problem.p_base, schedule.stride(), T_map_base, p_base_lidar_,
+                            distance_m, schedule.choice());
   const float scale_m = residual_scale_m(pairs, noise, static_cast<float>(distance_m) / 2.0F);
   const NormalEquations equations = accumulate(pairs, noise, scale_m);
   Iteration iteration;
   iteration.step = solve_step(equations, prior_term(problem.prediction, T_map_base), problem.traits.basis,
                               weights(scale_m, schedule.share()));
-  iteration.pair_count = pairs.size() * schedule.stride();
+  iteration.pair_count = correspondences_.matched() * schedule.stride();
   iteration.residual_rms_m =
       equations.weight_sum > 0.0 ? std::sqrt(equations.squared_error_sum / equations.weight_sum) : 0.0;
   return iteration;

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "core/geometry.hpp"
+#include "core/registration/correspondences.hpp"
 #include "core/registration/registration_config.hpp"
 #include "core/registration/twist.hpp"
 
@@ -13,7 +14,7 @@ namespace isobar {
 
 /// At most two coarse iterations over every third point, then fine ones over all points; meanwhile the search
 /// distance halves down to RegistrationConfig::last_distance_m. Only a fine iteration at that distance ends
-/// the registration.
+/// the registration. Once a step was small, only planes of the points' own cells count.
 class SearchSchedule {
  public:
   /// `prior_error_m`: twice the standard deviation of the prediction in the free directions; widens the first
@@ -28,18 +29,20 @@ class SearchSchedule {
   /// Largest distance of a correspondence [m].
   [[nodiscard]] double distance_m() const { return distance_m_; }
 
+  /// Which planes count.
+  [[nodiscard]] PairChoice choice() const { return settled_ ? PairChoice::kOwnCell : PairChoice::kNearest; }
+
   /// True where the step just taken ends the registration: fine, at the last distance, and small.
   [[nodiscard]] bool converged(const Vector6d& step) const {
-    return fine() && distance_m_ <= config_.last_distance_m &&
-           below(step, config_.convergence_m, config_.convergence_deg * kRadPerDeg);
+    return settled_ && below(step, config_.convergence_m, config_.convergence_deg * kRadPerDeg);
   }
 
   /// Chooses the next iteration after `step`.
   void advance(const Vector6d& step) {
     if (!fine()) coarse_left_ = below(step, kSmallStepM, kSmallStepRad) ? 0 : coarse_left_ - 1;
-    const bool near = fine() && step.tail<3>().norm() < kSmallStepM;
+    settled_ = fine() && step.tail<3>().norm() < kSmallStepM;
     distance_m_ =
-        near ? config_.last_distance_m : std::max(config_.last_distance_m, distance_m_ * kDistanceShrink);
+        settled_ ? config_.last_distance_m : std::max(config_.last_distance_m, distance_m_ * kDistanceShrink);
   }
 
  private:
@@ -61,6 +64,7 @@ class SearchSchedule {
   RegistrationConfig config_;
   double distance_m_;
   int coarse_left_ = kCoarseIterations;
+  bool settled_ = false;  // fine, at the last distance, after a small step
 };
 
 }  // namespace isobar

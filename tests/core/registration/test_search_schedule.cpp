@@ -29,6 +29,9 @@ TEST_CASE(
     distance_m = std::max(config.last_distance_m, 0.5 * distance_m);
   }
   CHECK(schedule.distance_m() == config.last_distance_m);
+  // The steps are large: the pose is still off, and nothing ends here.
+  CHECK(schedule.choice() == PairChoice::kNearest);
+  CHECK_FALSE(schedule.converged(step_of(0.0)));
 }
 
 TEST_CASE("a small coarse step goes to the fine iterations at the last distance at once") {
@@ -36,7 +39,9 @@ TEST_CASE("a small coarse step goes to the fine iterations at the last distance 
   SearchSchedule schedule(config, 100.0);
   CHECK(schedule.distance_m() == doctest::Approx(config.first_distance_m + 2.0));
   CHECK_FALSE(schedule.converged(step_of(0.0)));  // coarse iterations never end a registration
+  CHECK(schedule.choice() == PairChoice::kNearest);
   schedule.advance(step_of(0.001));
+  CHECK(schedule.choice() == PairChoice::kOwnCell);
   CHECK(schedule.stride() == 1);
   CHECK(schedule.distance_m() == config.last_distance_m);
   CHECK(schedule.converged(step_of(0.5 * config.convergence_m)));
