@@ -54,6 +54,20 @@ void RayCaster::intersect(const Leaf& leaf, const Vector3f& origin, const Vector
   }
 }
 
+std::vector<std::array<Vector3f, 3>> RayCaster::triangles() const {
+  std::vector<std::array<Vector3f, 3>> all;
+  for (const Leaf& leaf : leaves_) {
+    for (std::size_t lane = 0; lane < kLeafSize; ++lane) {
+      if (leaf.index[lane] == kNoTriangle) continue;
+      const Vector3f a(leaf.corner[0][lane], leaf.corner[1][lane], leaf.corner[2][lane]);
+      const Vector3f ab(leaf.edge1[0][lane], leaf.edge1[1][lane], leaf.edge1[2][lane]);
+      const Vector3f ac(leaf.edge2[0][lane], leaf.edge2[1][lane], leaf.edge2[2][lane]);
+      all.push_back({a, a + ab, a + ac});
+    }
+  }
+  return all;
+}
+
 Hit RayCaster::cast(const Vector3f& origin, const Vector3f& direction, float limit_m) const {
   Hit hit{limit_m, 0.0F, Surface::kPlaster, false};
   if (nodes_.empty()) return hit;

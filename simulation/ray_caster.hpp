@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -29,6 +30,9 @@ class RayCaster {
   /// Nearest hit on the ray origin + t direction, 0 < t < limit_m; `direction`: unit vector.
   [[nodiscard]] Hit cast(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
                          float limit_m) const;
+
+  /// All triangles, in any order; their corners are rounded to single precision once more.
+  [[nodiscard]] std::vector<std::array<Eigen::Vector3f, 3>> triangles() const;
 
   /// Corners of the bounding box [m].
   [[nodiscard]] Eigen::Vector3f low() const { return low_; }

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "core/errors.hpp"
+#include "run/files/stl_file.hpp"
 #include "run/recording/recording_writer.hpp"
 #include "simulation/atmosphere.hpp"
 #include "simulation/barometer_model.hpp"
@@ -290,6 +291,7 @@ void simulate(const ScenarioRequest& request, const std::filesystem::path& out_d
   if (has_wheels(request, scenario)) write_wheels(run);
   write_pressure(run);
   write_truth(run);
+  files::write_stl(out_dir / files::kSurfacesFile, scenario.world.standing().triangles());
   write_lidar(run, progress);
   writer.close();
 }

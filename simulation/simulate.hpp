@@ -35,7 +35,7 @@ struct ScenarioInfo {
 /// Name of the recording of a request, for files: "SCENARIO-SEED", with "-short" and the deviations.
 [[nodiscard]] std::string recording_name(const ScenarioRequest& request);
 
-/// Writes a complete recording (recording.toml, lidar.pcap, CSV files, reference.tum, segments.csv) to
+/// Writes a complete recording (recording.toml, lidar.pcap, CSV files, reference.tum, segments.csv, surfaces.stl) to
 /// `out_dir`, which is created if missing. The manifest holds the mounts that the robot believes; its
 /// description the deviations and the true mounts. On one machine, the same request gives byte-identical files,
 /// independent of the number of cores. `progress` is called with 0 … 1 from the calling thread; it may be

@@ -26,6 +26,9 @@ class World {
   World() = default;
   World(const Mesh& standing, std::vector<MovingBody> moving);
 
+  /// Everything that does not move.
+  [[nodiscard]] const RayCaster& standing() const { return standing_; }
+
   /// Positions of the bodies at one time.
   struct Moment {
     struct Body {

@@ -59,6 +59,7 @@ EvaluatedMethod evaluate_one(const ReferenceData& reference, const EstimateSourc
   const Eigen::Isometry3f transform = method.evaluation.T_reference_estimate.cast<float>();
   for (auto& point : method.map_points)
     Eigen::Map<Eigen::Vector3f>(point.data()) = transform * Eigen::Vector3f(point.data());
+  if (reference.surfaces) method.evaluation.figures.map = map_figures(method.map_points, *reference.surfaces);
   return method;
 }
 
@@ -95,6 +96,15 @@ ReferenceData load_reference(const fs::path& path, const std::optional<fs::path>
   std::optional<fs::path> file = segments_file;
   if (!file && is_recording && fs::exists(path / "segments.csv")) file = path / "segments.csv";
   if (file) reference.segments = text::read_segments(text::TextLines(*file));
+  if (is_recording && fs::exists(path / files::kSurfacesFile)) {
+    std::vector<files::SurfaceTriangle> triangles = files::read_stl(path / files::kSurfacesFile);
+    if (triangles.size() <= SurfaceIndex::kMaxTriangles) {
+      reference.surfaces = std::make_shared<SurfaceIndex>(std::move(triangles));
+    } else {
+      reference.notes.push_back("The reference has too many surfaces (" + std::to_string(triangles.size()) +
+                                " triangles): the accuracy of the map is left out.");
+    }
+  }
   if (reference.trajectory.repairs.cut_line > 0) {
     reference.notes.push_back(cut_note("The reference", reference.trajectory.repairs));
   }

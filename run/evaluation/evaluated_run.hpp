@@ -4,6 +4,7 @@
 
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,11 +18,12 @@ namespace isobar::evaluation {
 struct ReferenceData {
   std::filesystem::path source;
   Trajectory trajectory;
-  std::vector<Segment> segments;   ///< may be empty
-  std::vector<std::string> notes;  ///< whole sentences, e.g. about repaired stamps
+  std::vector<Segment> segments;                 ///< may be empty
+  std::shared_ptr<const SurfaceIndex> surfaces;  ///< true surfaces, in the reference's frame; null: unknown
+  std::vector<std::string> notes;                ///< whole sentences, e.g. about repaired stamps
 };
 
-/// Reads a .tum file, or a recording folder with reference.tum and optionally segments.csv.
+/// Reads a .tum file, or a recording folder with reference.tum and optionally segments.csv and surfaces.stl.
 /// @param segments_file read instead of the folder's segments.csv
 /// @throws DataError naming the file when it cannot be read or breaks its format
 ReferenceData load_reference(const std::filesystem::path& path,

@@ -12,6 +12,7 @@
 #include "run/evaluation/consistency.hpp"
 #include "run/evaluation/relative_error.hpp"
 #include "run/evaluation/segments.hpp"
+#include "run/evaluation/surface_index.hpp"
 #include "run/evaluation/trajectory.hpp"
 
 namespace isobar::evaluation {
@@ -78,6 +79,7 @@ struct MethodFigures {
   double settled_floors_mean_m = kNone;
   double settled_floors_worst_m = kNone;
   ConsistencyFigures consistency;
+  MapFigures map;              ///< set by evaluate_methods()
   double sigma_share = kNone;  ///< share of poses with a height error of at most two sigma, 0 … 1
 };
 

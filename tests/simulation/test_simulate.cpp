@@ -66,7 +66,7 @@ TEST_CASE("the same seed gives byte-identical files, another seed different ones
     const auto second = read_all(scratch / (name + "-b").c_str());
     const auto other = read_all(scratch / (name + "-c").c_str());
     const bool wheels = name != "moulin";
-    CHECK(first.size() == (wheels ? 8 : 7));
+    CHECK(first.size() == (wheels ? 9 : 8));
     CHECK(first.count("wheel.csv") == (wheels ? 1 : 0));
     for (const auto& entry : first) {
       const auto& file = entry.first;

@@ -143,6 +143,10 @@ std::string definitions(const evaluation::EvaluatedRun& run) {
       "NEES: e\u1d40 C\u207b\u00b9 e of the error e and the estimate's covariance C of x, y, z, roll, pitch, "
       "yaw, "
       "over its expectation 6; an honest covariance has 1, and 95 % of the poses within the 95 % ellipsoid.");
+  html +=
+      definition("Map",
+                 "Points of the map after the alignment above, by their distance from the nearest surface of "
+                 "the simulated world that does not move (surfaces.stl).");
   html += definition("Time covered",
                      "Share of the reference's time between consecutive poses of the estimate less than " +
                          fixed(options.max_gap_s, 1) + " s apart.");

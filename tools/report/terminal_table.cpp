@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/report/terminal_table.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -66,6 +67,20 @@ void print_consistency(std::FILE* out, const evaluation::EvaluatedRun& run) {
   std::fputs(aligned_rows(table).c_str(), out);
 }
 
+/// Shares of the map's points; prints nothing without a map or without known surfaces.
+void print_map(std::FILE* out, const evaluation::EvaluatedRun& run) {
+  std::vector<Cells> table{{"method", "within 5 cm", "beyond 20 cm"}};
+  for (const evaluation::EvaluatedMethod& method : run.methods) {
+    const evaluation::MapFigures& figures = method.evaluation.figures.map;
+    if (std::isnan(figures.within_5_cm)) continue;
+    table.push_back({evaluation::display_name(method.name), fixed(100.0 * figures.within_5_cm, 2),
+                     fixed(100.0 * figures.beyond_20_cm, 2)});
+  }
+  if (table.size() == 1) return;
+  std::fprintf(out, "\nPoints of the map by their distance from the nearest true surface [%% of points]\n");
+  std::fputs(aligned_rows(table).c_str(), out);
+}
+
 /// One column per floor; prints nothing without flat segments.
 void print_floors(std::FILE* out, const evaluation::EvaluatedRun& run) {
   const std::vector<double> floors = evaluation::floor_levels_m(run);
@@ -97,6 +112,7 @@ void print_table(std::FILE* out, const evaluation::EvaluatedRun& run) {
   print_figures(out, run);
   print_floors(out, run);
   print_consistency(out, run);
+  print_map(out, run);
   if (!run.notes.empty()) std::fprintf(out, "\n");
   for (const std::string& note : run.notes) std::fprintf(out, "Note: %s\n", note.c_str());
 }

@@ -142,6 +142,7 @@ TEST_CASE("removing a run leaves the files of others") {
   CHECK(fs::exists(folder.path() / "notes.txt"));
   CHECK(fs::exists(folder.path() / "trajectory_old.tum"));
   CHECK_FALSE(fs::exists(folder.path() / "trajectory_2.tum"));
+  CHECK_FALSE(fs::exists(folder.path() / "covariance.csv"));
 }
 
 }  // namespace isobar::test::test_line_file
