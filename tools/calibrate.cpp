@@ -88,6 +88,11 @@ void print_result(const AlignedLogs& logs, const Calibration& calibration) {
 }
 
 void run_calibrate(const CalibrateOptions& options, const std::string& command) {
+  if (options.logs.sensor.files.empty())
+    throw UsageError("--sensor: missing; `isobar calibrate --help` explains it");
+  if (options.logs.reference.files.empty()) {
+    throw UsageError("--reference: missing; `isobar calibrate --help` explains it");
+  }
   CalibrationLogs request = options.logs;
   request.window_s = kSecondsPerHour * options.window_h;
   Progress progress("reading and fitting");
@@ -130,10 +135,8 @@ void add_columns(CLI::App& command, const std::string& role, recording::Pressure
 
 /// Adds the options that select logs and columns.
 void add_log_options(CLI::App& command, CalibrationLogs& logs) {
-  command.add_option("--sensor", logs.sensor.files, "logs of the sensor, each a recording of its own")
-      ->required();
-  command.add_option("--reference", logs.reference.files, "logs of the reference, together one log")
-      ->required();
+  command.add_option("--sensor", logs.sensor.files, "logs of the sensor, each a recording of its own");
+  command.add_option("--reference", logs.reference.files, "logs of the reference, together one log");
   command.add_flag("--paired", logs.paired,
                    "pair the n-th sensor log with the n-th reference log, each pair with its own clocks");
   add_columns(command, "sensor", logs.sensor.columns);
@@ -148,7 +151,9 @@ void add_log_options(CLI::App& command, CalibrationLogs& logs) {
 
 void add_calibrate_command(CLI::App& app) {
   const auto [command, options] = add_subcommand<CalibrateOptions>(
-      app, "calibrate", "Fit a barometer's compensation to a reference beside it", run_calibrate);
+      app, "calibrate", "Fit a barometer's compensation to a reference beside it; find the lidar's mount",
+      run_calibrate);
+  add_calibrate_mounts_command(command);
   command.footer(
       "Logs are CSV files with a header line: time (dates or a number), pressure, and the sensor's "
       "temperature.\n"

@@ -16,9 +16,11 @@ void add_experiment_command(CLI::App& app);             ///< simulate, replay wi
 void add_sensitivity_command(CLI::App& experiment);     ///< subcommand of experiment: steps of two barometers
 void add_experiment_all_command(CLI::App& experiment);  ///< subcommand of experiment: every scenario
 void add_calibrate_command(CLI::App& app);              ///< sensor and reference logs -> compensation, report
-void add_config_command(CLI::App& app);                 ///< check and show a configuration
-void add_play_command(CLI::App& app);                   ///< recording -> UDP in real time
-void add_altitude_command(CLI::App& app);               ///< pressure logs -> heights
+void add_calibrate_mounts_command(
+    CLI::App& calibrate);                   ///< subcommand of calibrate: recordings -> mount of the lidar
+void add_config_command(CLI::App& app);     ///< check and show a configuration
+void add_play_command(CLI::App& app);       ///< recording -> UDP in real time
+void add_altitude_command(CLI::App& app);   ///< pressure logs -> heights
 void add_noise_command(CLI::App& app);      ///< pressure log -> sigma, Allan deviation, filter settings
 void add_map_command(CLI::App& app);        ///< info, check and export of a run's map
 void add_status_command(CLI::App& app);     ///< health and figures of the running isobard
