@@ -46,6 +46,7 @@ void DifferentialAltimeter::restart_clock() {
   robot_.restart_clock();
   base_.restart_clock();
   pairs_.restart();
+  air_change_.restart();
   air_.restart_clock();
 }
 
@@ -143,8 +144,12 @@ PressureStatus DifferentialAltimeter::add_robot(const PressureSample& sample, Al
   PressurePairs::Mean pair;
   const bool paired = pairs_.add_robot(sample.stamp_ns, log_pa, climb_m_, pair) && base_.present();
   if (paired || out.event != ReferenceEvent::kNone) paired_ns_ = sample.stamp_ns;
+  // Another reference is no change of the air.
+  if (out.event != ReferenceEvent::kNone) air_change_.restart();
   if (paired && out.event == ReferenceEvent::kNone) {
     fill_pair(sample, pair, out);
+    const double robot_log = pairs_.robot().at(out.stamp_ns).log_pa;
+    air_change_.add(out.stamp_ns, air_log(out.stamp_ns), robot_log + pair.difference_log);
   } else {
     fill_height(sample, out);
     out.complete = out.event != ReferenceEvent::kNone || !base_.present() || pausing(sample.stamp_ns);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "core/altitude/air_change.hpp"
 #include "core/altitude/air_temperature.hpp"
 #include "core/altitude/altitude_config.hpp"
 #include "core/altitude/barometer_monitor.hpp"
@@ -83,6 +84,9 @@ class DifferentialAltimeter {
   [[nodiscard]] std::size_t base_usable_count() const { return base_.usable_count(now_ns_); }
   [[nodiscard]] bool base_undecided() const { return base_.undecided(); }
 
+  /// Changes of both pressures lately, for a detector of drifts.
+  [[nodiscard]] const AirChange& air_change() const { return air_change_; }
+
   [[nodiscard]] double air_temperature_c() const { return air_.temperature_c(); }
   /// The thermometer of the robot (0) or of a base station (1, 2) is left out: it contradicts the others.
   [[nodiscard]] bool thermometer_wrong(std::size_t sensor) const { return air_.wrong(sensor); }
@@ -105,6 +109,7 @@ class DifferentialAltimeter {
   BaseReference base_;
   AirTemperatureTracker air_;
   PressurePairs pairs_;
+  AirChange air_change_;
   double climb_m_ = 0.0;
   double first_height_m_ = 0.0;  // of the port at the first reading
   double witness_m_ = std::numeric_limits<double>::quiet_NaN();

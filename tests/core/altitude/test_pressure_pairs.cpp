@@ -21,6 +21,7 @@ std::int64_t at(double t) { return static_cast<std::int64_t>(std::llround(t * 1e
 
 struct Scene {
   std::function<double(double)> common_pa = [](double) { return 0.0; };
+  std::function<double(double)> base_pa = [](double) { return 0.0; };  ///< drift of the base station alone
   std::function<double(double)> height_m = [](double) { return 0.0; };
   double base_hz = 1.0;
   double base_delay_s = 0.0;
@@ -30,6 +31,7 @@ struct Outcome {
   double error_m = 0.0;  ///< largest, after 5 s, beyond that of the base station's first value
   int heights = 0;
   int faults = 0;
+  DriftSuspect suspect = DriftSuspect::kNone;  ///< of any time
 };
 
 Outcome run(const Scene& scene) {
@@ -43,7 +45,8 @@ Outcome run(const Scene& scene) {
     const double t = i / 32.0;
     altimeter.set_time(at(t));
     for (; next_base_s + scene.base_delay_s <= t; next_base_s += 1.0 / scene.base_hz) {
-      const double pa = 101'000.0 + scene.common_pa(next_base_s) + 1e-7 * std::sin(next_base_s);
+      const double pa = 101'000.0 + scene.common_pa(next_base_s) + scene.base_pa(next_base_s) +
+                        1e-7 * std::sin(next_base_s);
       altimeter.add_base({at(next_base_s), pa, 20.0});
     }
     altimeter.set_climb(scene.height_m(t));
@@ -59,6 +62,8 @@ Outcome run(const Scene& scene) {
     }
     if (!reading.complete) continue;
     ++outcome.heights;
+    if (altimeter.air_change().suspect() != DriftSuspect::kNone)
+      outcome.suspect = altimeter.air_change().suspect();
     CHECK(reading.source == HeightSource::kDifferential);
     outcome.error_m = std::max(outcome.error_m, std::abs(error_m - offset_m));
   }
@@ -89,12 +94,21 @@ TEST_CASE("what is common to both barometers cancels, at any rate and delay of t
           // exp() at 25 m: well below a millimetre. 4 Pa of ramp at 25 m are 1 %: one scale for both ends.
           CHECK(outcome.error_m < 2e-3);
           CHECK(outcome.faults == 0);
+          CHECK(outcome.suspect == DriftSuspect::kNone);
           // One height a sample of the slower barometer, at most one in four samples of 32 Hz.
           CHECK(outcome.heights == doctest::Approx(55.0 * std::min(hz, 8.0)).epsilon(0.05));
         }
       }
     }
   }
+}
+
+TEST_CASE("a drift of the base station alone is its own, also while the robot rides") {
+  Scene scene;
+  scene.base_hz = 4.0;
+  scene.height_m = ride_m;
+  scene.base_pa = [](double t) { return t > 30.0 ? -0.8 * (t - 30.0) : 0.0; };
+  CHECK(run(scene).suspect == DriftSuspect::kBase);
 }
 
 TEST_CASE("the mean of a pair's noise is that of linear interpolation, and of the number of base samples") {
