@@ -18,6 +18,8 @@ using CovarianceMatrix = Eigen::Matrix<double, 6, 6>;
 constexpr double kQuantile1 = 3.841459;
 constexpr double kQuantile3 = 7.814728;
 constexpr double kQuantile6 = 12.591587;
+// The same of 99.99 % with 3 degrees of freedom.
+constexpr double kQuantile3Rare = 21.107513;
 
 // Variance that the files cannot resolve, 1 um and 1 urad: a claim to know better has no meaning.
 constexpr double kResolutionVariance = 1e-12;
@@ -48,7 +50,23 @@ struct Counts {
   std::size_t orientation = 0;
   std::array<std::size_t, 6> component{};
 
-  void add(const Vector6d& error, const CovarianceMatrix& covariance) {
+  std::int64_t silent_since_ns = -1;  ///< start of the current run of silently wrong poses; -1: none
+  double longest_silent_s = 0.0;
+
+  void add_silence(const PoseCovariance& pose, const Vector6d& error, double position_normalised) {
+    const bool wrong = pose.registered && error.head<3>().norm() > ConsistencyFigures::kWrongM &&
+                       position_normalised > kQuantile3Rare;
+    if (!wrong) {
+      silent_since_ns = -1;
+      return;
+    }
+    if (silent_since_ns < 0) silent_since_ns = pose.stamp_ns;
+    longest_silent_s =
+        std::max(longest_silent_s, 1e-9 * static_cast<double>(pose.stamp_ns - silent_since_ns));
+  }
+
+  /// `covariance`: of the pose, turned into the reference's frame.
+  void add(const PoseCovariance& pose, const Vector6d& error, const CovarianceMatrix& covariance) {
     ++poses;
     const double all = normalised<6>(error, covariance);
     if (std::isfinite(all)) {
@@ -56,7 +74,9 @@ struct Counts {
       nees_sum += all;
     }
     if (all <= kQuantile6) ++within;
-    if (normalised<3>(error.head<3>(), covariance.topLeftCorner<3, 3>()) <= kQuantile3) ++position;
+    const double of_position = normalised<3>(error.head<3>(), covariance.topLeftCorner<3, 3>());
+    if (of_position <= kQuantile3) ++position;
+    add_silence(pose, error, of_position);
     if (normalised<3>(error.tail<3>(), covariance.bottomRightCorner<3, 3>()) <= kQuantile3) ++orientation;
     for (int i = 0; i < 6; ++i) {
       if (error[i] * error[i] <= kQuantile1 * covariance(i, i)) ++component[static_cast<std::size_t>(i)];
@@ -71,6 +91,7 @@ struct Counts {
       return static_cast<double>(count) / static_cast<double>(poses);
     };
     if (finite > 0) figures.nees = nees_sum / (6.0 * static_cast<double>(finite));
+    figures.longest_silent_s = longest_silent_s;
     figures.within_95 = share(within);
     figures.within_95_position = share(position);
     figures.within_95_orientation = share(orientation);
@@ -95,7 +116,7 @@ ConsistencyFigures consistency_of(const std::vector<PosePair>& pairs, std::vecto
     if (next == covariances.end()) break;
     const CovarianceMatrix& claimed = next->covariance;
     if (next->stamp_ns != pair.stamp_ns || !claimed.allFinite() || claimed.isZero(0.0)) continue;
-    counts.add(error_of(pair),
+    counts.add(*next, error_of(pair),
                turn * claimed * turn.transpose() + kResolutionVariance * CovarianceMatrix::Identity());
   }
   return counts.figures();

@@ -19,6 +19,7 @@ namespace isobar::evaluation {
 struct PoseCovariance {
   std::int64_t stamp_ns = 0;
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  bool registered = true;  ///< the estimator calls the pose a good one
 };
 
 /// Figures of a run; NaN: unknown. An honest covariance has shares of 0.95 and a mean of 1.
@@ -31,6 +32,10 @@ struct ConsistencyFigures {
   double within_95 = kNone;              ///< share of poses within the 95 % ellipsoid of all six, 0 … 1
   double within_95_position = kNone;     ///< the same of x, y, z
   double within_95_orientation = kNone;  ///< the same of roll, pitch, yaw
+  /// Longest time in a row that poses are silently wrong [s]: called registered, off by more than kWrongM in
+  /// position, and outside of its 99.99 % ellipsoid.
+  double longest_silent_s = kNone;
+  static constexpr double kWrongM = 0.3;
   /// Share of poses within 1.96 standard deviations: x, y, z, roll, pitch, yaw.
   std::array<double, 6> within_95_component{kNone, kNone, kNone, kNone, kNone, kNone};
 };

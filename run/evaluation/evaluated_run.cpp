@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <unordered_map>
 #include <utility>
 
 #include "core/errors.hpp"
@@ -36,6 +37,17 @@ std::vector<HeightSigma> sigmas_of(const std::vector<StatusRow>& status) {
   return sigmas;
 }
 
+/// Tells the covariances which poses the run calls registered.
+void add_modes(const std::vector<StatusRow>& status, std::vector<PoseCovariance>& covariances) {
+  std::unordered_map<std::int64_t, bool> registered;
+  for (const StatusRow& row : status)
+    registered[row.stamp_ns] = row.mode == kPoseModeNames.name(PoseMode::kRegistered);
+  for (PoseCovariance& pose : covariances) {
+    const auto found = registered.find(pose.stamp_ns);
+    if (found != registered.end()) pose.registered = found->second;
+  }
+}
+
 std::string cut_note(const std::string& name, const StampRepairs& repairs) {
   return name + ": line " + std::to_string(repairs.cut_line) + ", the last one, is cut and is left out.";
 }
@@ -48,6 +60,7 @@ RunFolder load_estimate(const fs::path& path) {
 EvaluatedMethod evaluate_one(const ReferenceData& reference, const EstimateSource& source,
                              const EvaluationOptions& options) {
   RunFolder run = load_estimate(source.path);
+  add_modes(run.status, run.covariances);
   EvaluatedMethod method{
       source.name, {}, source.path, std::move(run.status), std::move(run.map.points), std::move(run.notes)};
   try {

@@ -86,6 +86,8 @@ constexpr std::array kRows{
               [](const MethodFigures& f) { return f.consistency.within_95_component[4]; }),
     within_95("yaw within 1.96 sigma", "within_95_yaw",
               [](const MethodFigures& f) { return f.consistency.within_95_component[5]; }),
+    FigureRow{"Covariance", "Longest time silently wrong", "s", "longest_silent_s", nullptr, 1, 1.0, false,
+              true, false, [](const MethodFigures& f) { return f.consistency.longest_silent_s; }},
     FigureRow{"Map", "Points within 5 cm of a true surface", "%", "map_within_5_cm", nullptr, 2, kPercent,
               false, true, true, [](const MethodFigures& f) { return f.map.within_5_cm; }},
     FigureRow{"Map", "Points more than 20 cm off", "%", "map_beyond_20_cm", nullptr, 2, kPercent, false, true,

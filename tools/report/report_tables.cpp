@@ -142,7 +142,10 @@ std::string definitions(const evaluation::EvaluatedRun& run) {
       "Covariance",
       "NEES: e\u1d40 C\u207b\u00b9 e of the error e and the estimate's covariance C of x, y, z, roll, pitch, "
       "yaw, "
-      "over its expectation 6; an honest covariance has 1, and 95 % of the poses within the 95 % ellipsoid.");
+      "over its expectation 6; an honest covariance has 1, and 95 % of the poses within the 95 % ellipsoid. "
+      "Silently wrong: called registered, yet off by more than " +
+          fixed(evaluation::ConsistencyFigures::kWrongM, 1) +
+          " m in position and outside of its 99.99 % ellipsoid.");
   html +=
       definition("Map",
                  "Points of the map after the alignment above, by their distance from the nearest surface of "

@@ -49,8 +49,8 @@ void print_figures(std::FILE* out, const evaluation::EvaluatedRun& run) {
 
 /// Shares of poses within the 95 % ellipsoid; prints nothing for runs without covariances.
 void print_consistency(std::FILE* out, const evaluation::EvaluatedRun& run) {
-  std::vector<Cells> table{
-      {"method", "NEES/6", "all", "position", "orientation", "x", "y", "z", "roll", "pitch", "yaw"}};
+  std::vector<Cells> table{{"method", "NEES/6", "all", "position", "orientation", "x", "y", "z", "roll",
+                            "pitch", "yaw", "silently wrong"}};
   for (const evaluation::EvaluatedMethod& method : run.methods) {
     const evaluation::ConsistencyFigures& figures = method.evaluation.figures.consistency;
     if (figures.poses == 0) continue;
@@ -60,6 +60,7 @@ void print_consistency(std::FILE* out, const evaluation::EvaluatedRun& run) {
       cells.push_back(plain(fixed(100.0 * share, 1)));
     }
     for (const double share : figures.within_95_component) cells.push_back(plain(fixed(100.0 * share, 1)));
+    cells.push_back(fixed(figures.longest_silent_s, 1) + " s");
     table.push_back(std::move(cells));
   }
   if (table.size() == 1) return;

@@ -150,6 +150,26 @@ TEST_CASE("poses without a covariance are left out; a claim of certainty or nons
   CHECK(std::isnan(figures_of(nonsense).nees));
 }
 
+TEST_CASE(
+    "the longest time silently wrong ends with a pose that is right, not registered, or admits its error") {
+  Run run = draw(some_covariance() * 1e-6, some_covariance());
+  for (std::size_t i = 0; i < kPoses; ++i) {
+    run.pairs[i].stamp_ns = run.covariances[i].stamp_ns = 100'000'000 * static_cast<std::int64_t>(i);
+  }
+  CHECK(figures_of(run).longest_silent_s == 0.0);
+  for (std::size_t i = 100; i < 200; ++i) run.pairs[i].estimate.position_m.x() += 0.5;  // ten sigma
+  CHECK(figures_of(run).longest_silent_s == doctest::Approx(9.9));
+  Run said = run;
+  said.covariances[130].registered = false;
+  CHECK(figures_of(said).longest_silent_s == doctest::Approx(6.8));  // 131 to 199
+  Run admitted = run;
+  admitted.covariances[130].covariance *= 100.0;
+  CHECK(figures_of(admitted).longest_silent_s == doctest::Approx(6.8));
+  Run small = run;
+  for (std::size_t i = 0; i < kPoses; ++i) small.covariances[i].covariance *= 1e-4;
+  CHECK(figures_of(small).longest_silent_s == doctest::Approx(9.9));  // millimetres elsewhere are not "wrong"
+}
+
 TEST_CASE("evaluate() takes the covariances of a run, in its own frame, after the alignment at the start") {
   const Trajectory reference = winding(60.0, 0.05);
   Trajectory estimate = transformed(yaw_and_shift(1.2, {1, 2, 3}), reference);

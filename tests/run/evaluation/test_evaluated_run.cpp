@@ -54,4 +54,29 @@ TEST_CASE("an estimate that shares no time with the reference is refused with it
   CHECK(message.find("e.tum: no pose lies within the time of the reference") != std::string::npos);
 }
 
+TEST_CASE("a run that drifts off is silently wrong as long as its status calls the poses registered") {
+  const TemporaryFolder folder;
+  const std::filesystem::path recording = write_recording(folder.path() / "recording");
+  for (const bool says_so : {false, true}) {
+    files::PoseWriter writer(folder.path() / (says_so ? "said" : "silent"));
+    for (const StampedPose& p : straight(60.0, 0.1, 0.02).poses) {  // 2 cm of height a metre and second
+      PoseEstimate pose;
+      pose.stamp_ns = p.stamp_ns;
+      pose.T_map_base.translation() = p.position_m;
+      pose.covariance = 1e-4 * Matrix6d::Identity();
+      const bool off = p.position_m.z() > 0.8;
+      pose.mode = says_so && off ? PoseMode::kPriorOnly : PoseMode::kRegistered;
+      writer.add(pose, 0.0, 0.05);
+    }
+    writer.flush();
+  }
+  const EvaluatedRun run = evaluate_methods(
+      load_reference(recording), {{"silent", folder.path() / "silent"}, {"said", folder.path() / "said"}});
+  // Wrong from 0.3 m on, at 15 s; the other run says so from 0.8 m on, at 40 s.
+  CHECK(run.methods[0].evaluation.figures.consistency.longest_silent_s ==
+        doctest::Approx(45.0).epsilon(0.01));
+  CHECK(run.methods[1].evaluation.figures.consistency.longest_silent_s ==
+        doctest::Approx(25.0).epsilon(0.01));
+}
+
 }  // namespace isobar::test::test_evaluated_run
