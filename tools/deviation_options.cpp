@@ -78,18 +78,21 @@ class Words {
   std::vector<std::string> words_;
 };
 
-/// Adds an option whose values are taken one at a time, each time that it is given.
+/// Adds an option whose values are taken one at a time, each time that it is given. The help names the form of
+/// values with colons, which separate a type from its rule in the command line's own help.
 void add(CLI::App& command, const std::string& name, const std::string& form, const std::string& help,
          const std::function<void(const Words&)>& take) {
+  const bool has_parts = form.find(':') != std::string::npos;
   command
       .add_option_function<std::vector<std::string>>(
           "--" + name,
           [name, take](const std::vector<std::string>& values) {
             for (const std::string& value : values) take(Words(name, value));
           },
-          help)
+          has_parts ? help + ": " + form : help)
       ->allow_extra_args(false)
-      ->option_text(form)
+      ->type_name(has_parts ? "VALUE" : form)
+      ->option_text(has_parts ? "VALUE" : form)
       ->group(kGroup);
 }
 
@@ -140,6 +143,7 @@ void add_barometer_options(CLI::App& command, Deviations& deviations) {
       .add_option("--base-rate", deviations.base_rate_hz, "samples a second that the base station sends [Hz]")
       ->check(CLI::Range(0.01, Deviations::kFullBaseRateHz))
       ->capture_default_str()
+      ->type_name("HZ")
       ->group(kGroup);
 }
 
@@ -152,7 +156,7 @@ void add_deviation_options(CLI::App& command, Deviations& deviations) {
           "sd of further errors of roll, pitch and yaw of lidar and IMU [deg]; recording.toml keeps the "
           "mounts that the robot believes, its description the true ones")
       ->check(CLI::Range(0.0, 20.0))
-      ->option_text("DEG")
+      ->type_name("DEG")
       ->group(kGroup);
   add_barometer_options(command, deviations);
   add_air_options(command, deviations);
@@ -167,7 +171,7 @@ void add_deviation_options(CLI::App& command, Deviations& deviations) {
       .add_option("--start-at", deviations.start_at_s,
                   "leave out the run before this time [s]: the recording begins in motion")
       ->check(CLI::NonNegativeNumber)
-      ->option_text("S")
+      ->type_name("S")
       ->group(kGroup);
   add(command, "without", "imu|wheels|base|barometer", "leaves a sensor out; may be given several times",
       [&deviations](const Words& words) {
