@@ -13,8 +13,8 @@ namespace isobar {
 
 namespace {
 
-// Capacity [points]: ten scans thinned for the map, or two complete ones of 16 beams.
-constexpr std::size_t kMostPoints = 60'000;
+// Capacity [points]: ten scans thinned for the map, or one complete one of 16 beams.
+constexpr std::size_t kMostPoints = 30'000;
 // Error of gravity by the bias of the accelerometer, 1 sigma: 5 mg.
 constexpr double kAccelBiasTiltRad = 0.29 * kRadPerDeg;
 // Two kinds of surfaces agree below this chi-square of 2 degrees of freedom, at 90 %: a ramp of 1 deg between plumb

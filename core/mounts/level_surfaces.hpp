@@ -26,11 +26,11 @@ class LevelSurfaces {
   /// Begins a new halt.
   void clear() { p_base_.clear(); }
   /// Points of a deskewed scan by the configured mount. Ten scans, a second, average the noise; points beyond the
-  /// capacity of three full scans are ignored.
+  /// capacity of 30 000 points are ignored.
   void add(std::span<const ScanPoint> p_base);
   [[nodiscard]] bool full() const { return p_base_.size() == p_base_.capacity(); }
 
-  /// The evidence of all scans since clear(); some milliseconds. `up_by_gravity`: unit vector in base axes;
+  /// The evidence of all scans since clear(). Takes 5 to 20 ms: call it once a halt. `up_by_gravity`: unit vector in base axes;
   /// `gravity_variance_rad2`: of roll and of pitch (Prior::roll_pitch_variance_rad2). The error that the
   /// accelerometer's bias makes is added here. None where walls, floor and ceiling do not agree, or are missing.
   std::optional<LevelEvidence> find(const Eigen::Vector3d& up_by_gravity, double gravity_variance_rad2);

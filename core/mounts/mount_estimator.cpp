@@ -15,6 +15,8 @@ namespace {
 
 // Longest time between two registered scans [s] over which the gyro is integrated.
 constexpr double kLongestScanStepS = 2.0;
+// A robot without wheels hangs or flies along rough walls: its map tilts as on a way this much longer (simulated shafts).
+constexpr double kFreeWayFactor = 9.0;
 // Systematic errors, 1 sigma [rad]. Roll and pitch: axes of the gyro, 0.05 deg in data sheets. Yaw from turns that
 // tilt: the scans on stairs and ramps. Yaw from straight drives: side slip, axes of the wheels.
 constexpr double kTiltFloorRad = 0.05 * kRadPerDeg;
@@ -47,7 +49,8 @@ void MountEstimator::add(const ScanMotionEvidence& scan, const PriorHistory& his
     begin(scan);
     return;
   }
-  const double way_m = (scan.T_map_base.translation() - last_.T_map_base.translation()).norm();
+  const double step_m = (scan.T_map_base.translation() - last_.T_map_base.translation()).norm();
+  const double way_m = prior.velocity_valid ? step_m : kFreeWayFactor * step_m;
   filter_.add(seconds_between(last_.stamp_ns, scan.stamp_ns), turn, way_m, configured_attitude(scan));
   compare_wheels(scan, prior, log_so3(turn).z());
   last_ = scan;

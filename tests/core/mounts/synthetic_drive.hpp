@@ -21,6 +21,7 @@ struct DriveErrors {
   double position_m = 0.0;                              ///< white noise of a scan's position, per axis
   double wheel_distance = 1.0;                          ///< wheels' distance over the true one
   double wheel_turn = 1.0;                              ///< wheels' turn over the true one
+  bool wheels = true;                                   ///< the robot has wheels
 };
 
 /// Moves in arcs at constant rates: IMU at 200 Hz, scans at 10 Hz. Feeds a MountEstimator.
@@ -74,7 +75,7 @@ class SyntheticDrive {
     prior.w_base_rad_s = w;
     prior.v_base_m_s.x() = speed_m_s;
     prior.attitude_valid = true;
-    prior.velocity_valid = true;
+    prior.velocity_valid = errors_.wheels;
     history_.add(prior);
   }
 

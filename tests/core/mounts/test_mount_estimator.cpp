@@ -93,6 +93,19 @@ TEST_CASE("yaw is found without wheels by turns about an axis that is not vertic
   CHECK(robot.estimate().sigma_rad().z() < 0.5 * kRadPerDeg);
 }
 
+TEST_CASE("without wheels yaw needs turns that tilt, and roll and pitch are less certain") {
+  DriveErrors hanging = usual({0.5, -0.8, 0.6});
+  hanging.wheels = false;
+  SyntheticDrive free(kConfigured, hanging, 4);
+  SyntheticDrive wheeled(kConfigured, usual({0.5, -0.8, 0.6}), 4);
+  hundred_metres(free);
+  hundred_metres(wheeled);
+  CHECK(free.estimate().verdict == MountVerdict::kFound);
+  CHECK_FALSE(free.estimate().yaw_found);
+  CHECK(free.estimate().sigma_rad().x() > 1.5 * wheeled.estimate().sigma_rad().x());
+  CHECK(free.error_deg().head<2>().cwiseAbs().maxCoeff() < 0.2);
+}
+
 TEST_CASE("the estimate refers to the configured mount, whichever the registration uses meanwhile") {
   SyntheticDrive robot(kConfigured, usual({0.5, -0.8, 0.6}), 2);
   robot.drive(10.0, 1.0, kNoTurn);
