@@ -9,10 +9,14 @@
 namespace isobar {
 
 namespace {
-constexpr float kPixelRad = 2.0F * std::numbers::pi_v<float> / FreeSpace::kColumns;
+constexpr int kColumns = RangeImage::kColumns;
+constexpr int kRows = RangeImage::kRows;
+constexpr float kPixelRad = 2.0F * std::numbers::pi_v<float> / kColumns;
 // Cosine of the angle between ray and normal below which the ray counts as grazing: beyond 78 degrees of
 // incidence, small errors of attitude or height carry the ray across the surface.
 constexpr float kMinIncidenceCosine = 0.2F;
+// The same for a ray without a return: a cosine of 45 degrees.
+constexpr float kMinSilentCosine = 0.7F;
 // Factor on the margin of a point without a normal: its angle of incidence is unknown and may be grazing.
 constexpr float kMarginFactorWithoutNormal = 2.0F;
 // Minimum range of a point that is tested [m]: nearer, one cell covers many pixels.
@@ -29,9 +33,6 @@ inline float angle_in_quadrant(float y, float x) {
   return y > x ? kHalfPi - angle : angle;
 }
 
-std::size_t index_of(int column, int row) {
-  return static_cast<std::size_t>(row) * FreeSpace::kColumns + static_cast<std::size_t>(column);
-}
 }  // namespace
 
 // Without branches and calls, so that the compiler vectorises it: four points at once.
@@ -55,12 +56,13 @@ void FreeSpace::min_ranges(const Points& p_lidar, std::size_t count, Ranges& min
   Pixels pixels;
   pixels_of(p_lidar, count, pixels);
   for (std::size_t i = 0; i < count; ++i) {
-    min_range_m[i] = neighbourhood_m_[static_cast<std::size_t>(pixels[i])];
+    min_range_m[i] = neighbourhood_.range_m[static_cast<std::size_t>(pixels[i])];
   }
 }
 
 void FreeSpace::set_scan(const RegisteredScan& scan, const Eigen::Isometry3d& T_lidar_base) {
-  pixel_m_.fill(std::numeric_limits<float>::infinity());
+  pixel_.range_m.fill(std::numeric_limits<float>::infinity());
+  scatter_.clear();
   const Eigen::Isometry3f T = T_lidar_base.cast<float>();
   Points batch;
   Pixels pixels;
@@ -72,31 +74,37 @@ void FreeSpace::set_scan(const RegisteredScan& scan, const Eigen::Isometry3d& T_
     }
     pixels_of(batch, count, pixels);
     for (std::size_t i = 0; i < count; ++i) {
-      float& shortest = pixel_m_[static_cast<std::size_t>(pixels[i])];
-      shortest = std::min(shortest, batch.at(i).norm());
+      float& shortest = pixel_.range_m[static_cast<std::size_t>(pixels[i])];
+      const float range_m = batch.at(i).norm();
+      shortest = std::min(shortest, range_m);
+      scatter_.add(scan.points[first + i].ring, batch.z_m[i] / std::max(range_m, kMinRangeM));
     }
   }
+  silent_.set_scan(pixel_, scatter_, spacing_m_);
   take_minimum_of_neighbours();
 }
 
 // Minimum over 3 x 3 pixels, separable: first along the rows, then along the columns.
 void FreeSpace::take_minimum_of_neighbours() {
-  Image of_row;  // minimum of a pixel and its left and right neighbours; azimuth wraps around
+  RangeImage of_row;  // minimum of a pixel and its left and right neighbours; azimuth wraps around
   for (int row = 0; row < kRows; ++row) {
     for (int column = 0; column < kColumns; ++column) {
-      const float left = pixel_m_[index_of(column > 0 ? column - 1 : kColumns - 1, row)];
-      const float right = pixel_m_[index_of(column < kColumns - 1 ? column + 1 : 0, row)];
-      of_row[index_of(column, row)] = std::min({left, pixel_m_[index_of(column, row)], right});
+      const float left = pixel_.range_m[RangeImage::index_of(column > 0 ? column - 1 : kColumns - 1, row)];
+      const float right = pixel_.range_m[RangeImage::index_of(column < kColumns - 1 ? column + 1 : 0, row)];
+      of_row.range_m[RangeImage::index_of(column, row)] =
+          std::min({left, pixel_.range_m[RangeImage::index_of(column, row)], right});
     }
   }
   for (int row = 0; row < kRows; ++row) {
     const int below = std::max(row - 1, 0);
     const int above = std::min(row + 1, kRows - 1);
     for (int column = 0; column < kColumns; ++column) {
-      const std::size_t at = index_of(column, row);
+      const std::size_t at = RangeImage::index_of(column, row);
       const float shortest =
-          std::min({of_row[index_of(column, below)], of_row[at], of_row[index_of(column, above)]});
-      neighbourhood_m_[at] = std::isinf(pixel_m_[at]) ? 0.0F : shortest;
+          std::min({of_row.range_m[RangeImage::index_of(column, below)], of_row.range_m[at],
+                    of_row.range_m[RangeImage::index_of(column, above)]});
+      const float silent_m = silent_.silent(at) ? -std::min(shortest, silent_.reach_m()) : 0.0F;
+      neighbourhood_.range_m[at] = std::isinf(pixel_.range_m[at]) ? silent_m : shortest;
     }
   }
 }
@@ -107,15 +115,16 @@ bool FreeSpace::passes_through(const Eigen::Vector3f& p_lidar, const Eigen::Vect
   if (range_m < kMinRangeM) {
     return false;
   }
+  const bool silent = min_range_m < 0.0F;
   float required_m = range_m + kMarginFactorWithoutNormal * margin_m;
   if (!normal_lidar.isZero()) {
     const float cosine = std::abs(normal_lidar.dot(p_lidar)) / range_m;
-    if (cosine < kMinIncidenceCosine) {
+    if (cosine < (silent ? kMinSilentCosine : kMinIncidenceCosine)) {
       return false;
     }
     required_m = range_m + margin_m / cosine;
   }
-  return min_range_m >= required_m;
+  return std::abs(min_range_m) >= required_m;
 }
 
 }  // namespace isobar

@@ -2,6 +2,7 @@
 #include "core/map/seen_through.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -22,7 +23,8 @@ SeenThrough::SeenThrough(const MapConfig& config, const Eigen::Isometry3d& T_bas
       reach_m_(static_cast<float>(config.see_through_range_m)),
       margin_m_(static_cast<float>(config.see_through_margin_m)),
       limit_(static_cast<std::uint8_t>(config.see_through_limit)),
-      T_lidar_base_(T_base_lidar.inverse()) {}
+      T_lidar_base_(T_base_lidar.inverse()),
+      free_space_(cell_m_) {}
 
 void SeenThrough::set_scan(const RegisteredScan& scan, double elapsed_s) {
   ++scan_count_;
@@ -78,7 +80,7 @@ bool SeenThrough::count_batch(const FreeSpace::Points& p_lidar, std::size_t firs
     MapCell& cell = block.cells()[first + i];
     const Eigen::Vector3f p = p_lidar.at(i);
     // Early exit before the plane is looked up: most rays end too close behind the cell for any normal.
-    const float limit_m = min_range_m[i] - margin_m_;
+    const float limit_m = std::abs(min_range_m[i]) - margin_m_;
     if (cell.seen_through == kSaturated || !(limit_m > 0.0F) || p.squaredNorm() > limit_m * limit_m) {
       continue;
     }

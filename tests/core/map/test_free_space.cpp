@@ -48,7 +48,7 @@ bool passes_through(const FreeSpace& free_space, const Eigen::Vector3f& p_lidar,
 }  // namespace
 
 TEST_CASE("rays pass through a point in front of their ends, not behind them or where no ray goes") {
-  auto free_space = std::make_unique<FreeSpace>();
+  auto free_space = std::make_unique<FreeSpace>(0.275F);
   free_space->set_scan(*scan_of_sphere(), Eigen::Isometry3d::Identity());
   const Eigen::Vector3f towards = -ray(33.0F, 1.0F, 1.0F);
   CHECK(passes_through(*free_space, ray(33.0F, 1.0F, 5.0F), towards));
@@ -58,7 +58,7 @@ TEST_CASE("rays pass through a point in front of their ends, not behind them or 
 }
 
 TEST_CASE("rays never pass through a surface that they graze, however far they go") {
-  auto free_space = std::make_unique<FreeSpace>();
+  auto free_space = std::make_unique<FreeSpace>(0.275F);
   free_space->set_scan(*scan_of_sphere(), Eigen::Isometry3d::Identity());
   // A floor 0.1 m under the rays, seen at one degree.
   CHECK_FALSE(passes_through(*free_space, ray(120.0F, -1.0F, 5.0F), Eigen::Vector3f::UnitZ()));
