@@ -109,7 +109,7 @@ TEST_CASE("a person who leaves, leaves the map, before a wall and before the ope
   }
 }
 
-TEST_CASE("a wall stays where packets are lost, where rings are off, and while the lidar pitches") {
+TEST_CASE("a wall stays where packets are lost and where it returns a third of the rays") {
   Standing standing;
   standing.see(range_to_wall, 10);
   const std::size_t before = standing.points_ahead(7.5, 8.5);
