@@ -118,7 +118,7 @@ struct RealtimeSettings {
 
 struct Config {
   Role role = Role::kRobot;
-  Method method = Method::k3Dof;
+  Method method = Method::kAdaptive;
   LidarSettings lidar;
   ImuSettings imu;
   BarometerSettings barometer;

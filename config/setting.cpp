@@ -51,9 +51,12 @@ std::vector<Setting> settings_of(Config& config) {
   settings.push_back(
       {.key = "method",
        .target = &config.method,
-       .doc = "Degrees of freedom that the ICP estimates. 3dof: x, y and yaw, with height from air pressure "
-              "(the paper's method, and the most accurate in the elevator). 4dof: z too. 6dof: all. "
-              "6dof-altitude, 4dof-altitude: the height from air pressure only predicts z. odometry: no ICP.",
+       .doc = "How the pose is estimated. adaptive: all six degrees of freedom, with gravity, gyro, wheels "
+              "and air "
+              "pressure as information; finds the lidar's mount and the altimeter's bias. The paper's, for "
+              "comparison: "
+              "3dof: x, y and yaw, with height from air pressure. 4dof: z too. 6dof: all. 6dof-altitude, "
+              "4dof-altitude: the height from air pressure only predicts z. odometry: no ICP.",
        .choices = method_choices(),
        .used_by = UsedBy::kRobot,
        .audience = Audience::kBasic,

@@ -38,6 +38,16 @@ struct Prior {
   double height_variance_m2 = 0.0;
   HeightSource height_source = HeightSource::kNone;
 
+  /// The last altimeter reading, without any filter: height of base_link from air pressure alone [m], its white noise
+  /// [m^2], and the number of readings so far.
+  double altimeter_m = 0.0;
+  double altimeter_variance_m2 = 0.0;
+  std::uint32_t altimeter_count = 0;
+  /// Sum of the steps of altimeter_m that a base station made by returning or taking over [m].
+  double altimeter_shift_m = 0.0;
+  double up_accel_m_s2 = 0.0;  ///< vertical specific force of the sample minus gravity, biases included
+  bool ground_moves = false;   ///< the ground that carries the robot rises or sinks: an elevator
+
   Eigen::Vector3d v_base_m_s = Eigen::Vector3d::Zero();    ///< velocity of base_link in base_link
   Eigen::Vector3d w_base_rad_s = Eigen::Vector3d::Zero();  ///< angular rate in base_link, gyro bias removed
 
@@ -58,6 +68,7 @@ enum class Method : std::uint8_t {
   k6DofAltitude,  ///< 6-DOF, altitude only in the prior
   k4DofAltitude,  ///< 4-DOF, altitude only in the prior
   kOdometry,      ///< dead reckoning alone, no ICP
+  kAdaptive,  ///< full pose; gravity, gyro, wheels and altitude as information, the altimeter's bias as a state
 };
 
 /// Source of a pose.
@@ -89,7 +100,18 @@ struct PoseEstimate {
   double overlap = 0.0;              ///< matched_pairs / sampled_points, 0 … 1
   double residual_rms_m = 0.0;       ///< weighted point-to-plane rms
   Eigen::Vector3d smallest_eigenvalues =
-      Eigen::Vector3d::Zero();   ///< of the information matrix per pair, ascending
+      Eigen::Vector3d::Zero();  ///< of the information matrix per pair, ascending
+  /// Bias of the altimeter against the map: estimate, standard deviation, and innovation of the last update [m].
+  double altimeter_bias_m = 0.0;
+  double altimeter_bias_sd_m = 0.0;
+  double altimeter_innovation_m = 0.0;
+  bool altimeter_faulty = false;  ///< it departs from the map by more than zones, doors and weather explain
+  /// Error of the lidar's configured mount as found so far: rotation vector in axes of base_link [rad], 1 sigma per
+  /// axis, R_base_lidar(true) = exp(error^) R_base_lidar(configured). The adaptive method corrects it.
+  bool mount_found = false;
+  Eigen::Vector3d mount_error_rad = Eigen::Vector3d::Zero();
+  Eigen::Vector3d mount_sigma_rad = Eigen::Vector3d::Zero();
+  bool for_map = true;  ///< the map may take the scan; false on moving ground and where the pose is doubtful
   double registration_ms = 0.0;  ///< CPU time of the registration; filled by the thread that runs it
 };
 

@@ -7,13 +7,14 @@
 
 namespace isobar {
 
-inline constexpr NameTable<Method, 6> kMethodNames{{{
+inline constexpr NameTable<Method, 7> kMethodNames{{{
     {Method::k6Dof, "6dof"},
     {Method::k4Dof, "4dof"},
     {Method::k3Dof, "3dof"},
     {Method::k6DofAltitude, "6dof-altitude"},
     {Method::k4DofAltitude, "4dof-altitude"},
     {Method::kOdometry, "odometry"},
+    {Method::kAdaptive, "adaptive"},
 }}};
 
 inline constexpr NameTable<PoseMode, 3> kPoseModeNames{{{

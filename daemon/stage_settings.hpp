@@ -22,7 +22,7 @@ struct StageSettings {
   PriorConfig prior;
   RegistrationConfig registration;
   MapConfig map;
-  Method method = Method::k3Dof;
+  Method method = Method::kAdaptive;
   Eigen::Isometry3d T_base_lidar = Eigen::Isometry3d::Identity();
 };
 

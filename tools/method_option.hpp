@@ -10,9 +10,9 @@
 namespace isobar::tools {
 
 /// All methods, in the order of the paper's comparison.
-inline constexpr std::array<Method, 6> kAllMethods = {Method::k6Dof,     Method::k6DofAltitude,
-                                                      Method::kOdometry, Method::k4DofAltitude,
-                                                      Method::k4Dof,     Method::k3Dof};
+inline constexpr std::array<Method, 7> kAllMethods = {
+    Method::kAdaptive,     Method::k6Dof, Method::k6DofAltitude, Method::kOdometry,
+    Method::k4DofAltitude, Method::k4Dof, Method::k3Dof};
 
 /// "6dof, 6dof-altitude, …"
 inline std::string method_names() {

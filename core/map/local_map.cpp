@@ -69,7 +69,7 @@ bool LocalMap::wants(const PoseEstimate& pose) const {
 bool LocalMap::update(const RegisteredScan& scan) {
   constexpr double kMaxCoordinateM = 1e8;  // a cell index must fit into 32 bits; no robot drives that far
   const auto& pose = scan.pose.T_map_base.matrix();
-  if (scan.point_count == 0 || scan.pose.session != session_ || !pose.allFinite() ||
+  if (scan.point_count == 0 || !scan.pose.for_map || scan.pose.session != session_ || !pose.allFinite() ||
       pose.cwiseAbs().maxCoeff() > kMaxCoordinateM || !wants(scan.pose)) {
     return false;
   }

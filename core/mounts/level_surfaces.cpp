@@ -107,10 +107,11 @@ std::optional<LevelEvidence> LevelSurfaces::find(const Eigen::Vector3d& up_by_gr
   out.up_by_gravity = up_by_gravity;
   const Eigen::Vector3d up_level(tilt->tilt_rad.x(), tilt->tilt_rad.y(), 1.0);
   out.up_by_surfaces = (R_level_base.transpose() * up_level).normalized();
-  Eigen::Matrix3d covariance =
-      (squared(kAccelBiasTiltRad) + gravity_variance_rad2) * Eigen::Matrix3d::Identity();
-  covariance.topLeftCorner<2, 2>() += tilt->covariance_rad2;
-  out.covariance_rad2 = R_level_base.transpose() * covariance * R_level_base;
+  Eigen::Matrix3d surfaces = Eigen::Matrix3d::Zero();
+  surfaces.topLeftCorner<2, 2>() = tilt->covariance_rad2;
+  out.surfaces_covariance_rad2 = R_level_base.transpose() * surfaces * R_level_base;
+  out.covariance_rad2 = out.surfaces_covariance_rad2 +
+                        (squared(kAccelBiasTiltRad) + gravity_variance_rad2) * Eigen::Matrix3d::Identity();
   return out;
 }
 

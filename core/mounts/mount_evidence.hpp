@@ -29,6 +29,8 @@ struct LevelEvidence {
   Eigen::Vector3d up_by_surfaces = Eigen::Vector3d::UnitZ();
   /// Of the difference, in base axes, with the error of gravity [rad^2].
   Eigen::Matrix3d covariance_rad2 = Eigen::Matrix3d::Zero();
+  /// Of the up direction by the surfaces alone, in base axes [rad^2].
+  Eigen::Matrix3d surfaces_covariance_rad2 = Eigen::Matrix3d::Zero();
 };
 
 }  // namespace isobar

@@ -135,6 +135,12 @@ void PriorEstimator::add_pressure(const PressureSample& measured) {
   s.reading_source = reading.source;
   if (!reading.complete) return;
   s.reading_m = reading.height_m;
+  s.altimeter_m = reading.height_m + reading.climb_since_m - s.above_base(s.config.p_base_port);
+  s.altimeter_variance_m2 = reading.noise_variance_m2;
+  ++s.altimeter_count;
+  if (reading.event == ReferenceEvent::kBaseReturned || reading.event == ReferenceEvent::kBaseSwitched) {
+    s.altimeter_shift_m += reading.weather_shift_m;
+  }
   if (!s.attitude.started() || !s.height.started()) return;
   // The filter extrapolates with its present speed: what the acceleration has changed since is added here.
   const double delay_s = seconds_between(reading.stamp_ns, s.imu_gate.stamp_ns());

@@ -242,6 +242,7 @@ void PriorEstimator::State::step(const Eigen::Vector3d& gyro, const Eigen::Vecto
     // Raw force, without the attitude filter's accelerometer bias, which still changes: the height filter
     // estimates its own.
     const double up_accel = above_base(force) - kGravity;
+    up_accel_m_s2 = up_accel;
     noise.add_up_accel(up_accel);
     height.predict(up_accel, dt_s, noise.up_accel_density(dt_s));
     use_standstill(gyro, force, dt_s, on_wheels);

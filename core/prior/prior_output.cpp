@@ -37,6 +37,12 @@ Prior PriorEstimator::State::prior_at(const ImuSample& sample) const {
     out.velocity_variance_m2_s2 = squared(config.attitude.wheel_sigma_m_s) +
                                   squared(config.attitude.wheel_sigma_share) * out.v_base_m_s.squaredNorm();
   }
+  out.up_accel_m_s2 = up_accel_m_s2;
+  out.ground_moves = height.ground_moves();
+  out.altimeter_m = altimeter_m;
+  out.altimeter_variance_m2 = altimeter_variance_m2;
+  out.altimeter_count = altimeter_count;
+  out.altimeter_shift_m = altimeter_shift_m;
   out.standing_still = out.velocity_valid && standstill.standing() && !height.ground_moves();
   return out;
 }

@@ -74,6 +74,11 @@ struct PriorEstimator::State {
   HeightSource reading_source = HeightSource::kNone;      // of the last altimeter reading
   double reading_m = 0.0;                                 // of the last altimeter reading
   double climbed_m = 0.0;                                 // integral of the height filter's vertical speed
+  double altimeter_m = 0.0;                               // last reading, of base_link
+  double altimeter_variance_m2 = 0.0;
+  std::uint32_t altimeter_count = 0;
+  double altimeter_shift_m = 0.0;  // sum of the steps that base stations made
+  double up_accel_m_s2 = 0.0;      // of the last IMU sample, biases included
   std::int64_t height_start_ns = 0;
   HeightDatum resumed;          // of an earlier run; !known: none
   std::int64_t aligned_ns = 0;  // first alignment; 0: not yet

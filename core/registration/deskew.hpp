@@ -29,6 +29,9 @@ class Deskewer {
   /// and points that are not finite are dropped.
   Deskewer(const Eigen::Isometry3d& T_base_lidar, double min_range_m, double max_range_m);
 
+  /// Exchanges the mount, between two scans.
+  void set_mount(const Eigen::Isometry3d& T_base_lidar) { T_base_lidar_ = T_base_lidar; }
+
   /// Samples the motion of the lidar during `scan`, for move(). Times before `history` use its oldest prior;
   /// times past its extrapolation, motion.end.
   void start(const Scan& scan, const PriorHistory& history, const ScanMotion& motion);

@@ -1,55 +1,58 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/registration/method.hpp"
 
-#include <initializer_list>
+#include <algorithm>
+#include <array>
 
 namespace isobar {
 
 namespace {
 
-Basis columns_of_identity(std::initializer_list<int> columns) {
-  Basis basis = Basis::Zero(6, static_cast<Eigen::Index>(columns.size()));
-  Eigen::Index column = 0;
-  for (const int row : columns) {
-    basis(row, column++) = 1.0;
-  }
-  return basis;
+struct Row {
+  Method method;
+  Constraint tilt;
+  Constraint height;
+  Constraint level;
+  Method without_height;
+};
+
+using enum Constraint;
+
+// 3-DOF: tau = (gamma, r_x, r_y), before equation (8) of the paper.
+constexpr std::array kRows{
+    //  method                 tilt    height  level   without a height
+    Row{Method::kAdaptive, kSoft, kSoft, kFree, Method::kAdaptive},
+    Row{Method::k3Dof, kFixed, kFixed, kFree, Method::k4Dof},
+    Row{Method::k4Dof, kFixed, kFree, kFree, Method::k4Dof},
+    Row{Method::k4DofAltitude, kFixed, kSoft, kFree, Method::k4Dof},
+    Row{Method::k6Dof, kFree, kFree, kFree, Method::k6Dof},
+    Row{Method::k6DofAltitude, kFree, kSoft, kFree, Method::k6Dof},
+    Row{Method::kOdometry, kFixed, kFree, kFixed, Method::kOdometry},
+};
+
+const Row& row_of(Method method) {
+  return *std::find_if(kRows.begin(), kRows.end(), [&](const Row& row) { return row.method == method; });
 }
 
-Method without_height(Method method) {
-  switch (method) {
-    case Method::k3Dof:
-    case Method::k4DofAltitude:
-      return Method::k4Dof;
-    case Method::k6DofAltitude:
-      return Method::k6Dof;
-    default:
-      return method;
+Basis basis_of(const Row& row) {
+  const std::array<Constraint, 6> directions{row.tilt, row.tilt, row.level, row.level, row.level, row.height};
+  Basis basis = Basis::Zero(6, std::count_if(directions.begin(), directions.end(),
+                                             [](Constraint constraint) { return constraint != kFixed; }));
+  Eigen::Index column = 0;
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    if (directions[i] != kFixed) basis(static_cast<Eigen::Index>(i), column++) = 1.0;
   }
+  return basis;
 }
 
 }  // namespace
 
 MethodTraits traits_of(Method method, HeightSource height) {
-  if (height == HeightSource::kNone) {
-    method = without_height(method);
-  }
-  switch (method) {
-    case Method::k6Dof:
-      return {method, true, false, ZPrediction::kDeadReckoning, columns_of_identity({0, 1, 2, 3, 4, 5})};
-    case Method::k6DofAltitude:
-      return {method, true, false, ZPrediction::kAltimeter, columns_of_identity({0, 1, 2, 3, 4, 5})};
-    case Method::k4Dof:
-      return {method, true, true, ZPrediction::kDeadReckoning, columns_of_identity({2, 3, 4, 5})};
-    case Method::k4DofAltitude:
-      return {method, true, true, ZPrediction::kAltimeter, columns_of_identity({2, 3, 4, 5})};
-    case Method::kOdometry:
-      return {method, false, true, ZPrediction::kDeadReckoning, columns_of_identity({2, 3, 4})};
-    case Method::k3Dof:
-      break;
-  }
-  // tau = (gamma, r_x, r_y), before equation (8) of the paper.
-  return {Method::k3Dof, true, true, ZPrediction::kAltimeter, columns_of_identity({2, 3, 4})};
+  const Row* row = &row_of(method);
+  if (height == HeightSource::kNone) row = &row_of(row->without_height);
+  MethodTraits traits{row->method, row->tilt, row->height, row->level, basis_of(*row)};
+  if (height == HeightSource::kNone) traits.height = kFree;
+  return traits;
 }
 
 }  // namespace isobar

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Table of methods: the free directions of the solver, and the prediction of z.
+// Table of methods: what holds each group of directions of the solver.
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 
 #include "core/estimates.hpp"
 #include "core/registration/twist.hpp"
@@ -12,23 +13,27 @@ namespace isobar {
 /// Free directions of the solver: columns in the space of twists (twist.hpp). 1 … 6 columns, orthonormal.
 using Basis = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
 
-/// Source of the predicted z.
-enum class ZPrediction : std::uint8_t {
-  kDeadReckoning,  ///< increments of dead reckoning
-  kAltimeter,      ///< absolute height from air pressure
+/// What another source than the scan says of a group of directions: gravity of roll and pitch, the altimeter of z,
+/// dead reckoning of x, y and yaw.
+enum class Constraint : std::uint8_t {
+  kFree,   ///< only how the group has changed since the last scan
+  kSoft,   ///< where it is, as information in the prior of the ICP
+  kFixed,  ///< where it is; the ICP does not move it
 };
 
 /// One row of the table of methods.
 struct MethodTraits {
-  Method method = Method::k3Dof;
-  bool registers = true;              ///< false: dead reckoning alone
-  bool attitude_from_gravity = true;  ///< roll and pitch are the prior's, not estimated
-  ZPrediction z_prediction = ZPrediction::kAltimeter;
-  Basis basis;  ///< directions that the ICP estimates; the others stay at the prediction
+  Method method = Method::kAdaptive;
+  Constraint tilt = Constraint::kFixed;    ///< roll and pitch
+  Constraint height = Constraint::kFixed;  ///< z
+  Constraint level = Constraint::kFree;    ///< x, y and yaw; kFixed: dead reckoning alone, no ICP
+  Basis basis;                             ///< directions that are not fixed
+
+  [[nodiscard]] bool registers() const { return level != Constraint::kFixed; }
 };
 
-/// The row of `method`. Where `height` is kNone, methods that need a height fall back: 3-DOF and 4-DOF with
-/// altitude to 4-DOF, 6-DOF with altitude to 6-DOF.
+/// The row of `method`. Where `height` is kNone the height is free: 3-DOF and 4-DOF with altitude run as 4-DOF,
+/// 6-DOF with altitude as 6-DOF.
 MethodTraits traits_of(Method method, HeightSource height);
 
 }  // namespace isobar

@@ -6,6 +6,7 @@
 
 #include "core/geometry.hpp"
 #include "core/pose_carrying.hpp"
+#include "core/so3.hpp"
 #include "core/stamp.hpp"
 
 namespace isobar {
@@ -23,15 +24,39 @@ constexpr double kVerticalVelocityGain = 0.3;
 constexpr double kLongestVelocityStepS = 0.5;
 // Smallest error of a step without wheels: the error of a velocity from registrations.
 constexpr double kFreeMotionFloorM = 0.02;
+// Doubt about gravity's offset beyond which the map stays rigid, so that it does not hide the offset [rad].
+constexpr double kKnownOffsetRad = 0.1 * kRadPerDeg;
 // Turn rate of a robot whose IMU is silent, 1 sigma.
 constexpr double kUnseenRateRadS = 0.5;
+
+// The paper's methods with altitude start from the altimeter's height; the adaptive one corrects its own slowly.
+bool follows_altimeter(const MethodTraits& method) {
+  return method.height != Constraint::kFree && method.method != Method::kAdaptive;
+}
+
+// Fuses the predicted roll and pitch with gravity's, of standard deviation `gravity_sigma_rad`: the weighted mean of
+// the two directions of up, and its variance.
+void pull_to_gravity(const Eigen::Vector3d& up_base, double sigma_rad, Prediction& prediction) {
+  Eigen::Matrix3d R_map_base = prediction.T_map_base.linear();
+  const Eigen::Vector3d tilt = (R_map_base * up_base).cross(Eigen::Vector3d::UnitZ());
+  const double motion_variance = prediction.deviation(0) * prediction.deviation(0);
+  const double gravity_variance = sigma_rad * sigma_rad;
+  const double weight = motion_variance / (motion_variance + gravity_variance);
+  R_map_base = exp_so3(weight * tilt).toRotationMatrix() * R_map_base;
+  prediction.T_map_base.linear() = Eigen::Quaterniond(R_map_base).normalized().toRotationMatrix();
+  prediction.deviation.head<2>().setConstant(std::sqrt(weight * gravity_variance));
+}
 
 double non_negative_root(double x) { return std::sqrt(std::max(x, 0.0)); }
 
 }  // namespace
 
-void MotionModel::start(const Prior& prior) {
-  const Eigen::Matrix3d& R = prior.T_odom_base.linear();
+double gravity_sigma_rad(double known_rad, double offset_sigma_rad) {
+  return std::hypot(known_rad, offset_sigma_rad * std::pow(offset_sigma_rad / kKnownOffsetRad, 2));
+}
+
+void MotionModel::start(const Prior& prior, const Eigen::Vector3d& offset_rad) {
+  const Eigen::Matrix3d R = prior.T_odom_base.linear() * exp_so3(-offset_rad).toRotationMatrix();
   T_map_base_.setIdentity();
   T_map_base_.linear() = rotation_about_z(-std::atan2(R(1, 0), R(0, 0))) * R;
   T_map_base_.translation().z() = prior.height_source == HeightSource::kNone ? 0.0 : prior.height_m;
@@ -81,7 +106,8 @@ Eigen::Vector3d MotionModel::step_at_velocity_map(const Prior& now) const {
   return velocity_at(last_.stamp_ns) * tau * (1.0 - std::exp(-travel_s(now) / tau));
 }
 
-Prediction MotionModel::predict(const Prior& now, const MethodTraits& method) const {
+Prediction MotionModel::predict(const Prior& now, const MethodTraits& method,
+                                const GravityOffset& offset) const {
   // The turn between two priors is known only where both have a valid attitude; else it is predicted as zero,
   // and the registration estimates it.
   const bool followed = now.attitude_valid && last_.attitude_valid;
@@ -89,7 +115,7 @@ Prediction MotionModel::predict(const Prior& now, const MethodTraits& method) co
   const Eigen::Isometry3d& T_odom_before = followed ? last_.T_odom_base : now.T_odom_base;
   const PoseAnchor anchor(T_map_base_, T_odom_before);
   const Eigen::Matrix3d R_map_odom =
-      method.attitude_from_gravity ? nearest_rotation_about_z(anchor.R_map_odom()) : anchor.R_map_odom();
+      method.tilt == Constraint::kFixed ? nearest_rotation_about_z(anchor.R_map_odom()) : anchor.R_map_odom();
   const Eigen::Vector3d step_map_m =
       on_wheels ? anchor.step_map_m(now.T_odom_base) : step_at_velocity_map(now);
 
@@ -97,11 +123,9 @@ Prediction MotionModel::predict(const Prior& now, const MethodTraits& method) co
   prediction.T_map_base.linear() =
       Eigen::Quaterniond(R_map_odom * now.T_odom_base.linear()).normalized().toRotationMatrix();
   prediction.T_map_base.translation() = T_map_base_.translation() + step_map_m;
-  if (method.z_prediction == ZPrediction::kAltimeter) {
+  if (follows_altimeter(method)) {
     prediction.T_map_base.translation().z() = now.height_m;
   }
-  prediction.T_map_odom = prediction.T_map_base * now.T_odom_base.inverse();
-
   const double dt_s = std::max(travel_s(now), seconds_between(confirmed_ns_, now.stamp_ns));
   const double turn_rad =
       rotation_angle_rad(Eigen::Quaterniond(T_odom_before.linear().transpose() * now.T_odom_base.linear()));
@@ -111,9 +135,15 @@ Prediction MotionModel::predict(const Prior& now, const MethodTraits& method) co
   prediction.deviation.head<3>().setConstant(
       std::min(rotation_error_rad(turn_rad, rate_rad_s, dt_s), kLargestDeviationRad));
   prediction.deviation.tail<3>().setConstant(std::min(translation_m, kLargestDeviationM));
-  if (method.z_prediction == ZPrediction::kAltimeter) {
+  if (follows_altimeter(method)) {
     prediction.deviation(5) = config_.altitude_prior_error_m;
   }
+  if (method.tilt == Constraint::kSoft && now.attitude_valid) {
+    const Eigen::Vector3d up_base = exp_so3(offset.offset_rad) * now.T_odom_base.linear().row(2).transpose();
+    pull_to_gravity(up_base, gravity_sigma_rad(config_.gravity_error_deg * kRadPerDeg, offset.sigma_rad),
+                    prediction);
+  }
+  prediction.T_map_odom = prediction.T_map_base * now.T_odom_base.inverse();
   return prediction;
 }
 
@@ -146,6 +176,11 @@ void MotionModel::correct(const Prior& now, const Eigen::Isometry3d& T_map_base)
   T_map_base_ = T_map_base;
   confirmed_ns_ = now.stamp_ns;
   unconfirmed_m_ = 0.0;
+}
+
+void MotionModel::turn_base(const Eigen::Matrix3d& R) {
+  T_map_base_.linear() =
+      Eigen::Quaterniond(T_map_base_.linear() * R.transpose()).normalized().toRotationMatrix();
 }
 
 void MotionModel::keep_prediction(const Prior& now, const Prediction& prediction) {

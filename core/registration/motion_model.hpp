@@ -21,6 +21,15 @@ struct Prediction {
   Eigen::Isometry3d T_map_odom = Eigen::Isometry3d::Identity();
 };
 
+/// Constant offset between gravity and the lidar, see TiltOffset: rotation vector in axes of base_link, 1 sigma.
+struct GravityOffset {
+  Eigen::Vector3d offset_rad = Eigen::Vector3d::Zero();
+  double sigma_rad = 0.0;
+};
+
+/// Standard deviation of gravity's roll and pitch in the prior of a scan [rad]: `known_rad` once its offset is known.
+[[nodiscard]] double gravity_sigma_rad(double known_rad, double offset_sigma_rad);
+
 /// Propagates the last registered pose: with wheels by the increments of dead reckoning, without wheels by
 /// the decaying velocity of the registrations.
 class MotionModel {
@@ -30,21 +39,25 @@ class MotionModel {
   /// Takes over the motion of another model, not its configuration.
   void take_over(const MotionModel& other);
 
-  /// Starts at yaw 0 and x = y = 0, with roll and pitch of the prior; z is its height, 0 without a barometer.
-  void start(const Prior& prior);
+  /// Starts at yaw 0 and x = y = 0, with roll and pitch of gravity less its `offset_rad` (TiltOffset); z is its height, 0 without a barometer.
+  void start(const Prior& prior, const Eigen::Vector3d& offset_rad = Eigen::Vector3d::Zero());
   /// Starts at the position and yaw of `T_map_base`, with roll and pitch of the prior.
   void start_at(const Prior& prior, const Eigen::Isometry3d& T_map_base);
   /// A search has found the robot at `T_map_base`, the pose at the time of `now`; the velocity is unknown.
   void relocate(const Prior& now, const Eigen::Isometry3d& T_map_base);
   [[nodiscard]] bool started() const { return started_; }
 
-  /// Precondition of all below: started().
-  [[nodiscard]] Prediction predict(const Prior& now, const MethodTraits& method) const;
+  /// Precondition of all below: started(). `offset`: for methods whose tilt is soft.
+  [[nodiscard]] Prediction predict(const Prior& now, const MethodTraits& method,
+                                   const GravityOffset& offset = {}) const;
 
   /// The registration succeeded: `T_map_base` is the pose at the time of `now`.
   void correct(const Prior& now, const Eigen::Isometry3d& T_map_base);
   /// The registration failed: the next prediction starts from this one, with an error that grows.
   void keep_prediction(const Prior& now, const Prediction& prediction);
+
+  /// The lidar's rotation in base_link has become R R_base_lidar: base_link turns so that the lidar stays.
+  void turn_base(const Eigen::Matrix3d& R);
 
   /// Motion during a scan that ends at `end`.
   [[nodiscard]] ScanMotion scan_motion(const Prior& end, const Prediction& prediction) const;

@@ -27,8 +27,10 @@ bool is_finite(const PoseEstimate& pose) {
          pose.covariance.allFinite();
 }
 
+// The adaptive method follows it only in an elevator, where the scans stay out of the map.
 bool height_from_altimeter(const PoseEstimate& pose) {
-  return traits_of(pose.effective_method, pose.height_source).z_prediction == ZPrediction::kAltimeter;
+  const MethodTraits traits = traits_of(pose.effective_method, pose.height_source);
+  return traits.method == Method::kAdaptive ? !pose.for_map : traits.height != Constraint::kFree;
 }
 
 }  // namespace

@@ -6,6 +6,9 @@
 
 #include "core/geometry.hpp"
 #include "core/registration/twist.hpp"
+#include "core/so3.hpp"
+#include "core/squared.hpp"
+#include "core/stamp.hpp"
 
 namespace isobar {
 
@@ -22,12 +25,11 @@ constexpr double kLeastVariance = 1e-8;
 Matrix6d covariance_of(const Prediction& prediction) { return prediction.deviation.cwiseAbs2().asDiagonal(); }
 
 // Roll and pitch fixed by gravity and z fixed by the altimeter have the prior's variances.
-void set_fixed_variances(const Prior& prior, bool gravity_fixes_tilt, bool altimeter_fixes_z,
-                         Matrix6d& covariance) {
-  if (gravity_fixes_tilt) {
+void set_fixed_variances(const Prior& prior, const MethodTraits& traits, Matrix6d& covariance) {
+  if (traits.tilt == Constraint::kFixed) {
     covariance(3, 3) = covariance(4, 4) = std::max(prior.roll_pitch_variance_rad2, kLeastVariance);
   }
-  if (altimeter_fixes_z) {
+  if (traits.height == Constraint::kFixed) {
     covariance(2, 2) = std::max(prior.height_variance_m2, kLeastVariance);
   }
 }
@@ -38,11 +40,12 @@ Registration::Registration(const RegistrationConfig& config, Method method,
                            const Eigen::Isometry3d& T_base_lidar)
     : config_(config),
       asked_(method),
+      T_base_lidar_(T_base_lidar),
       traits_(traits_of(method, HeightSource::kNone)),
       traits_with_height_(traits_of(method, HeightSource::kDifferential)),
       traits_of_free_height_(traits_of(Method::k4DofAltitude, HeightSource::kDifferential)),
       traits_without_imu_(traits_of(Method::k6Dof, HeightSource::kNone)),
-      state_(config),
+      state_(config, Eigen::Quaterniond(T_base_lidar.linear())),
       deskewer_(T_base_lidar, config.min_range_m, config.max_range_m),
       sampler_(config.map_voxel_m, config.sample_points),
       matcher_(config, T_base_lidar.translation()) {
@@ -66,7 +69,7 @@ bool Registration::ready(const Scan& scan) const {
 }
 
 const MethodTraits& Registration::traits_for(const Prior& prior) const {
-  if (!prior.attitude_valid && traits_.registers && state_.motion.started()) {
+  if (!prior.attitude_valid && traits_.registers() && state_.motion.started()) {
     return traits_without_imu_;
   }
   return prior.height_source == HeightSource::kNone ? traits_ : traits_with_height_;
@@ -102,11 +105,16 @@ Prior Registration::prior_without_imu(std::int64_t stamp_ns) const {
 }
 
 // False while the map waits for gravity, or a known place for the height.
-bool Registration::start_motion(const Prior& prior) {
+bool Registration::start_motion(const Scan& scan, const Prior& prior, RegisteredScan& out) {
   if (state_.motion.started()) return true;
   if (!prior.attitude_valid && ++state_.scans_without_gravity < kMaxScansWithoutGravity) return false;
   if (state_.place) return start_at_place(prior);
-  state_.motion.start(prior);
+  if (traits_.method != Method::kAdaptive) {
+    state_.motion.start(prior);
+    return true;
+  }
+  if (!find_level(scan, prior, out)) return false;
+  state_.height.restart();
   return true;
 }
 
@@ -121,30 +129,40 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
   const Prior end = prior_at(scan.end_stamp_ns);
   pose = description_of(end, traits_for(end));
   pose.sequence = scan.sequence;
-  if (!start_motion(end)) {
+  if (!start_motion(scan, end, out)) {
     pose.T_map_base = state_.last.T_map_base;
     pose.covariance = state_.last.covariance;
     state_.last = pose;
     return;
   }
   const MethodTraits& traits = traits_for(end);
-  const Prediction prediction = state_.motion.predict(end, traits);
+  if (traits.method == Method::kAdaptive) use_mount();
+  const Prediction prediction = predict(end, traits);
   prepare_scan(scan, state_.history, state_.motion.scan_motion(end, prediction), deskewer_, sampler_, out);
   if (state_.search.active()) {
     search_place(map, end, prediction, out);
     return;
   }
 
-  const MatchResult result = knows(map) ? match(map, end, prediction, traits) : MatchResult{};
+  const bool riding = traits.method == Method::kAdaptive && state_.height.riding();
+  const MatchResult result = knows(map) && !riding ? match(map, end, prediction, traits) : MatchResult{};
   const bool registered = result.solved && acceptable(result, prediction);
   copy_statistics(result, pose);
   pose.mode = mode_after(registered, traits);
   pose.T_map_base = registered ? result.T_map_base : prediction.T_map_base;
   pose.T_map_odom = pose.T_map_base * end.T_odom_base.inverse();
   pose.covariance = as_pose_covariance(registered ? result.twist_covariance : covariance_of(prediction));
-  const bool altimeter_fixes_z = traits.z_prediction == ZPrediction::kAltimeter &&
-                                 traits.attitude_from_gravity && traits.basis.cols() == 3;
-  set_fixed_variances(end, traits.attitude_from_gravity, altimeter_fixes_z, pose.covariance);
+  set_fixed_variances(end, traits, pose.covariance);
+
+  pose.for_map = !riding;
+  if (traits.method == Method::kAdaptive) {
+    if (registered) {
+      own_tilt(end, pose);
+      learn_mount(pose);
+    }
+    own_height(prediction, registered, pose);
+    describe_mount(pose);
+  }
 
   // A scan with neither IMU nor registration does not become the start of the next prediction: the scan
   // before it stays the start.
@@ -158,7 +176,7 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
 
 MatchResult Registration::match(const MapSnapshot& map, const Prior& prior, const Prediction& prediction,
                                 const MethodTraits& traits) {
-  if (!traits.registers) return {};
+  if (!traits.registers()) return {};
   return matcher_.match({.map = map,
                          .p_base = sampler_.sample(),
                          .traits = traits,
@@ -169,7 +187,7 @@ MatchResult Registration::match(const MapSnapshot& map, const Prior& prior, cons
 PoseMode Registration::mode_after(bool registered, const MethodTraits& traits) {
   // Bootstrap: until the first success scans enter the map at the predicted pose. The first revolution may be
   // incomplete, and one scan may cover too little of the place.
-  state_.bootstrapping = state_.bootstrapping && !registered && traits.registers &&
+  state_.bootstrapping = state_.bootstrapping && !registered && traits.registers() &&
                          state_.bootstrap_scans++ < kMaxBootstrapScans;
   if (registered) return PoseMode::kRegistered;
   return state_.bootstrapping ? PoseMode::kInitializing : PoseMode::kPriorOnly;
@@ -201,8 +219,7 @@ bool Registration::propagate(PoseEstimate& out) const {
   out.T_map_base = prediction.T_map_base;
   out.T_map_odom = prediction.T_map_odom;
   out.covariance = state_.last.covariance + as_pose_covariance(covariance_of(prediction));
-  set_fixed_variances(now, traits.attitude_from_gravity, traits.z_prediction == ZPrediction::kAltimeter,
-                      out.covariance);
+  set_fixed_variances(now, traits, out.covariance);
   return true;
 }
 

@@ -10,29 +10,43 @@
 #include <optional>
 
 #include "core/estimates.hpp"
+#include "core/geometry.hpp"
 #include "core/map/map_snapshot.hpp"
+#include "core/mounts/level_surfaces.hpp"
+#include "core/mounts/mount_estimator.hpp"
 #include "core/prior/prior_history.hpp"
 #include "core/registration/known_place.hpp"
+#include "core/registration/map_height.hpp"
 #include "core/registration/method.hpp"
 #include "core/registration/motion_model.hpp"
 #include "core/registration/place_search.hpp"
 #include "core/registration/registration_config.hpp"
 #include "core/registration/scan_matcher.hpp"
 #include "core/registration/scan_preparation.hpp"
+#include "core/registration/tilt_offset.hpp"
 
 namespace isobar {
 
 /// What a Registration has learnt, and another one with other settings takes over.
 struct RegistrationState {
-  explicit RegistrationState(const RegistrationConfig& config) : motion(config) {}
+  RegistrationState(const RegistrationConfig& config, const Eigen::Quaterniond& configured)
+      : motion(config),
+        tilt(config.mount_error_deg * kRadPerDeg),
+        mounts(configured),
+        q_base_lidar(configured) {}
 
   PriorHistory history;
   MotionModel motion;
+  MapHeight height;
+  TiltOffset tilt;
+  MountEstimator mounts;
+  Eigen::Quaterniond q_base_lidar;  ///< as found so far
   PlaceSearch search;
   std::optional<KnownPlace> place;
   PoseEstimate last;
   std::int64_t first_prior_ns = 0;  ///< 0: none yet; the history forgets
   std::uint32_t scans_without_gravity = 0;
+  std::int64_t level_since_ns = 0;  ///< start of the halt in which level surfaces are looked for; 0: none yet
   std::uint32_t bootstrap_scans = 0;
   bool bootstrapping = true;  ///< no scan has been registered yet
 };
@@ -80,7 +94,8 @@ class Registration {
   [[nodiscard]] PoseEstimate description_of(const Prior& prior, const MethodTraits& traits) const;
   [[nodiscard]] Prior prior_at(std::int64_t stamp_ns) const;
   [[nodiscard]] Prior prior_without_imu(std::int64_t stamp_ns) const;
-  bool start_motion(const Prior& prior);
+  bool start_motion(const Scan& scan, const Prior& prior, RegisteredScan& out);
+  bool find_level(const Scan& scan, const Prior& prior, RegisteredScan& out);
   [[nodiscard]] bool knows(const MapSnapshot& map) const {
     return !map.empty() && map.session() == session();
   }
@@ -96,17 +111,25 @@ class Registration {
   [[nodiscard]] MatchResult match(const MapSnapshot& map, const Prior& prior, const Prediction& prediction,
                                   const MethodTraits& traits);
   [[nodiscard]] bool acceptable(const MatchResult& match, const Prediction& prediction) const;
+  [[nodiscard]] Prediction predict(const Prior& end, const MethodTraits& traits);
+  void learn_mount(const PoseEstimate& pose);
+  void use_mount();
+  void describe_mount(PoseEstimate& pose) const;
+  void own_tilt(const Prior& end, PoseEstimate& pose);
+  void own_height(const Prediction& prediction, bool registered, PoseEstimate& pose);
   [[nodiscard]] PoseMode mode_after(bool registered, const MethodTraits& traits);
 
   RegistrationConfig config_;
   Method asked_;
-  MethodTraits traits_;  // without a height
+  Eigen::Isometry3d T_base_lidar_;  // as configured
+  MethodTraits traits_;             // without a height
   MethodTraits traits_with_height_;
   MethodTraits traits_of_free_height_;  // search of the place: 3-DOF with z
   MethodTraits traits_without_imu_;     // IMU silent: the motion comes from the scans alone
   RegistrationState state_;
   Deskewer deskewer_;
   Sampler sampler_;
+  LevelSurfaces level_;
   ScanMatcher matcher_;
 };
 

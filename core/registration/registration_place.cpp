@@ -80,6 +80,7 @@ void Registration::next_frame() {
   state_.search.stop();
   state_.place.reset();
   state_.scans_without_gravity = state_.bootstrap_scans = 0;
+  state_.level_since_ns = 0;
   state_.bootstrapping = true;
 }
 
@@ -95,6 +96,8 @@ bool Registration::start_at_place(const Prior& prior) {
         place.T_map_base.translation().z() + (prior.height_m - place.height_m);
   }
   state_.motion.start_at(prior, expected.T_map_base);
+  state_.height.restart();
+  state_.tilt.restart();
   state_.search.begin(place, seconds_between(place.stamp_ns, prior.stamp_ns), expected);
   state_.place.reset();
   return true;

@@ -170,11 +170,12 @@ const FloorHeight* floor_at(const EvaluatedMethod& method, double level_m, doubl
 }
 
 std::string display_name(const std::string& method) {
-  static constexpr NameTable<Method, 6> kDisplayNames{{{
+  static constexpr NameTable<Method, 7> kDisplayNames{{{
       {Method::k6Dof, "6-DOF"},
       {Method::k4Dof, "4-DOF"},
       {Method::k3Dof, "3-DOF"},
       {Method::k6DofAltitude, "6-DOF altitude"},
+      {Method::kAdaptive, "Adaptive"},
       {Method::k4DofAltitude, "4-DOF altitude"},
       {Method::kOdometry, "Odometry"},
   }}};

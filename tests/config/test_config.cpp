@@ -164,7 +164,7 @@ TEST_CASE("Values outside their rules are refused with file, line, column, key, 
   fails("[realtime]\nmap_cpus = [0, -1]\n", "realtime.map_cpus");
   fails("[realtime]\nmap_cpus = 3\n", "realtime.map_cpus");
   fails("method = \"5dof\"\n",
-        "must be one of 6dof, 4dof, 3dof, 6dof-altitude, 4dof-altitude, odometry (got '5dof')");
+        "must be one of 6dof, 4dof, 3dof, 6dof-altitude, 4dof-altitude, odometry, adaptive (got '5dof')");
   fails("method = 3\n", "must be one of");
   fails("[dds]\nros_gid_bytes = 20\n", "must be one of 16, 24");
   fails("[dds]\nmap_frame = \"/map\"\n", "dds.map_frame");

@@ -7,7 +7,8 @@
 namespace isobar::report {
 
 Stroke method_stroke(const evaluation::EvaluatedRun& run, const evaluation::EvaluatedMethod& method) {
-  static const std::map<std::string, Stroke> kKnown{{"3dof", {"#0072b2", 2.0}},
+  static const std::map<std::string, Stroke> kKnown{{"adaptive", {"#111827", 2.2}},
+                                                    {"3dof", {"#0072b2", 2.0}},
                                                     {"4dof", {"#d55e00", 1.8}},
                                                     {"6dof", {"#aa3a86", 1.8}},
                                                     {"4dof-altitude", {"#009e73", 1.6, "8 3"}},

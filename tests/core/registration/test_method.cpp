@@ -5,10 +5,10 @@
 
 namespace isobar::test::test_method {
 
+using isobar::Constraint;
 using isobar::HeightSource;
 using isobar::Method;
 using isobar::traits_of;
-using isobar::ZPrediction;
 
 TEST_CASE("each method has as many free directions as its name says") {
   const auto columns = [](Method method) {
@@ -21,14 +21,15 @@ TEST_CASE("each method has as many free directions as its name says") {
   CHECK(columns(Method::k3Dof) == 3);
 }
 
-TEST_CASE("only methods with altitude in the name or with fixed z use the altimeter") {
-  const auto z = [](Method method) { return traits_of(method, HeightSource::kDifferential).z_prediction; };
-  CHECK(z(Method::k3Dof) == ZPrediction::kAltimeter);
-  CHECK(z(Method::k4DofAltitude) == ZPrediction::kAltimeter);
-  CHECK(z(Method::k6DofAltitude) == ZPrediction::kAltimeter);
-  CHECK(z(Method::k4Dof) == ZPrediction::kDeadReckoning);
-  CHECK(z(Method::k6Dof) == ZPrediction::kDeadReckoning);
-  CHECK(z(Method::kOdometry) == ZPrediction::kDeadReckoning);
+TEST_CASE("only methods with altitude in the name, with fixed z, and the adaptive one use the altimeter") {
+  const auto z = [](Method method) { return traits_of(method, HeightSource::kDifferential).height; };
+  CHECK(z(Method::k3Dof) == Constraint::kFixed);
+  CHECK(z(Method::k4DofAltitude) == Constraint::kSoft);
+  CHECK(z(Method::k6DofAltitude) == Constraint::kSoft);
+  CHECK(z(Method::kAdaptive) == Constraint::kSoft);
+  CHECK(z(Method::k4Dof) == Constraint::kFree);
+  CHECK(z(Method::k6Dof) == Constraint::kFree);
+  CHECK(z(Method::kOdometry) == Constraint::kFree);
 }
 
 TEST_CASE("without any height a method falls back to the one that needs none") {

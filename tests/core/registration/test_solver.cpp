@@ -191,4 +191,35 @@ TEST_CASE("without pairs the step is the prior's; without pairs and prior there 
   CHECK_FALSE(solve_step(poisoned, prior, basis_of(Method::k3Dof), SolverWeights{}).solved);
 }
 
+// Prior of standard deviation `sigma` (rad, m) in roll, pitch and z, and none in the other directions.
+PriorTerm tilt_and_height_prior(double sigma) {
+  PriorTerm prior;
+  for (const int direction : {0, 1, 5}) prior.information(direction, direction) = 1.0 / (sigma * sigma);
+  return prior;
+}
+
+TEST_CASE(
+    "a penalty on roll, pitch and z is 3-DOF where its sigma goes to zero, and 6-DOF where it goes to "
+    "infinity") {
+  const NormalEquations equations = equations_of(room_pairs(twist(0.004, -0.003, 0.01, 0.03, -0.02, 0.05)));
+  const Vector6d soft =
+      solve_step(equations, tilt_and_height_prior(1e-7), basis_of(Method::kAdaptive), {}).twist;
+  const Vector6d fixed = solve_step(equations, PriorTerm{}, basis_of(Method::k3Dof), {}).twist;
+  // 600 pairs of information 1 against 1e14: the penalised directions keep 1e-11 of their displacement.
+  CHECK((soft - fixed).cwiseAbs().maxCoeff() < 1e-8);
+  const Vector6d loose =
+      solve_step(equations, tilt_and_height_prior(1e6), basis_of(Method::kAdaptive), {}).twist;
+  const Vector6d free = solve_step(equations, PriorTerm{}, basis_of(Method::k6Dof), {}).twist;
+  CHECK((loose - free).cwiseAbs().maxCoeff() < 1e-8);
+}
+
+TEST_CASE("a penalty on roll and pitch alone is 4-DOF where its sigma goes to zero") {
+  const NormalEquations equations = equations_of(room_pairs(twist(0.004, -0.003, 0.01, 0.03, -0.02, 0.05)));
+  PriorTerm prior = tilt_and_height_prior(1e-7);
+  prior.information(5, 5) = 0.0;
+  const Vector6d soft = solve_step(equations, prior, basis_of(Method::kAdaptive), {}).twist;
+  const Vector6d fixed = solve_step(equations, PriorTerm{}, basis_of(Method::k4Dof), {}).twist;
+  CHECK((soft - fixed).cwiseAbs().maxCoeff() < 1e-8);
+}
+
 }  // namespace isobar::test::test_solver

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/registration/map_height.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/squared.hpp"
+#include "core/stamp.hpp"
+
+namespace isobar {
+namespace {
+
+// A longer step between priors is a gap in the acceleration.
+constexpr double kGapS = 0.1;
+// Wheel speed below which the robot stands.
+constexpr double kStandingMS = 0.01;
+// Gate of a reading, in standard deviations, and how long it stays shut: doors are over by then.
+constexpr double kGateSigmas = 3.0;
+constexpr double kGateS = 3.0;
+// Mean innovation beyond which the altimeter drifts, and the time of the mean.
+constexpr double kDriftM = 0.03;
+constexpr double kDriftMemoryS = 4.0;
+// Bias beyond any zone or door (8 Pa), and beyond what weather may do: a barometer is wrong.
+constexpr double kFaultM = 0.75;
+// Way over which a correction of the map's height is given to new ground, and its largest step.
+constexpr double kCorrectionWayM = 5.0;
+constexpr double kLargestStepM = 0.02;
+// Length of a straight drive, over which a tilted map has one slope.
+constexpr double kSlopeWayM = 25.0;
+// Share of a step that stays: the next scan is laid onto ground that was mapped before the step.
+constexpr double kStays = 0.05;
+// Bias of the altimeter after a ride: another floor, another zone.
+constexpr double kOtherFloorM = 0.2;
+
+}  // namespace
+
+double MapHeight::bias_sd_m() const {
+  return std::sqrt(std::max(0.0, P_(kBias, kBias) + P_(kTurbulence, kTurbulence)));
+}
+
+void MapHeight::restart() {
+  x_.setZero();
+  P_.setZero();
+  P_(kBias, kBias) = squared(config_.start_bias_sigma_m);
+  zero_known_ = faulty_ = unseen_start_ = false;
+  mean_innovation_m_ = 0.0;
+  sum_m_ = count_ = outside_s_ = unconfirmed_m2_ = risen_m_ = taken_m_ = 0.0;
+  ride_.end();
+}
+
+void MapHeight::advance_to(std::int64_t stamp_ns, const PriorHistory& history) {
+  std::size_t first = history.size();
+  while (first > 0 && (!any_ || history[first - 1].stamp_ns > last_.stamp_ns)) --first;
+  for (std::size_t i = first; i < history.size() && history[i].stamp_ns <= stamp_ns; ++i) take(history[i]);
+}
+
+void MapHeight::take(const Prior& prior) {
+  const double dt_s = any_ ? seconds_between(last_.stamp_ns, prior.stamp_ns) : 0.0;
+  if (any_ && prior.altimeter_count != last_.altimeter_count) take_reading(prior);
+  if (!any_) shift_m_ = prior.altimeter_shift_m;
+  // A robot that drives is on stairs, not in an elevator.
+  const bool stands = prior.velocity_valid && prior.v_base_m_s.norm() < kStandingMS;
+  if (dt_s > kGapS) {
+    ride_.forget();
+  } else {
+    ride_.add_acceleration(prior.up_accel_m_s2, dt_s, stands);
+  }
+  watch_ride(prior, stands);
+  last_ = prior;
+  any_ = true;
+}
+
+void MapHeight::watch_ride(const Prior& prior, bool stands) {
+  if (unseen_start_) {
+    if (any_) risen_m_ += prior.height_m - last_.height_m;
+    unseen_start_ = prior.ground_moves;
+    if (!unseen_start_) P_(kMap, kMap) += prior.height_variance_m2;
+    unconfirmed_m2_ = prior.height_variance_m2;
+    return;
+  }
+  if (prior.ground_moves && stands && !ride_.riding()) {
+    // A run that goes on in a cabin, or a gap: the speed is not known.
+    unseen_start_ = !ride_.remembers_start();
+    if (unseen_start_) return;
+    ride_.begin();
+    taken_m_ = 0.0;
+  }
+  if (!prior.ground_moves && ride_.riding()) end_ride();
+  if (ride_.riding()) {
+    risen_m_ += ride_.risen_m() - taken_m_;
+    taken_m_ = ride_.risen_m();
+  }
+}
+
+void MapHeight::take_reading(const Prior& prior) {
+  ride_.add_altimeter(prior.altimeter_m, prior.altimeter_variance_m2);
+  x_[kBias] += prior.altimeter_shift_m - shift_m_;
+  shift_m_ = prior.altimeter_shift_m;
+  sum_m_ += prior.altimeter_m;
+  count_ += 1.0;
+  noise_m2_ = prior.altimeter_variance_m2;
+}
+
+void MapHeight::end_ride() {
+  ride_.end();
+  risen_m_ += ride_.risen_m() - taken_m_;
+  taken_m_ = ride_.risen_m();
+  unconfirmed_m2_ += ride_.variance_m2();
+  P_(kMap, kMap) += ride_.variance_m2();
+  P_(kBias, kBias) += squared(kOtherFloorM);
+}
+
+double MapHeight::take_risen_m() {
+  const double risen_m = risen_m_;
+  risen_m_ = 0.0;
+  return risen_m;
+}
+
+void MapHeight::predict(double dt_s, double moved_m, double tilt_variance_rad2) {
+  const double keep_bias = std::exp(-dt_s / config_.bias_time_s);
+  const double keep_turbulence = std::exp(-dt_s / config_.turbulence_time_s);
+  const bool base = last_.height_source == HeightSource::kDifferential;
+  const double keep_slope = std::exp(-moved_m / kSlopeWayM);
+  const Vector keep(1.0, base ? keep_bias : 1.0, keep_turbulence, keep_slope);
+  x_[kMap] += moved_m * x_[kSlope];
+  P_.row(kMap) += moved_m * P_.row(kSlope);
+  P_.col(kMap) += moved_m * P_.col(kSlope);
+  x_ = keep.cwiseProduct(x_);
+  P_ = (keep.asDiagonal() * P_ * keep.asDiagonal()).eval();
+  P_(kSlope, kSlope) += tilt_variance_rad2 * (1.0 - keep_slope * keep_slope);
+  P_(kMap, kMap) += squared(config_.map_walk_m_sqrt_m) * moved_m;
+  P_(kBias, kBias) += base ? squared(config_.bias_sigma_m) * (1.0 - keep_bias * keep_bias)
+                           : squared(config_.weather_walk_m_sqrt_s) * dt_s;
+  P_(kTurbulence, kTurbulence) +=
+      squared(config_.turbulence_sigma_m) * (1.0 - keep_turbulence * keep_turbulence);
+}
+
+double MapHeight::update(double z_m, double moved_m, double z_variance_m2, bool registered,
+                         double tilt_variance_rad2) {
+  const double dt_s = updated_ns_ == 0 ? 0.0 : std::max(0.0, seconds_between(updated_ns_, last_.stamp_ns));
+  updated_ns_ = last_.stamp_ns;
+  predict(std::min(dt_s, 60.0), moved_m, tilt_variance_rad2);
+  if (!registered) P_(kMap, kMap) += z_variance_m2;
+  if (registered) unconfirmed_m2_ = 0.0;
+  if (!riding() && count_ > 0.0) measure(z_m, dt_s);
+  sum_m_ = count_ = 0.0;
+  if (!registered) return 0.0;
+  const double share = std::min(1.0, moved_m / kCorrectionWayM);
+  const double step_m = std::clamp(-x_[kMap] * share, -kLargestStepM, kLargestStepM);
+  x_[kMap] += kStays * step_m;
+  return step_m;
+}
+
+void MapHeight::measure(double z_m, double dt_s) {
+  const double reading_m = sum_m_ / count_;
+  if (!zero_known_) {
+    zero_m_ = reading_m - z_m;
+    zero_known_ = true;
+  }
+  const Vector h(-1.0, 1.0, 1.0, 0.0);
+  const Vector Ph = P_ * h;
+  const double noise_m2 = noise_m2_ / count_;
+  const double variance = h.dot(Ph) + noise_m2;
+  innovation_m_ = reading_m - zero_m_ - z_m - h.dot(x_);
+  if (std::abs(innovation_m_) > kGateSigmas * std::sqrt(variance)) {
+    outside_s_ += dt_s;
+    if (outside_s_ < kGateS) return;
+    // No door: another zone, weather, a drift. The altimeter's error, not the map's.
+    x_[kBias] += innovation_m_;
+    P_(kBias, kBias) += squared(config_.bias_sigma_m);
+    outside_s_ = 0.0;
+    faulty_ = std::abs(x_[kBias]) > kFaultM;
+    return;
+  }
+  outside_s_ = 0.0;
+  Vector K = Ph / variance;
+  // Schmidt-Kalman: zero gain on the map. Innovations of one sign are a drift of the altimeter, which b follows late.
+  mean_innovation_m_ += (innovation_m_ - mean_innovation_m_) * std::min(1.0, dt_s / kDriftMemoryS);
+  if (faulty_ || std::abs(mean_innovation_m_) > kDriftM) K[kMap] = K[kSlope] = 0.0;
+  x_ += K * innovation_m_;
+  const Matrix keep = Matrix::Identity() - K * h.transpose();
+  P_ = (keep * P_ * keep.transpose() + noise_m2 * K * K.transpose()).eval();
+  P_ = (0.5 * (P_ + P_.transpose())).eval();
+  faulty_ = std::abs(x_[kBias]) > kFaultM;
+}
+
+}  // namespace isobar

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The one owner of height in the adaptive method: error of the map's height, bias of the altimeter, rides.
+//
+//     altimeter - z = b + n - d + noise
+//
+//     d   error of the map's height where the robot is [m]: a random walk with the way, because every scan of new
+//         ground is laid onto the one before. On a way of 100 m floors and ceilings keep it to 2 to 3 cm.
+//     b   bias of the altimeter [m], first-order Gauss-Markov: ventilated zones (1 to 4 Pa), warm-up, weather that the
+//         base station does not share. Without a base station a random walk with the weather.
+//     s   slope of the map's floors [rad], dd/dway = s: constant over a straight drive, while mounts are unknown.
+//     n   turbulence, doors [m]: first-order Gauss-Markov over seconds.
+//
+// Floors, ceilings and stairs know the height to millimetres over metres; the air knows it to decimetres over hours,
+// and alone sees an elevator. So a difference between the two is first the altimeter's (b), and only over hundreds of
+// metres the map's (d). What the air cannot have done - a pulse, a step, a drift beyond any zone - widens b and moves
+// nothing.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "core/estimates.hpp"
+#include "core/prior/prior_history.hpp"
+#include "core/registration/ride_meter.hpp"
+
+namespace isobar {
+
+/// Noise of the height and of the altimeter, 1 sigma.
+struct MapHeightConfig {
+  double map_walk_m_sqrt_m = 0.008;     ///< random walk of the map's height with the way [m/sqrt(m)]
+  double bias_sigma_m = 0.15;           ///< altimeter bias: zones [m] …
+  double bias_time_s = 450.0;           ///< … and its correlation time [s]
+  double start_bias_sigma_m = 0.02;     ///< bias at the start, where it is zero by definition [m]
+  double turbulence_sigma_m = 0.05;     ///< turbulence [m] …
+  double turbulence_time_s = 8.0;       ///< … and its correlation time [s]
+  double weather_walk_m_sqrt_s = 0.02;  ///< bias without a base station [m/sqrt(s)]
+};
+
+/// Owner of the height. Fed with the priors up to each scan, and with each scan's pose.
+class MapHeight {
+ public:
+  explicit MapHeight(const MapHeightConfig& config = {}) : config_(config) {}
+
+  /// Takes the priors up to `stamp_ns`: altimeter readings, acceleration, rides.
+  void advance_to(std::int64_t stamp_ns, const PriorHistory& history);
+
+  /// The ground moves: the scans show the cabin, and say nothing of the map.
+  [[nodiscard]] bool riding() const { return ride_.riding() || unseen_start_; }
+  /// Height gained by moving ground since the last call [m]; add it to the predicted z.
+  double take_risen_m();
+  /// Variance of z that rides have added and no scan has confirmed [m^2].
+  [[nodiscard]] double unconfirmed_variance_m2() const { return unconfirmed_m2_; }
+
+  /// The pose of a scan. `moved_m`: way since the last one. `z_variance_m2`: of z against the map; of dead reckoning
+  /// where the scan was not registered.
+  /// @return the correction of z that moves the robot, and with it the ground it is about to map [m]
+  double update(double z_m, double moved_m, double z_variance_m2, bool registered, double tilt_variance_rad2);
+
+  /// Begins at a pose in the map; the altimeter reads `z_m` there.
+  void restart();
+
+  [[nodiscard]] double bias_m() const { return x_[kBias] + x_[kTurbulence]; }
+  [[nodiscard]] double bias_sd_m() const;
+  [[nodiscard]] double innovation_m() const { return innovation_m_; }
+  /// Variance of the map's height at the robot [m^2].
+  [[nodiscard]] double variance_m2() const { return P_(kMap, kMap); }
+  [[nodiscard]] double error_m() const { return x_[kMap]; }
+  /// The altimeter departs from the map by more than zones and weather explain: a drift or a fault of a barometer.
+  [[nodiscard]] bool altimeter_faulty() const { return faulty_; }
+
+ private:
+  enum State { kMap, kBias, kTurbulence, kSlope, kStates };
+  using Vector = Eigen::Matrix<double, kStates, 1>;
+  using Matrix = Eigen::Matrix<double, kStates, kStates>;
+
+  void take(const Prior& prior);
+  void take_reading(const Prior& prior);
+  void predict(double dt_s, double moved_m, double tilt_variance_rad2);
+  void measure(double z_m, double dt_s);
+  void watch_ride(const Prior& prior, bool stands);
+  void end_ride();
+
+  MapHeightConfig config_;
+  RideMeter ride_;
+  Vector x_ = Vector::Zero();
+  Matrix P_ = Matrix::Zero();
+  Prior last_;  // the last prior taken
+  bool any_ = false;
+  bool zero_known_ = false;  // altimeter readings are relative to the first one
+  double zero_m_ = 0.0;
+  double sum_m_ = 0.0;  // altimeter readings since the last update
+  double count_ = 0.0;
+  double noise_m2_ = 0.0;  // white, of one reading
+  double shift_m_ = 0.0;   // Prior::altimeter_shift_m already taken into the bias
+  double taken_m_ = 0.0;   // of RideMeter::risen_m()
+  double risen_m_ = 0.0;   // not taken yet
+  double unconfirmed_m2_ = 0.0;
+  double innovation_m_ = 0.0;
+  double mean_innovation_m_ = 0.0;
+  double outside_s_ = 0.0;  // how long the readings have been outside the gate
+  std::int64_t updated_ns_ = 0;
+  bool faulty_ = false;
+  bool unseen_start_ =
+      false;  // riding, and the ride began before the memory: its height is Prior::height_m's
+};
+
+}  // namespace isobar

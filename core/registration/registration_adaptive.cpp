@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The part of Registration that only the adaptive method has: gravity's offset, the lidar's mount, the owner of height.
+//
+//     at rest: level surfaces ─▶ TiltOffset ─▶ start of the map
+//     each scan: MountEstimator ─▶ mount;  MapHeight ─▶ rides;  TiltOffset ─▶ prior ─▶ ICP ─▶ all three
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry.hpp"
+#include "core/registration/registration.hpp"
+#include "core/so3.hpp"
+#include "core/squared.hpp"
+#include "core/stamp.hpp"
+
+namespace isobar {
+
+namespace {
+
+// Time at rest in which gravity settles and level surfaces are looked for [s].
+constexpr double kLevelS = 2.5;
+// Speeds below which the robot stands; a gyro's bias is below the second.
+constexpr double kHaltMS = 0.01;
+constexpr double kHaltRadS = 0.03;
+
+// The variance of gravity's direction is mostly the accelerometer's bias, which is constant and part of the offset. What
+// exceeds it comes from motion that the filter could not tell from gravity.
+double moving_part(double roll_pitch_variance_rad2) {
+  constexpr double kBiasRad = 0.3 * kRadPerDeg;
+  return std::max(0.0, roll_pitch_variance_rad2 - squared(kBiasRad));
+}
+
+}  // namespace
+
+// Looks for level surfaces while the robot stands: what they say of gravity's offset must be known before the map
+// begins, which cannot be tilted afterwards. False while the halt lasts and scans are missing.
+bool Registration::find_level(const Scan& scan, const Prior& prior, RegisteredScan& out) {
+  // By the wheels: Prior::standing_still needs a longer look.
+  const bool stands = prior.attitude_valid && prior.velocity_valid && prior.v_base_m_s.norm() < kHaltMS &&
+                      prior.w_base_rad_s.norm() < kHaltRadS;
+  if (!stands) {
+    state_.tilt.restart(prior.roll_pitch_variance_rad2);
+    state_.motion.start(prior, state_.tilt.offset_rad());
+    return true;
+  }
+  if (state_.level_since_ns == 0) {
+    state_.level_since_ns = prior.stamp_ns;
+    level_.clear();
+  }
+  ScanMotion still;
+  still.end = prior;
+  prepare_scan(scan, state_.history, still, deskewer_, sampler_, out);
+  level_.add({out.points, out.point_count});
+  out.point_count = 0;
+  if (seconds_between(state_.level_since_ns, prior.stamp_ns) < kLevelS) return false;
+  const Eigen::Vector3d up_base = prior.T_odom_base.linear().row(2).transpose();
+  const auto level = level_.find(up_base, prior.roll_pitch_variance_rad2);
+  state_.tilt.restart(prior.roll_pitch_variance_rad2);
+  if (level) {
+    state_.mounts.add_level(*level);
+    state_.tilt.restart_on_level(level->surfaces_covariance_rad2.topLeftCorner<2, 2>());
+  }
+  state_.motion.start(prior,
+                      level ? level->up_by_gravity.cross(level->up_by_surfaces) : state_.tilt.offset_rad());
+  return true;
+}
+
+Prediction Registration::predict(const Prior& end, const MethodTraits& traits) {
+  Prediction prediction = state_.motion.predict(
+      end, traits, {.offset_rad = state_.tilt.offset_rad(), .sigma_rad = state_.tilt.offset_sigma_rad()});
+  if (traits.method != Method::kAdaptive) return prediction;
+  MapHeight& height = state_.height;
+  height.advance_to(end.stamp_ns, state_.history);
+  const Eigen::Vector3d up(0.0, 0.0, height.take_risen_m());
+  prediction.T_map_base.pretranslate(up);
+  prediction.T_map_odom.pretranslate(up);
+  prediction.deviation(5) = std::hypot(prediction.deviation(5), std::sqrt(height.unconfirmed_variance_m2()));
+  return prediction;
+}
+
+void Registration::learn_mount(const PoseEstimate& pose) {
+  ScanMotionEvidence evidence;
+  evidence.stamp_ns = pose.stamp_ns;
+  evidence.session = pose.session;
+  evidence.T_map_base = pose.T_map_base;
+  evidence.q_base_lidar = state_.q_base_lidar;
+  state_.mounts.add(evidence, state_.history);
+}
+
+void Registration::describe_mount(PoseEstimate& pose) const {
+  const MountEstimate found = state_.mounts.estimate();
+  pose.mount_found = found.verdict == MountVerdict::kFound;
+  pose.mount_error_rad = found.error_rad;
+  pose.mount_sigma_rad = found.sigma_rad();
+}
+
+// The mount found so far, for the next scan: base_link turns in the map, the lidar stays where it is.
+void Registration::use_mount() {
+  const MountEstimate found = state_.mounts.estimate();
+  Eigen::Vector3d error_rad = Eigen::Vector3d::Zero();
+  if (found.verdict == MountVerdict::kFound) {
+    error_rad.head<2>() = found.error_rad.head<2>();
+    if (found.yaw_found) error_rad.z() = found.error_rad.z();
+  }
+  const Eigen::Quaterniond q_base_lidar =
+      (exp_so3(error_rad) * Eigen::Quaterniond(T_base_lidar_.linear())).normalized();
+  const Eigen::Quaterniond turn = q_base_lidar * state_.q_base_lidar.conjugate();
+  state_.q_base_lidar = q_base_lidar;
+  state_.motion.turn_base(turn.toRotationMatrix());
+  state_.tilt.turn_base(log_so3(turn));
+  Eigen::Isometry3d T_base_lidar = T_base_lidar_;
+  T_base_lidar.linear() = q_base_lidar.toRotationMatrix();
+  deskewer_.set_mount(T_base_lidar);
+}
+
+void Registration::own_tilt(const Prior& end, PoseEstimate& pose) {
+  const Eigen::Vector3d step_m = pose.T_map_base.translation() - state_.last.T_map_base.translation();
+  const double dt_s = std::clamp(seconds_between(state_.last.stamp_ns, pose.stamp_ns), 0.0, 1.0);
+  state_.tilt.add(
+      pose.T_map_base.linear(), end.T_odom_base.linear().row(2).transpose(), dt_s, step_m.norm(),
+      moving_part(end.roll_pitch_variance_rad2),
+      squared(gravity_sigma_rad(config_.gravity_error_deg * kRadPerDeg, state_.tilt.offset_sigma_rad())));
+}
+
+// Height of the adaptive method: the scan's, less the error of the map's height as far as the altimeter knows it.
+void Registration::own_height(const Prediction& prediction, bool registered, PoseEstimate& pose) {
+  MapHeight& height = state_.height;
+  const double moved_m =
+      (pose.T_map_base.translation() - state_.last.T_map_base.translation()).head<2>().norm();
+  const double step_m =
+      height.update(pose.T_map_base.translation().z(), moved_m, squared(prediction.deviation(5)), registered,
+                    state_.tilt.tilt_variance_rad2());
+  const Eigen::Vector3d up(0.0, 0.0, step_m);
+  pose.T_map_base.pretranslate(up);
+  pose.T_map_odom.pretranslate(up);
+  pose.covariance(2, 2) += height.variance_m2();
+  pose.altimeter_bias_m = height.bias_m();
+  pose.altimeter_bias_sd_m = height.bias_sd_m();
+  pose.altimeter_innovation_m = height.innovation_m();
+  pose.altimeter_faulty = height.altimeter_faulty();
+}
+
+}  // namespace isobar
