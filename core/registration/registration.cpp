@@ -115,6 +115,7 @@ bool Registration::start_motion(const Scan& scan, const Prior& prior, Registered
   }
   if (!find_level(scan, prior, out)) return false;
   state_.height.restart();
+  state_.drift.restart();
   return true;
 }
 
@@ -161,6 +162,7 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
       learn_mount(pose);
     }
     own_height(prediction, registered, pose);
+    add_drift(pose);
     describe_mount(pose);
   }
 

@@ -16,6 +16,7 @@
 #include "core/mounts/mount_estimator.hpp"
 #include "core/prior/prior_history.hpp"
 #include "core/registration/known_place.hpp"
+#include "core/registration/map_drift.hpp"
 #include "core/registration/map_height.hpp"
 #include "core/registration/method.hpp"
 #include "core/registration/motion_model.hpp"
@@ -38,6 +39,7 @@ struct RegistrationState {
   PriorHistory history;
   MotionModel motion;
   MapHeight height;
+  MapDrift drift;
   TiltOffset tilt;
   MountEstimator mounts;
   Eigen::Quaterniond q_base_lidar;  ///< as found so far
@@ -116,6 +118,7 @@ class Registration {
   void use_mount();
   void describe_mount(PoseEstimate& pose) const;
   void own_tilt(const Prior& end, PoseEstimate& pose);
+  void add_drift(PoseEstimate& pose);
   void own_height(const Prediction& prediction, bool registered, PoseEstimate& pose);
   [[nodiscard]] PoseMode mode_after(bool registered, const MethodTraits& traits);
 
