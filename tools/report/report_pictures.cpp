@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "tools/report/box_plot.hpp"
 #include "tools/report/histogram.hpp"
@@ -110,8 +111,11 @@ double largest_height_error_m(const evaluation::EvaluatedMethod& method) {
 }  // namespace
 
 const evaluation::EvaluatedMethod& main_method(const evaluation::EvaluatedRun& run) {
-  for (const evaluation::EvaluatedMethod& method : run.methods) {
-    if (method.name == "3dof") return method;
+  // The default method, else the paper's.
+  for (const std::string_view name : {"adaptive", "3dof"}) {
+    for (const evaluation::EvaluatedMethod& method : run.methods) {
+      if (method.name == name) return method;
+    }
   }
   return run.methods.front();
 }

@@ -16,7 +16,7 @@ struct PictureSize {
   double height = 340.0;
 };
 
-/// The method that the report is about: "3dof" if present, else the first.
+/// The method that the report is about: "adaptive" if present, else "3dof", else the first.
 const evaluation::EvaluatedMethod& main_method(const evaluation::EvaluatedRun& run);
 /// The other method with the largest height error, only of those with a map if `needs_map`; null without one.
 const evaluation::EvaluatedMethod* contrast_method(const evaluation::EvaluatedRun& run, bool needs_map);
