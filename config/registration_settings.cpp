@@ -68,7 +68,8 @@ void add_step_prior(RegistrationConfig& r, SectionBuilder& s) {
            "Error of a step's rotation as a share of the turn, 1 sigma. 0.05: clocks of lidar and IMU that "
            "differ by 5 ms are 5 % of a scan.");
   s.number("mount_error_deg", &r.mount_error_deg, "deg", 0.0, 10.0,
-           "Error of roll and pitch between lidar and IMU before any evidence, 1 sigma. 0.5: as hands build robots.");
+           "Error of roll and pitch between lidar and IMU before any evidence, 1 sigma. 0.5: as hands build "
+           "robots.");
   s.number("gravity_error_deg", &r.gravity_error_deg, "deg", 1e-3, 90.0,
            "Error of roll and pitch from gravity in the adaptive method, 1 sigma. 0.1: accelerometer bias "
            "and motion.");
