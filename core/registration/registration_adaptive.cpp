@@ -58,7 +58,6 @@ bool Registration::find_level(const Scan& scan, const Prior& prior, RegisteredSc
   const auto level = level_.find(up_base, prior.roll_pitch_variance_rad2);
   state_.tilt.restart(prior.roll_pitch_variance_rad2);
   if (level) {
-    state_.mounts.add_level(*level);
     state_.tilt.restart_on_level(level->surfaces_covariance_rad2.topLeftCorner<2, 2>());
   }
   state_.motion.start(prior,
