@@ -156,15 +156,7 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
   set_fixed_variances(end, traits, pose.covariance);
 
   pose.for_map = !riding;
-  if (traits.method == Method::kAdaptive) {
-    if (registered) {
-      own_tilt(end, pose);
-      learn_mount(pose);
-    }
-    own_height(prediction, registered, pose);
-    add_drift(pose);
-    describe_mount(pose);
-  }
+  if (traits.method == Method::kAdaptive) learn(end, prediction, registered, pose);
 
   // A scan with neither IMU nor registration does not become the start of the next prediction: the scan
   // before it stays the start.

@@ -114,6 +114,7 @@ class Registration {
                                   const MethodTraits& traits);
   [[nodiscard]] bool acceptable(const MatchResult& match, const Prediction& prediction) const;
   [[nodiscard]] Prediction predict(const Prior& end, const MethodTraits& traits);
+  void learn(const Prior& end, const Prediction& prediction, bool registered, PoseEstimate& pose);
   void learn_mount(const PoseEstimate& pose);
   void use_mount();
   void describe_mount(PoseEstimate& pose) const;

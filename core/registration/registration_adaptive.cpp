@@ -78,6 +78,18 @@ Prediction Registration::predict(const Prior& end, const MethodTraits& traits) {
   return prediction;
 }
 
+// What a scan says of gravity's offset, the mount and the height, and what they say of its pose.
+void Registration::learn(const Prior& end, const Prediction& prediction, bool registered,
+                         PoseEstimate& pose) {
+  if (registered) {
+    own_tilt(end, pose);
+    learn_mount(pose);
+  }
+  own_height(prediction, registered, pose);
+  add_drift(pose);
+  describe_mount(pose);
+}
+
 void Registration::learn_mount(const PoseEstimate& pose) {
   ScanMotionEvidence evidence;
   evidence.stamp_ns = pose.stamp_ns;
