@@ -31,7 +31,7 @@ struct EvaluationOptions {
   /// Time at the start that MethodFigures::settled_floors_mean_m leaves out [s].
   double settling_s = 60.0;
   /// Smallest coverage of a run that is not lost.
-  double lost_below_coverage = 0.99;
+  double lost_below_coverage = 0.95;
   /// A run is also lost if its position error ever exceeds both limits: below them a drift is a poor
   /// estimate, beyond them scans no longer match the map.
   double lost_beyond_m = 5.0;
