@@ -86,10 +86,12 @@ void MapHeight::watch_ride(const Prior& prior, bool stands) {
     taken_m_ = 0.0;
   }
   if (!prior.ground_moves && ride_.riding()) end_ride();
-  if (ride_.riding()) {
-    risen_m_ += ride_.risen_m() - taken_m_;
-    taken_m_ = ride_.risen_m();
-  }
+  if (ride_.riding()) take_rise();
+}
+
+void MapHeight::take_rise() {
+  risen_m_ += ride_.risen_m() - taken_m_;
+  taken_m_ = ride_.risen_m();
 }
 
 void MapHeight::take_reading(const Prior& prior) {
@@ -103,8 +105,7 @@ void MapHeight::take_reading(const Prior& prior) {
 
 void MapHeight::end_ride() {
   ride_.end();
-  risen_m_ += ride_.risen_m() - taken_m_;
-  taken_m_ = ride_.risen_m();
+  take_rise();
   unconfirmed_m2_ += ride_.variance_m2();
   P_(kMap, kMap) += ride_.variance_m2();
   P_(kBias, kBias) += squared(kOtherFloorM);

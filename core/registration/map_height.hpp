@@ -64,7 +64,6 @@ class MapHeight {
   [[nodiscard]] double innovation_m() const { return innovation_m_; }
   /// Variance of the map's height at the robot [m^2].
   [[nodiscard]] double variance_m2() const { return P_(kMap, kMap); }
-  [[nodiscard]] double error_m() const { return x_[kMap]; }
   /// The altimeter departs from the map by more than zones and weather explain: a drift or a fault of a barometer.
   [[nodiscard]] bool altimeter_faulty() const { return faulty_; }
 
@@ -78,6 +77,7 @@ class MapHeight {
   void predict(double dt_s, double moved_m, double tilt_variance_rad2);
   void measure(double z_m, double dt_s);
   void watch_ride(const Prior& prior, bool stands);
+  void take_rise();
   void end_ride();
 
   MapHeightConfig config_;

@@ -29,6 +29,10 @@ struct MethodTraits {
   Constraint level = Constraint::kFree;    ///< x, y and yaw; kFixed: dead reckoning alone, no ICP
   Basis basis;                             ///< directions that are not fixed
 
+  /// z starts from the altimeter's height: the paper's methods with altitude. The adaptive one corrects its own slowly.
+  [[nodiscard]] bool follows_altimeter() const {
+    return height != Constraint::kFree && method != Method::kAdaptive;
+  }
   [[nodiscard]] bool registers() const { return level != Constraint::kFixed; }
 };
 

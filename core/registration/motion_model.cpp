@@ -29,12 +29,7 @@ constexpr double kKnownOffsetRad = 0.1 * kRadPerDeg;
 // Turn rate of a robot whose IMU is silent, 1 sigma.
 constexpr double kUnseenRateRadS = 0.5;
 
-// The paper's methods with altitude start from the altimeter's height; the adaptive one corrects its own slowly.
-bool follows_altimeter(const MethodTraits& method) {
-  return method.height != Constraint::kFree && method.method != Method::kAdaptive;
-}
-
-// Fuses the predicted roll and pitch with gravity's, of standard deviation `gravity_sigma_rad`: the weighted mean of
+// Fuses the predicted roll and pitch with gravity's, of standard deviation `sigma_rad`: the weighted mean of
 // the two directions of up, and its variance.
 void pull_to_gravity(const Eigen::Vector3d& up_base, double sigma_rad, Prediction& prediction) {
   Eigen::Matrix3d R_map_base = prediction.T_map_base.linear();
@@ -123,7 +118,7 @@ Prediction MotionModel::predict(const Prior& now, const MethodTraits& method,
   prediction.T_map_base.linear() =
       Eigen::Quaterniond(R_map_odom * now.T_odom_base.linear()).normalized().toRotationMatrix();
   prediction.T_map_base.translation() = T_map_base_.translation() + step_map_m;
-  if (follows_altimeter(method)) {
+  if (method.follows_altimeter()) {
     prediction.T_map_base.translation().z() = now.height_m;
   }
   const double dt_s = std::max(travel_s(now), seconds_between(confirmed_ns_, now.stamp_ns));
@@ -135,7 +130,7 @@ Prediction MotionModel::predict(const Prior& now, const MethodTraits& method,
   prediction.deviation.head<3>().setConstant(
       std::min(rotation_error_rad(turn_rad, rate_rad_s, dt_s), kLargestDeviationRad));
   prediction.deviation.tail<3>().setConstant(std::min(translation_m, kLargestDeviationM));
-  if (follows_altimeter(method)) {
+  if (method.follows_altimeter()) {
     prediction.deviation(5) = config_.altitude_prior_error_m;
   }
   if (method.tilt == Constraint::kSoft && now.attitude_valid) {

@@ -30,7 +30,7 @@ bool is_finite(const PoseEstimate& pose) {
 // The adaptive method follows it only in an elevator, where the scans stay out of the map.
 bool height_from_altimeter(const PoseEstimate& pose) {
   const MethodTraits traits = traits_of(pose.effective_method, pose.height_source);
-  return traits.method == Method::kAdaptive ? !pose.for_map : traits.height != Constraint::kFree;
+  return traits.follows_altimeter() || (traits.method == Method::kAdaptive && !pose.for_map);
 }
 
 }  // namespace

@@ -40,7 +40,6 @@ class RideMeter {
   /// Height gained since the start of the ride, and its variance; of the last ride where none is under way.
   [[nodiscard]] double risen_m() const { return x_[kRisen]; }
   [[nodiscard]] double variance_m2() const { return P_(kRisen, kRisen); }
-  [[nodiscard]] double speed_m_s() const { return x_[kSpeed]; }
 
  private:
   enum State { kRisen, kSpeed, kAccelBias, kPressure, kPiston, kStates };

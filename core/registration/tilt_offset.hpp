@@ -41,9 +41,7 @@ class TiltOffset {
   /// c, as a rotation vector in axes of base_link: exp(c^) up_gravity is the map's up.
   [[nodiscard]] Eigen::Vector3d offset_rad() const { return {x_[0], x_[1], 0.0}; }
   [[nodiscard]] double offset_sigma_rad() const;
-  /// t in axes of the map.
-  [[nodiscard]] Eigen::Vector3d map_tilt_rad() const { return {x_[2], x_[3], 0.0}; }
-  /// Variance of c and t together, as the robot's attitude against true gravity has it now.
+  /// Variance of t per axis.
   [[nodiscard]] double tilt_variance_rad2() const { return 0.5 * (P_(2, 2) + P_(3, 3)); }
 
  private:
