@@ -58,6 +58,8 @@ class MapHeight {
 
   /// Begins at a pose in the map; the altimeter reads `z_m` there.
   void restart();
+  /// Forgets the priors, whose clock may have started over; restart() follows.
+  void restart_clock() { *this = MapHeight(config_); }
 
   [[nodiscard]] double bias_m() const { return x_[kBias] + x_[kTurbulence]; }
   [[nodiscard]] double bias_sd_m() const;

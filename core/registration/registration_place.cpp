@@ -66,6 +66,7 @@ void Registration::resume(const KnownPlace& place) {
 void Registration::begin_new_frame() {
   next_frame();
   state_.history.clear();
+  state_.height.restart_clock();
   state_.first_prior_ns = 0;
 }
 

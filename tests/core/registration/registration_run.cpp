@@ -66,7 +66,7 @@ RegistrationRun::RegistrationRun(World world, Motion motion, MakePrior make_prio
       make_prior_(std::move(make_prior)),
       method_(method),
       registration_(std::make_unique<Registration>(RegistrationConfig{}, method, run_lidar_mount())),
-      map_(MapConfig{}, run_lidar_mount()) {
+      map_(std::make_unique<LocalMap>(MapConfig{}, run_lidar_mount())) {
   registration_->add_prior(make_prior_(kRunStartNs));
 }
 
@@ -102,9 +102,9 @@ void RegistrationRun::steps(int count) {
 
 const PoseEstimate& RegistrationRun::register_scan() {
   const std::size_t before = allocation_count();
-  registration_->register_scan(*scan_, *map_.snapshot(), *out_);
+  registration_->register_scan(*scan_, *map_->snapshot(), *out_);
   allocations_ += allocation_count() - before;
-  map_.update(*out_);
+  map_->update(*out_);
   return out_->pose;
 }
 

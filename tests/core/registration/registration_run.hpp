@@ -55,7 +55,13 @@ class RegistrationRun {
   Registration& registration() { return *registration_; }
   /// Builds the registration anew with other settings, as a live run does when its configuration changes.
   void rebuild(const RegistrationConfig& config, Method method);
-  LocalMap& map() { return map_; }
+  LocalMap& map() { return *map_; }
+  /// A new map frame; the sensors' clocks start over at the start of the run.
+  void start_over() {
+    registration_->begin_new_frame();
+    map_ = std::make_unique<LocalMap>(MapConfig{}, run_lidar_mount(), nullptr, registration_->session());
+    index_ = 0;
+  }
   /// A new registration continues at `place` with the same map.
   void restart_at(const KnownPlace& place);
   Scan& scan() { return *scan_; }
@@ -70,7 +76,7 @@ class RegistrationRun {
   MakePrior make_prior_;
   Method method_;
   std::unique_ptr<Registration> registration_;
-  LocalMap map_;
+  std::unique_ptr<LocalMap> map_;
   std::mt19937 random_{42};
   std::int64_t index_ = 0;
   std::unique_ptr<Scan> scan_ = std::make_unique<Scan>();

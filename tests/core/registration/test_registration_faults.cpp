@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/stamp.hpp"
 #include "tests/core/registration/registration_run.hpp"
 
 namespace isobar::test::test_registration_faults {
@@ -95,6 +96,28 @@ TEST_CASE("empty scans and scans out of order get the prior's pose") {
   run.steps(5);
   CHECK(run.pose().mode == PoseMode::kRegistered);
   CHECK(run.position_error().norm() < 0.02);
+}
+
+TEST_CASE(
+    "sensor clocks that start over with a new frame leave nothing of the adaptive method waiting for the old "
+    "ones") {
+  const MakePrior zone = [](std::int64_t stamp_ns) {
+    Prior prior = drifting(circle)(stamp_ns);
+    const double t = seconds_between(kRunStartNs, stamp_ns);
+    prior.altimeter_m = t > 4.0 ? 0.2 : 0.0;  // after the map has begun
+    prior.altimeter_variance_m2 = 1e-4;
+    prior.altimeter_count = static_cast<std::uint32_t>(t * 30.0);
+    return prior;
+  };
+  RegistrationRun run(furnished_room(), circle, zone, Method::kAdaptive);
+  run.steps(120);
+  const double bias_m = run.pose().altimeter_bias_m;
+  CHECK(bias_m == doctest::Approx(0.2).epsilon(0.25));
+  run.start_over();
+  run.steps(30);
+  CHECK(std::abs(run.pose().altimeter_bias_m) < 0.02);
+  run.steps(90);
+  CHECK(run.pose().altimeter_bias_m == doctest::Approx(bias_m).epsilon(0.05));
 }
 
 TEST_CASE("before the first prior no scan is registered and no pose is propagated") {
