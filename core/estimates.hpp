@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 
 #include "core/samples.hpp"
@@ -23,6 +24,14 @@ enum class HeightSource : std::uint8_t {
   kSingleBarometer,  ///< robot's barometer against its own start: drifts with the weather
   kHeld,             ///< barometer lost: dead reckoning since then
   kNone,             ///< never had a barometer
+};
+
+/// Barometer that drifts.
+enum class DriftSuspect : std::uint8_t {
+  kNone,
+  kRobot,    ///< the robot's
+  kBase,     ///< the base station's in use
+  kUnknown,  ///< one of both
 };
 
 /// Output of the prior stage at one IMU sample: the estimate without the lidar.
@@ -45,11 +54,15 @@ struct Prior {
   std::uint32_t altimeter_count = 0;
   /// Sum of the steps of altimeter_m that a base station made by returning or taking over [m].
   double altimeter_shift_m = 0.0;
+  /// The base station's part of altimeter_m: the change of its pressure since the first reading, as a height [m].
+  double base_air_m = 0.0;
   double up_accel_m_s2 = 0.0;  ///< vertical specific force of the sample minus gravity, biases included
   bool ground_moves = false;   ///< the ground that carries the robot rises or sinks: an elevator
 
   Eigen::Vector3d v_base_m_s = Eigen::Vector3d::Zero();    ///< velocity of base_link in base_link
   Eigen::Vector3d w_base_rad_s = Eigen::Vector3d::Zero();  ///< angular rate in base_link, gyro bias removed
+
+  double wheel_turn_rad = 0.0;  ///< sum of the turns about z by the wheels; gaps count as zero
 
   double roll_pitch_variance_rad2 = 0.0;   ///< of roll and of pitch, each
   double yaw_rate_variance_rad2_s2 = 0.0;  ///< of the angular rate about z, bias included
@@ -78,6 +91,36 @@ enum class PoseMode : std::uint8_t {
   kInitializing,  ///< bootstrap: first scans of the map
 };
 
+/// What the adaptive method knows of the altimeter: its bias against the map. All zero in other methods.
+struct AltimeterState {
+  double bias_m = 0.0;        ///< altimeter minus height: zones, doors, weather, drifts
+  double bias_sd_m = 0.0;     ///< its standard deviation
+  double innovation_m = 0.0;  ///< of the last update
+  bool faulty = false;        ///< it departs from the map by more than zones, doors and weather explain
+  DriftSuspect drifts = DriftSuspect::kNone;  ///< barometer that drifts now
+  double drift_m_s = 0.0;                     ///< change of the bias while it drifts [m/s]
+  double airflow_s2_m = 0.0;                  ///< learnt error by the robot's own wind: metres per (m/s)^2
+  double airflow_sd_s2_m = 0.0;               ///< its standard deviation; 0: not estimated
+};
+
+/// Factor by which a measurement of the wheels is too small, and its standard deviation; sigma 0: not known.
+struct WheelScale {
+  double scale = 1.0;
+  double sigma = 0.0;
+};
+
+/// What the adaptive method has found of mounts and wheels, and uses of the first.
+struct MountState {
+  bool found = false;
+  bool yaw_found = false;
+  /// Error of the lidar's configured mount: rotation vector in axes of base_link (roll, pitch, yaw) [rad], 1 sigma
+  /// per axis, R_base_lidar(true) = exp(error^) R_base_lidar(configured).
+  std::array<double, 3> error_rad{};
+  std::array<double, 3> sigma_rad{};
+  WheelScale wheel_distance;  ///< true distance = scale x the wheels'
+  WheelScale wheel_turn;      ///< true turn = scale x the wheels': nominal over effective track width
+};
+
 /// Pose of base_link at the end of a scan (or between scans, with mode kPriorOnly).
 struct PoseEstimate {
   std::int64_t stamp_ns = 0;
@@ -101,16 +144,8 @@ struct PoseEstimate {
   double residual_rms_m = 0.0;       ///< weighted point-to-plane rms
   Eigen::Vector3d smallest_eigenvalues =
       Eigen::Vector3d::Zero();  ///< of the information matrix per pair, ascending
-  /// Bias of the altimeter against the map: estimate, standard deviation, and innovation of the last update [m].
-  double altimeter_bias_m = 0.0;
-  double altimeter_bias_sd_m = 0.0;
-  double altimeter_innovation_m = 0.0;
-  bool altimeter_faulty = false;  ///< it departs from the map by more than zones, doors and weather explain
-  /// Error of the lidar's configured mount as found so far: rotation vector in axes of base_link [rad], 1 sigma per
-  /// axis, R_base_lidar(true) = exp(error^) R_base_lidar(configured). The adaptive method corrects it.
-  bool mount_found = false;
-  Eigen::Vector3d mount_error_rad = Eigen::Vector3d::Zero();
-  Eigen::Vector3d mount_sigma_rad = Eigen::Vector3d::Zero();
+  AltimeterState altimeter;
+  MountState mount;
   bool for_map = true;  ///< the map may take the scan; false on moving ground and where the pose is doubtful
   double registration_ms = 0.0;  ///< CPU time of the registration; filled by the thread that runs it
 };

@@ -30,4 +30,11 @@ inline constexpr NameTable<HeightSource, 4> kHeightSourceNames{{{
     {HeightSource::kNone, "none"},
 }}};
 
+inline constexpr NameTable<DriftSuspect, 4> kDriftSuspectNames{{{
+    {DriftSuspect::kNone, "none"},
+    {DriftSuspect::kRobot, "robot"},
+    {DriftSuspect::kBase, "base_station"},
+    {DriftSuspect::kUnknown, "robot_or_base_station"},
+}}};
+
 }  // namespace isobar

@@ -10,19 +10,19 @@ namespace isobar {
 
 void HealthMonitor::fill_adaptive(const RegistrationStatus& registration, ipc::HealthReport& report) {
   if (registration.effective_method != Method::kAdaptive) return;
-  const double bias_m = registration.altimeter_bias_m;
+  const double bias_m = registration.altimeter.bias_m;
   add_entry(
-      report, "altimeter", registration.altimeter_faulty ? ipc::HealthLevel::kWarning : ipc::HealthLevel::kOk,
-      registration.altimeter_faulty
+      report, "altimeter", registration.altimeter.faulty ? ipc::HealthLevel::kWarning : ipc::HealthLevel::kOk,
+      registration.altimeter.faulty
           ? fmt::format(
                 "differs from the map by {:.2f} m, more than air explains: a barometer, of the robot or of "
                 "the base station, drifts or is wrong; the height follows the scans",
                 bias_m)
-          : fmt::format("bias {:.3f} m, sd {:.3f} m", bias_m, registration.altimeter_bias_sd_m),
+          : fmt::format("bias {:.3f} m, sd {:.3f} m", bias_m, registration.altimeter.bias_sd_m),
       bias_m);
-  if (!registration.mount_found) return;
-  const auto& error = registration.mount_error_rad;
-  const auto& sigma = registration.mount_sigma_rad;
+  if (!registration.mount.found) return;
+  const auto& error = registration.mount.error_rad;
+  const auto& sigma = registration.mount.sigma_rad;
   add_entry(report, "lidar/mount", ipc::HealthLevel::kOk,
             fmt::format(
                 "turned by {:.2f}, {:.2f}, {:.2f} deg (roll, pitch, yaw; sd {:.2f}, {:.2f}, {:.2f}) against "

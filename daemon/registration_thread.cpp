@@ -148,14 +148,8 @@ void RegistrationThread::on_pose(const PoseEstimate& pose, const Prior& /*prior*
   draft_status_.effective_method = pose.effective_method;
   draft_status_.overlap = pose.overlap;
   draft_status_.degenerate = pose.degenerate;
-  draft_status_.altimeter_bias_m = pose.altimeter_bias_m;
-  draft_status_.altimeter_bias_sd_m = pose.altimeter_bias_sd_m;
-  draft_status_.altimeter_faulty = pose.altimeter_faulty;
-  draft_status_.mount_found = pose.mount_found;
-  for (int i = 0; i < 3; ++i) {
-    draft_status_.mount_error_rad[static_cast<std::size_t>(i)] = pose.mount_error_rad[i];
-    draft_status_.mount_sigma_rad[static_cast<std::size_t>(i)] = pose.mount_sigma_rad[i];
-  }
+  draft_status_.altimeter = pose.altimeter;
+  draft_status_.mount = pose.mount;
   draft_status_.registration_ms = pose.registration_ms;
   draft_status_.pose = summary_of(pose);
   poses_.send(pose);

@@ -61,12 +61,8 @@ struct RegistrationStatus {
   PoseMode mode = PoseMode::kInitializing;
   Method effective_method = Method::k3Dof;
   bool degenerate = false;
-  double altimeter_bias_m = 0.0;  ///< against the map; adaptive method only, as all below
-  double altimeter_bias_sd_m = 0.0;
-  bool altimeter_faulty = false;
-  bool mount_found = false;
-  std::array<double, 3> mount_error_rad{};  ///< rotation vector of the lidar in base_link
-  std::array<double, 3> mount_sigma_rad{};
+  AltimeterState altimeter;  ///< adaptive method only, as the next one
+  MountState mount;
   PoseSummary pose;
   DeadlineStatus punctuality;     ///< from the end of a scan to the publication of its pose
   std::uint64_t page_faults = 0;  ///< of this thread, after warm-up

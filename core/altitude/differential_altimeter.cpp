@@ -46,7 +46,6 @@ void DifferentialAltimeter::restart_clock() {
   robot_.restart_clock();
   base_.restart_clock();
   pairs_.restart();
-  air_change_.restart();
   air_.restart_clock();
 }
 
@@ -128,7 +127,8 @@ PressureStatus DifferentialAltimeter::add_robot(const PressureSample& sample, Al
   learn_noise(sample, started_ ? seconds_between(before_ns, sample.stamp_ns) : 0.0);
   const double log_pa = std::log(sample.pressure_pa);
   if (!started_) {
-    base_.start(log_pa + first_height_m_ / scale_m());
+    first_log_ = log_pa + first_height_m_ / scale_m();
+    base_.start(first_log_);
     first_noise_variance_m2_ =
         squared(scale_m() / sample.pressure_pa) * noise_variance_pa2(sample, robot_noise_, config_);
     first_stamp_ns_ = sample.stamp_ns;
@@ -144,14 +144,12 @@ PressureStatus DifferentialAltimeter::add_robot(const PressureSample& sample, Al
   PressurePairs::Mean pair;
   const bool paired = pairs_.add_robot(sample.stamp_ns, log_pa, climb_m_, pair) && base_.present();
   if (paired || out.event != ReferenceEvent::kNone) paired_ns_ = sample.stamp_ns;
-  // Another reference is no change of the air.
-  if (out.event != ReferenceEvent::kNone) air_change_.restart();
   if (paired && out.event == ReferenceEvent::kNone) {
     fill_pair(sample, pair, out);
-    const double robot_log = pairs_.robot().at(out.stamp_ns).log_pa;
-    air_change_.add(out.stamp_ns, air_log(out.stamp_ns), robot_log + pair.difference_log);
+    out.base_air_m = scale_m() * (pairs_.robot().at(out.stamp_ns).log_pa + pair.difference_log - first_log_);
   } else {
     fill_height(sample, out);
+    out.base_air_m = scale_m() * (base_.log_pa() - first_log_);
     out.complete = out.event != ReferenceEvent::kNone || !base_.present() || pausing(sample.stamp_ns);
   }
   return status;

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 
-#include "core/altitude/air_change.hpp"
 #include "core/altitude/air_temperature.hpp"
 #include "core/altitude/altitude_config.hpp"
 #include "core/altitude/barometer_monitor.hpp"
@@ -22,6 +21,7 @@ struct AltimeterReading {
   /// Time of the height: with a base station that of its sample, up to seconds ago.
   std::int64_t stamp_ns = 0;
   double height_m = 0.0;           ///< of the port above its height at the first reading
+  double base_air_m = 0.0;         ///< part of height_m that the base station's pressure has made
   double climb_since_m = 0.0;      ///< climb of the port from stamp_ns to the robot's sample, see set_climb()
   double noise_variance_m2 = 0.0;  ///< white noise of this reading
   double scale_m = 1.0;            ///< scale height: height_m = scale_m ln(reference / pressure)
@@ -84,9 +84,6 @@ class DifferentialAltimeter {
   [[nodiscard]] std::size_t base_usable_count() const { return base_.usable_count(now_ns_); }
   [[nodiscard]] bool base_undecided() const { return base_.undecided(); }
 
-  /// Changes of both pressures lately, for a detector of drifts.
-  [[nodiscard]] const AirChange& air_change() const { return air_change_; }
-
   [[nodiscard]] double air_temperature_c() const { return air_.temperature_c(); }
   /// The thermometer of the robot (0) or of a base station (1, 2) is left out: it contradicts the others.
   [[nodiscard]] bool thermometer_wrong(std::size_t sensor) const { return air_.wrong(sensor); }
@@ -109,9 +106,9 @@ class DifferentialAltimeter {
   BaseReference base_;
   AirTemperatureTracker air_;
   PressurePairs pairs_;
-  AirChange air_change_;
   double climb_m_ = 0.0;
   double first_height_m_ = 0.0;  // of the port at the first reading
+  double first_log_ = 0.0;       // ln of the reference's pressure then [Pa]
   double witness_m_ = std::numeric_limits<double>::quiet_NaN();
   double last_pa_ = 0.0;
   double first_noise_variance_m2_ = 0.0;

@@ -37,6 +37,7 @@ WheelStatus WheelOdometer::add(const WheelSample& sample) {
   if (!plausible(sample, dt_s)) return WheelStatus::kBadValue;
   if (started_ && dt_s <= config_.wheel_timeout_s) {
     rolled_m_ += 0.5 * dt_s * (velocity(last_) + velocity(sample));
+    turned_rad_ += 0.5 * dt_s * (last_.wz_rad_s + sample.wz_rad_s);
   } else {
     rolled_m_ = taken_m_;  // distance during a gap: unknown, counts as zero
   }
@@ -48,6 +49,10 @@ WheelStatus WheelOdometer::add(const WheelSample& sample) {
 
 bool WheelOdometer::valid(std::int64_t stamp_ns) const {
   return started_ && std::abs(seconds_between(last_.stamp_ns, stamp_ns)) <= config_.wheel_timeout_s;
+}
+
+double WheelOdometer::turn_rad(std::int64_t stamp_ns) const {
+  return turned_rad_ + (valid(stamp_ns) ? last_.wz_rad_s * seconds_between(last_.stamp_ns, stamp_ns) : 0.0);
 }
 
 Eigen::Vector2d WheelOdometer::take_displacement(std::int64_t stamp_ns) {

@@ -28,6 +28,9 @@ class WheelOdometer {
   /// valid.
   Eigen::Vector2d take_displacement(std::int64_t stamp_ns);
 
+  /// Turn about z since the start [rad]; a gap counts as zero.
+  [[nodiscard]] double turn_rad(std::int64_t stamp_ns) const;
+
   /// Wheels are present and fresh at `stamp_ns`.
   [[nodiscard]] bool valid(std::int64_t stamp_ns) const;
   /// The last accepted sample. Precondition: valid().
@@ -42,6 +45,7 @@ class WheelOdometer {
   WheelSample last_;
   Eigen::Vector2d rolled_m_ = Eigen::Vector2d::Zero();  // up to last_
   Eigen::Vector2d taken_m_ = Eigen::Vector2d::Zero();   // by take_displacement()
+  double turned_rad_ = 0.0;                             // up to last_
   double interval_s_ = 0.0;
   int refused_in_a_row_ = 0;
   bool started_ = false;

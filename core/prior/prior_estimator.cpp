@@ -137,6 +137,7 @@ void PriorEstimator::add_pressure(const PressureSample& measured) {
   s.reading_m = reading.height_m;
   s.altimeter_m = reading.height_m + reading.climb_since_m - s.above_base(s.config.p_base_port);
   s.altimeter_variance_m2 = reading.noise_variance_m2;
+  s.base_air_m = reading.base_air_m;
   ++s.altimeter_count;
   if (reading.event == ReferenceEvent::kBaseReturned || reading.event == ReferenceEvent::kBaseSwitched) {
     s.altimeter_shift_m += reading.weather_shift_m;

@@ -43,6 +43,8 @@ Prior PriorEstimator::State::prior_at(const ImuSample& sample) const {
   out.altimeter_variance_m2 = altimeter_variance_m2;
   out.altimeter_count = altimeter_count;
   out.altimeter_shift_m = altimeter_shift_m;
+  out.base_air_m = base_air_m;
+  out.wheel_turn_rad = wheels.turn_rad(sample.stamp_ns);
   out.standing_still = out.velocity_valid && standstill.standing() && !height.ground_moves();
   return out;
 }

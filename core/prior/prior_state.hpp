@@ -76,6 +76,7 @@ struct PriorEstimator::State {
   double climbed_m = 0.0;                                 // integral of the height filter's vertical speed
   double altimeter_m = 0.0;                               // last reading, of base_link
   double altimeter_variance_m2 = 0.0;
+  double base_air_m = 0.0;  // the base station's part of it
   std::uint32_t altimeter_count = 0;
   double altimeter_shift_m = 0.0;  // sum of the steps that base stations made
   double up_accel_m_s2 = 0.0;      // of the last IMU sample, biases included

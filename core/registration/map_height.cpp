@@ -38,6 +38,15 @@ double MapHeight::bias_sd_m() const {
   return std::sqrt(std::max(0.0, P_(kBias, kBias) + P_(kTurbulence, kTurbulence)));
 }
 
+AltimeterState MapHeight::altimeter() const {
+  AltimeterState out;
+  out.bias_m = bias_m();
+  out.bias_sd_m = bias_sd_m();
+  out.innovation_m = innovation_m_;
+  out.faulty = faulty_;
+  return out;
+}
+
 void MapHeight::restart() {
   x_.setZero();
   P_.setZero();

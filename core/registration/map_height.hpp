@@ -63,7 +63,8 @@ class MapHeight {
 
   [[nodiscard]] double bias_m() const { return x_[kBias] + x_[kTurbulence]; }
   [[nodiscard]] double bias_sd_m() const;
-  [[nodiscard]] double innovation_m() const { return innovation_m_; }
+  /// What is known of the altimeter.
+  [[nodiscard]] AltimeterState altimeter() const;
   /// Variance of the map's height at the robot [m^2].
   [[nodiscard]] double variance_m2() const { return P_(kMap, kMap); }
   /// The altimeter departs from the map by more than zones and weather explain: a drift or a fault of a barometer.

@@ -101,9 +101,15 @@ void Registration::learn_mount(const PoseEstimate& pose) {
 
 void Registration::describe_mount(PoseEstimate& pose) const {
   const MountEstimate found = state_.mounts.estimate();
-  pose.mount_found = found.verdict == MountVerdict::kFound;
-  pose.mount_error_rad = found.error_rad;
-  pose.mount_sigma_rad = found.sigma_rad();
+  const auto scale = [](const ScaleEstimate& s) {
+    return std::isfinite(s.sigma) ? WheelScale{s.scale, s.sigma} : WheelScale{};
+  };
+  pose.mount.found = found.verdict == MountVerdict::kFound;
+  pose.mount.yaw_found = found.yaw_found;
+  Eigen::Map<Eigen::Vector3d>(pose.mount.error_rad.data()) = found.error_rad;
+  Eigen::Map<Eigen::Vector3d>(pose.mount.sigma_rad.data()) = found.sigma_rad();
+  pose.mount.wheel_distance = scale(found.wheel_distance);
+  pose.mount.wheel_turn = scale(found.wheel_turn);
 }
 
 // The mount found so far, for the next scan: base_link turns in the map, the lidar stays where it is.
@@ -160,10 +166,7 @@ void Registration::own_height(const Prediction& prediction, bool registered, Pos
   pose.T_map_base.pretranslate(up);
   pose.T_map_odom.pretranslate(up);
   pose.covariance(2, 2) += height.variance_m2();
-  pose.altimeter_bias_m = height.bias_m();
-  pose.altimeter_bias_sd_m = height.bias_sd_m();
-  pose.altimeter_innovation_m = height.innovation_m();
-  pose.altimeter_faulty = height.altimeter_faulty();
+  pose.altimeter = height.altimeter();
 }
 
 }  // namespace isobar

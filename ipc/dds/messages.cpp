@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 
 #include "core/names.hpp"
 
@@ -99,11 +100,20 @@ void fill_pose(const PoseEstimate& pose, const DdsConfig& names, PoseMessage& me
   fill_covariance(pose.covariance, message.pose.covariance);
 }
 
-void fill_altitude(const Prior& prior, const DdsConfig& names, AltitudeMessage& message) noexcept {
+void fill_altitude(const Prior& prior, const PoseEstimate& pose, const DdsConfig& names,
+                   AltitudeMessage& message) noexcept {
+  const AltimeterState& altimeter = pose.altimeter;
+  const double known =
+      pose.effective_method == Method::kAdaptive ? 1.0 : std::numeric_limits<double>::quiet_NaN();
   fill_header(prior.stamp_ns, names.map_frame, message.header);
   message.height = prior.height_m;
   message.variance = prior.height_variance_m2;
   message.source = text(kHeightSourceNames.name(prior.height_source).data());
+  message.bias = known * altimeter.bias_m;
+  message.bias_variance = known * altimeter.bias_sd_m * altimeter.bias_sd_m;
+  message.innovation = known * altimeter.innovation_m;
+  message.faulty = altimeter.faulty;
+  message.drifting = text(kDriftSuspectNames.name(altimeter.drifts).data());
 }
 
 void fill_transform(std::int64_t stamp_ns, const std::string& parent, const std::string& child,

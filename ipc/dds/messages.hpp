@@ -40,7 +40,9 @@ using PointFieldMessage = sensor_msgs_msg_dds__PointField_;
 void fill_header(std::int64_t stamp_ns, const std::string& frame, HeaderMessage& header) noexcept;
 void fill_odometry(const Odometry& odometry, const DdsConfig& names, OdometryMessage& message) noexcept;
 void fill_pose(const PoseEstimate& pose, const DdsConfig& names, PoseMessage& message) noexcept;
-void fill_altitude(const Prior& prior, const DdsConfig& names, AltitudeMessage& message) noexcept;
+/// `pose`: the last one, for what it knows of the altimeter.
+void fill_altitude(const Prior& prior, const PoseEstimate& pose, const DdsConfig& names,
+                   AltitudeMessage& message) noexcept;
 void fill_transform(std::int64_t stamp_ns, const std::string& parent, const std::string& child,
                     const Eigen::Isometry3d& T_parent_child, TransformStampedMessage& message) noexcept;
 

@@ -65,7 +65,7 @@ void PoseOutputs::on_prior(const Prior& prior) {
     AltitudeMessage message{};
     Prior published = prior;
     published.stamp_ns += shift_ns_;
-    fill_altitude(published, config_, message);
+    fill_altitude(published, last_pose_, config_, message);
     to_->altitude.write(message);
   }
   Odometry odometry;
@@ -83,6 +83,7 @@ void PoseOutputs::on_pose(const PoseEstimate& pose) {
   if (pose.mode == PoseMode::kInitializing) return;
   follow_session(pose.session);
   propagator_.add_pose(pose);
+  last_pose_ = pose;
   if (!to_) return;
   PoseEstimate published = pose;
   published.stamp_ns += shift_ns_;

@@ -90,6 +90,7 @@ class PoseOutputs {
   SensorMounts mounts_;
   std::int64_t shift_ns_ = 0;
   PosePropagator propagator_;
+  PoseEstimate last_pose_;
   RateLimit odom_rate_;
   RateLimit altitude_rate_;
   std::optional<Writers> to_;

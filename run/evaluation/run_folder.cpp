@@ -14,7 +14,28 @@ namespace isobar::evaluation {
 
 namespace {
 
-enum Column : std::size_t { kStampNs, kMode, kScanMs, kAltimeterHeightM, kSdZM };
+// Columns of status.csv that are read: t_ns, then these.
+const std::vector<std::string_view> kOptionalColumns{"mode",
+                                                     "scan_ms",
+                                                     "altimeter_height_m",
+                                                     "sd_z_m",
+                                                     "altimeter_bias_m",
+                                                     "altimeter_bias_sd_m",
+                                                     "altimeter_innovation_m",
+                                                     "altimeter_faulty",
+                                                     "altimeter_drifts"};
+enum Column : std::size_t {
+  kStampNs,
+  kMode,
+  kScanMs,
+  kAltimeterHeightM,
+  kSdZM,
+  kBiasM,
+  kBiasSdM,
+  kInnovationM,
+  kFaulty,
+  kDrifts
+};
 
 StatusRow status_row(const text::CsvReader& csv) {
   StatusRow row;
@@ -23,6 +44,11 @@ StatusRow status_row(const text::CsvReader& csv) {
   row.scan_ms = csv.number_or_nan(kScanMs);
   row.altimeter_height_m = csv.number_or_nan(kAltimeterHeightM);
   row.sd_z_m = csv.number_or_nan(kSdZM);
+  row.altimeter_bias_m = csv.number_or_nan(kBiasM);
+  row.altimeter_bias_sd_m = csv.number_or_nan(kBiasSdM);
+  row.altimeter_innovation_m = csv.number_or_nan(kInnovationM);
+  row.altimeter_faulty = csv.field(kFaulty) == "1";
+  row.altimeter_drifts = csv.field(kDrifts);
   return row;
 }
 
@@ -60,8 +86,7 @@ std::vector<Row> rows_of(text::CsvReader& csv, Row (*row_of)(const text::CsvRead
 }  // namespace
 
 std::vector<StatusRow> parse_status_csv(std::string_view text, const std::string& name) {
-  text::CsvReader csv(text::TextLines(text, name), {"t_ns"},
-                      {"mode", "scan_ms", "altimeter_height_m", "sd_z_m"});
+  text::CsvReader csv(text::TextLines(text, name), {"t_ns"}, kOptionalColumns);
   return rows_of(csv, status_row);
 }
 

@@ -25,6 +25,11 @@ struct StatusRow {
   double scan_ms = kUnknown;
   double altimeter_height_m = kUnknown;
   double sd_z_m = kUnknown;
+  double altimeter_bias_m = kUnknown;
+  double altimeter_bias_sd_m = kUnknown;
+  double altimeter_innovation_m = kUnknown;
+  bool altimeter_faulty = false;
+  std::string altimeter_drifts;  ///< kDriftSuspectNames; empty: unknown
 };
 
 /// A run's output. Only the trajectory is required.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -44,20 +45,49 @@ std::string_view trajectory_line(const PoseEstimate& pose, Line& line) {
   return text_of(line, length);
 }
 
+std::string first_line(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  return line;
+}
+
+/// Columns that status.csv has: all, or those of the older version that began the file.
+std::string status_header(const std::filesystem::path& file, Start start) {
+  if (start == Start::kNew) return std::string(kStatusColumns);
+  const std::string known = first_line(file);
+  const bool older = !known.empty() && kStatusColumns.starts_with(known) &&
+                     kStatusColumns.substr(known.size()).starts_with(',');
+  return older ? known : std::string(kStatusColumns);
+}
+
+/// The line without the columns that `header` does not have.
+std::string_view with_columns_of(std::string_view header, std::string_view line) {
+  if (header.size() == kStatusColumns.size()) return line;
+  std::size_t end = 0;
+  for (auto left = std::count(header.begin(), header.end(), ','); left >= 0; --left)
+    end = line.find(',', end) + 1;
+  return line.substr(0, end - 1);
+}
+
 std::string_view status_line(const PoseEstimate& pose, double altimeter_height_m, double altimeter_sd_m,
                              Line& line) {
   const auto sd = [&](int axis) { return std::sqrt(std::max(0.0, pose.covariance(axis, axis))); };
   const Eigen::Vector3d p = pose.T_map_base.translation();
   const Eigen::Vector3d& eigenvalues = pose.smallest_eigenvalues;
+  const AltimeterState& altimeter = pose.altimeter;
+  const double known = pose.effective_method == Method::kAdaptive ? 1.0 : NAN;
   const int length = std::snprintf(
       line.data(), line.size(),
       "%lld,%u,%s,%s,%s,%d,%u,%u,%u,%.4f,%.6f,%.6g,%.6g,%.6g,%.3f,%.4f,%.4f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%."
-      "6g\n",
+      "6g,%.4f,%.4f,%.4f,%d,%s\n",
       static_cast<long long>(pose.stamp_ns), pose.sequence, kPoseModeNames.name(pose.mode).data(),
       kMethodNames.name(pose.effective_method).data(), kHeightSourceNames.name(pose.height_source).data(),
       pose.degenerate ? 1 : 0, pose.iterations, pose.sampled_points, pose.matched_pairs, pose.overlap,
       pose.residual_rms_m, eigenvalues[0], eigenvalues[1], eigenvalues[2], pose.registration_ms,
-      altimeter_height_m, altimeter_sd_m, p.x(), p.y(), p.z(), sd(0), sd(1), sd(2), sd(5));
+      altimeter_height_m, altimeter_sd_m, p.x(), p.y(), p.z(), sd(0), sd(1), sd(2), sd(5),
+      known * altimeter.bias_m, known * altimeter.bias_sd_m, known * altimeter.innovation_m,
+      altimeter.faulty ? 1 : 0, kDriftSuspectNames.name(altimeter.drifts).data());
   return text_of(line, length);
 }
 
@@ -80,14 +110,21 @@ PoseWriter::PoseWriter(const std::filesystem::path& directory, Start start, std:
     : trajectory_(made_directory(directory) / name_of_session(kTrajectoryFile, session),
                   "# t_s x_m y_m z_m qx qy qz qw: base_link in " + name_of_session("map", session) + "\n",
                   start),
-      status_(directory / name_of_session(kStatusFile, session), std::string(kStatusColumns) + "\n", start),
+      status_header_(status_header(directory / name_of_session(kStatusFile, session), start)),
+      status_(directory / name_of_session(kStatusFile, session), status_header_ + "\n", start),
       covariance_(directory / name_of_session(kCovarianceFile, session),
                   std::string(kCovarianceColumns) + "\n", start) {}
 
 void PoseWriter::add(const PoseEstimate& pose, double altimeter_height_m, double altimeter_sd_m) {
   Line line;
   trajectory_.add(trajectory_line(pose, line));
-  status_.add(status_line(pose, altimeter_height_m, altimeter_sd_m, line));
+  const std::string_view status = status_line(pose, altimeter_height_m, altimeter_sd_m, line);
+  const std::string_view kept = with_columns_of(status_header_, status);
+  if (kept.size() == status.size()) {
+    status_.add(status);
+  } else {
+    status_.add(std::string(kept) + "\n");
+  }
   covariance_.add(covariance_line(pose, line));
   ++count_;
 }

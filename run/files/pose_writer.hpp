@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "core/estimates.hpp"
@@ -11,11 +12,14 @@
 namespace isobar::files {
 
 /// Header line of status.csv. `method` is the method that ran (PoseEstimate::effective_method); `scan_ms` is
-/// PoseEstimate::registration_ms; sd_* are the square roots of the covariance's diagonal.
+/// PoseEstimate::registration_ms; sd_* are the square roots of the covariance's diagonal; altimeter_bias_m … are those
+/// of AltimeterState, nan in methods without it. New columns come last: a file that an older version began keeps its
+/// columns when its run goes on.
 inline constexpr std::string_view kStatusColumns =
     "t_ns,sequence,mode,method,height_source,degenerate,iterations,sampled_points,matched_pairs,overlap,"
     "residual_rms_m,eigenvalue_0,eigenvalue_1,eigenvalue_2,scan_ms,altimeter_height_m,altimeter_sd_m,"
-    "x_m,y_m,z_m,sd_x_m,sd_y_m,sd_z_m,sd_yaw_rad";
+    "x_m,y_m,z_m,sd_x_m,sd_y_m,sd_z_m,sd_yaw_rad,"
+    "altimeter_bias_m,altimeter_bias_sd_m,altimeter_innovation_m,altimeter_faulty,altimeter_drifts";
 
 /// Header line of covariance.csv: the upper triangle of PoseEstimate::covariance, in m, rad and their products.
 /// A file of its own, so that a run begun by an older version, whose status.csv has other columns, goes on.
@@ -52,6 +56,7 @@ class PoseWriter {
 
  private:
   LineFile trajectory_;
+  std::string status_header_;
   LineFile status_;
   LineFile covariance_;
   std::uint64_t count_ = 0;

@@ -131,11 +131,31 @@ TEST_CASE("the altitude message names the height source") {
         std::pair{HeightSource::kSingleBarometer, "single_barometer"}, std::pair{HeightSource::kHeld, "held"},
         std::pair{HeightSource::kNone, "none"}}) {
     prior.height_source = source;
-    fill_altitude(prior, names, message);
+    fill_altitude(prior, PoseEstimate{}, names, message);
     CHECK(std::string(message.source) == name);
   }
   CHECK(message.height == 7.25);
   CHECK(message.variance == 0.01);
+}
+
+TEST_CASE("the altitude message has the altimeter's bias, and nan where the method does not estimate it") {
+  PoseEstimate pose;
+  pose.altimeter = {
+      .bias_m = -0.5, .bias_sd_m = 0.1, .innovation_m = 0.25, .faulty = true, .drifts = DriftSuspect::kBase};
+  AltitudeMessage message{};
+  const DdsConfig names;
+  pose.effective_method = Method::k3Dof;
+  fill_altitude(Prior{}, pose, names, message);
+  CHECK(std::isnan(message.bias));
+  CHECK(std::isnan(message.bias_variance));
+  CHECK(std::isnan(message.innovation));
+  pose.effective_method = Method::kAdaptive;
+  fill_altitude(Prior{}, pose, names, message);
+  CHECK(message.bias == -0.5);
+  CHECK(message.bias_variance == doctest::Approx(0.01));
+  CHECK(message.innovation == 0.25);
+  CHECK(message.faulty);
+  CHECK(std::string(message.drifting) == "base_station");
 }
 
 TEST_CASE("a cloud has the field types that PCL reads: intensity FLOAT32, ring UINT16") {

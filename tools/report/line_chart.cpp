@@ -41,6 +41,21 @@ void draw_series(Picture& picture, const Series& series, const Axes& axes) {
   picture.polyline(simplified(thinned(run), kInvisiblePx), series.stroke);
 }
 
+void draw_ribbon(Picture& picture, const Ribbon& ribbon, const Axes& axes) {
+  const auto edge = [&](const std::vector<double>& y) {
+    std::vector<Point> points;
+    for (std::size_t i = 0; i < std::min(ribbon.x.size(), y.size()); ++i) {
+      const Point point{axes.x(ribbon.x[i]), axes.y(y[i])};
+      if (std::isfinite(point.x) && std::isfinite(point.y)) points.push_back(point);
+    }
+    return simplified(thinned(points), kInvisiblePx);
+  };
+  std::vector<Point> outline = edge(ribbon.low);
+  const std::vector<Point> high = edge(ribbon.high);
+  outline.insert(outline.end(), high.rbegin(), high.rend());
+  picture.polygon(outline, ribbon.colour);
+}
+
 double distance_to_segment(const Point& p, const Point& a, const Point& b) {
   const double length = std::hypot(b.x - a.x, b.y - a.y);
   if (length == 0.0) return std::hypot(p.x - a.x, p.y - a.y);
@@ -53,6 +68,12 @@ Range data_range(const LineChart& chart, const std::vector<double> Series::*valu
   std::vector<double> all;
   for (const Series& series : chart.series)
     all.insert(all.end(), (series.*values).begin(), (series.*values).end());
+  if (values == &Series::y) {
+    for (const Ribbon& ribbon : chart.ribbons) {
+      all.insert(all.end(), ribbon.low.begin(), ribbon.low.end());
+      all.insert(all.end(), ribbon.high.begin(), ribbon.high.end());
+    }
+  }
   return range_of(all);
 }
 
@@ -134,6 +155,7 @@ Picture draw(const LineChart& chart) {
   draw_bands(picture, chart, axes);
   draw_axes(picture, axes);
   picture.begin_clip(frame, chart.id);
+  for (const Ribbon& ribbon : chart.ribbons) draw_ribbon(picture, ribbon, axes);
   if (chart.zero_line) {
     picture.line({frame.x, axes.y(0.0)}, {frame.right(), axes.y(0.0)}, {"#6b7280", 1.0});
   }

@@ -18,6 +18,14 @@ struct Series {
   bool on_top = false;  ///< drawn after the others
 };
 
+/// The area between two lines, below all lines.
+struct Ribbon {
+  std::string colour;
+  std::vector<double> x;
+  std::vector<double> low;
+  std::vector<double> high;
+};
+
 /// A labelled span of x.
 struct Band {
   double from = 0.0;
@@ -30,6 +38,7 @@ struct LineChart {
   std::string x_label;
   std::string y_label;
   std::vector<Series> series;
+  std::vector<Ribbon> ribbons;
   std::vector<Band> bands;
   std::optional<Range> x_range;  ///< default: the data's
   std::optional<Range> y_range;  ///< default: the data's; lines are clipped to it

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "tools/report/altimeter_section.hpp"
 #include "tools/report/html_page.hpp"
 #include "tools/report/report_pictures.hpp"
 #include "tools/report/report_tables.hpp"
@@ -118,8 +119,9 @@ std::string time_section(const evaluation::EvaluatedRun& run) {
 std::string render_report(const ReportInput& input) {
   const evaluation::EvaluatedRun& run = input.run;
   std::string html = page_head(input.title, input.description, input.command) + paragraph(run_summary(run)) +
-                     tiles(run) + z_rpe_section(run) + height_section(run) + side_section(run) +
-                     top_section(run) + time_section(run) + heading("All figures") + figures_table(run);
+                     tiles(run) + z_rpe_section(run) + height_section(run) + altimeter_section(run) +
+                     side_section(run) + top_section(run) + time_section(run) + heading("All figures") +
+                     figures_table(run);
   const std::string floors = floors_table(run);
   if (!floors.empty()) html += heading("Height of each floor") + floors;
   if (!run.notes.empty()) html += heading("Notes") + bullet_list(run.notes);

@@ -84,6 +84,14 @@ void Picture::polyline(const std::vector<Point>& points, const Stroke& stroke) {
   body_ += "/>\n";
 }
 
+void Picture::polygon(const std::vector<Point>& points, std::string_view fill) {
+  if (points.size() < 3) return;
+  body_ += "<polygon fill=\"" + std::string(fill) + "\" points=\"";
+  for (const Point& p : points) body_ += px(p.x) + "," + px(p.y) + " ";
+  body_.back() = '"';
+  body_ += "/>\n";
+}
+
 void Picture::rect(const Box& box, std::string_view fill, double opacity, double radius) {
   body_ += "<rect " + box_attributes(box) + " fill=\"" + std::string(fill) + "\"";
   if (radius > 0.0) body_ += " rx=\"" + px(radius) + "\"";

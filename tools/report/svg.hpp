@@ -56,6 +56,8 @@ class Picture {
   void line(Point a, Point b, const Stroke& stroke);
   /// Fewer than two points draw nothing.
   void polyline(const std::vector<Point>& points, const Stroke& stroke);
+  /// Area within a closed polygon.
+  void polygon(const std::vector<Point>& points, std::string_view fill);
   void rect(const Box& box, std::string_view fill, double opacity = 1.0, double radius = 0.0);
   void outline(const Box& box, const Stroke& stroke, std::string_view fill = "none");
   void circle(Point centre, double radius, std::string_view fill, const Stroke& stroke);

@@ -111,13 +111,13 @@ TEST_CASE(
   };
   RegistrationRun run(furnished_room(), circle, zone, Method::kAdaptive);
   run.steps(120);
-  const double bias_m = run.pose().altimeter_bias_m;
+  const double bias_m = run.pose().altimeter.bias_m;
   CHECK(bias_m == doctest::Approx(0.2).epsilon(0.25));
   run.start_over();
   run.steps(30);
-  CHECK(std::abs(run.pose().altimeter_bias_m) < 0.02);
+  CHECK(std::abs(run.pose().altimeter.bias_m) < 0.02);
   run.steps(90);
-  CHECK(run.pose().altimeter_bias_m == doctest::Approx(bias_m).epsilon(0.05));
+  CHECK(run.pose().altimeter.bias_m == doctest::Approx(bias_m).epsilon(0.05));
 }
 
 TEST_CASE("before the first prior no scan is registered and no pose is propagated") {

@@ -80,9 +80,15 @@ TEST_CASE("altitude, pressure and inertial samples") {
   altitude.header.frame_id = text("map");
   altitude.height = 3.5;
   altitude.source = text("held");
+  altitude.bias = -0.5;
+  altitude.faulty = true;
+  altitude.drifting = text("robot");
   round_trip(topics::kAltitude, altitude, [](const AltitudeMessage& got) {
     CHECK(got.height == 3.5);
     CHECK(std::string(got.source) == "held");
+    CHECK(got.bias == -0.5);
+    CHECK(got.faulty);
+    CHECK(std::string(got.drifting) == "robot");
   });
   PressureMessage pressure{};
   pressure.header.frame_id = text("base");
@@ -134,6 +140,7 @@ TEST_CASE("messages are XCDR1, the only representation that ROS 2 reads") {
   AltitudeMessage sent{};
   sent.header.frame_id = text("map");
   sent.source = text("none");
+  sent.drifting = text("none");
   REQUIRE(writer.write(sent));
   ddsi_serdata* data = nullptr;
   dds_sample_info_t info{};

@@ -34,6 +34,11 @@ PoseEstimate some_pose(std::uint32_t i) {
   }
   pose.covariance(2, 2) = 0.0004;
   pose.registration_ms = 12.5;
+  pose.altimeter = {.bias_m = 0.1 * i,
+                    .bias_sd_m = 0.05,
+                    .innovation_m = -0.02,
+                    .faulty = i % 2 == 1,
+                    .drifts = DriftSuspect::kBase};
   return pose;
 }
 
@@ -68,6 +73,42 @@ TEST_CASE("poses and status rows come back from the folder of a run as they were
   }
   CHECK(std::isnan(run.status[7].altimeter_height_m));
   CHECK(run.map.points.empty());
+}
+
+TEST_CASE("status.csv has the altimeter's bias of the adaptive method, and nan of the others") {
+  const TemporaryFolder folder;
+  files::PoseWriter writer(folder.path());
+  PoseEstimate pose = some_pose(3);
+  writer.add(pose, 1.0, 0.05);
+  pose.effective_method = Method::kAdaptive;
+  writer.add(pose, 1.0, 0.05);
+  writer.flush();
+  const std::vector<StatusRow> rows = read_run_folder(folder.path(), 100).status;
+  REQUIRE(rows.size() == 2);
+  CHECK(std::isnan(rows[0].altimeter_bias_m));
+  CHECK(std::isnan(rows[0].altimeter_innovation_m));
+  CHECK(rows[1].altimeter_bias_m == doctest::Approx(0.3));
+  CHECK(rows[1].altimeter_bias_sd_m == doctest::Approx(0.05));
+  CHECK(rows[1].altimeter_innovation_m == doctest::Approx(-0.02));
+  CHECK(rows[1].altimeter_faulty);
+  CHECK(rows[1].altimeter_drifts == "base_station");
+}
+
+TEST_CASE("a run that an older version began goes on with the columns of its status.csv") {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "status.csv";
+  const std::string_view all = files::kStatusColumns;
+  const std::string older(all.substr(0, all.find(",altimeter_bias_m")));
+  files::write_text_file(file, older + "\n");
+  files::PoseWriter writer(folder.path(), files::Start::kContinue);
+  writer.add(some_pose(1), 1.0, 0.05);
+  writer.add(some_pose(2), 1.0, 0.05);
+  writer.flush();
+  const std::vector<StatusRow> rows = parse_status_csv(files::read_text_file(file), "s");
+  REQUIRE(rows.size() == 2);
+  CHECK(rows[1].stamp_ns == some_pose(2).stamp_ns);
+  CHECK(rows[1].sd_z_m == doctest::Approx(0.02));
+  CHECK(std::isnan(rows[1].altimeter_bias_m));
 }
 
 TEST_CASE("stamps before 1970 and huge values give lines that can be read back") {

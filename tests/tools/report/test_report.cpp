@@ -48,6 +48,33 @@ TEST_CASE("the report is one well-formed file with every section that loads noth
   CHECK(is_well_formed(render_overview_svg(input)));
 }
 
+TEST_CASE(
+    "the report shows the altimeter's bias where a method estimates it, and when which barometer drifts") {
+  const TemporaryFolder folder;
+  evaluation::EvaluatedRun run = two_methods(folder.path());
+  const std::string without = render_report({"T", "", "", run});
+  CHECK_FALSE(contains(without, "Altimeter against the map"));
+  std::vector<evaluation::StatusRow>& status = run.methods.back().status;
+  status.clear();
+  for (int i = 0; i < 100; ++i) {
+    evaluation::StatusRow& row = status.emplace_back();
+    row.stamp_ns = 1'000'000'000LL * (i + 1);
+    row.altimeter_bias_m = 0.01 * i;
+    row.altimeter_bias_sd_m = 0.05;
+    row.altimeter_innovation_m = i == 40 ? -0.37 : 0.01;
+    row.altimeter_drifts = i >= 50 && i < 70 ? "robot" : "none";
+    row.altimeter_faulty = i >= 50;
+  }
+  const std::string html = render_report({"T", "", "", run});
+  CHECK(contains(html, "Altimeter against the map"));
+  CHECK(contains(html, "0.37 m at 40.0 s"));
+  CHECK(contains(html, "robot drifts since 50.0 s until 69.0 s, faulty since 70.0 s until 99.0 s"));
+  CHECK(contains(html, "<polygon"));
+  std::string body = html.substr(html.find("<body>"));
+  body.erase(body.find("</html>"));
+  CHECK(is_well_formed(body));
+}
+
 TEST_CASE("trajectories without segments, status and map give a report that names what is missing") {
   const TemporaryFolder folder;
   const fs::path reference = folder.path() / "r.tum";

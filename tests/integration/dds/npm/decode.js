@@ -130,6 +130,8 @@ const checks = {
     assert.ok(message.height > 0.02);
     assert.equal(message.variance, 4e-4);
     assert.equal(message.source, "differential");
+    assert.equal(message.drifting, "none");
+    assert.equal(message.faulty, false);
   },
   registered_scan() { checkCloud("rt.registered_scan", "base_link", 2000, ["x", "y", "z", "intensity", "ring"]); },
   map_cloud() { checkCloud("rt.map_cloud", "map", 150000, ["x", "y", "z", "intensity"]); },
