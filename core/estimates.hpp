@@ -121,6 +121,15 @@ struct MountState {
   WheelScale wheel_turn;      ///< true turn = scale x the wheels': nominal over effective track width
 };
 
+/// What contradicts the registered poses: the robot is not where they say.
+enum class LostReason : std::uint8_t {
+  kNone,
+  kTurn,          ///< they turn, and the gyro does not, or not as they do
+  kTilt,          ///< they are tilted against gravity
+  kFreeSpace,     ///< the scans stand in what earlier ones saw through
+  kMovingGround,  ///< the ground rises or sinks, and scans that show what moves with it cannot tell the height
+};
+
 /// Pose of base_link at the end of a scan (or between scans, with mode kPriorOnly).
 struct PoseEstimate {
   std::int64_t stamp_ns = 0;
@@ -147,7 +156,11 @@ struct PoseEstimate {
   AltimeterState altimeter;
   MountState mount;
   bool for_map = true;  ///< the map may take the scan; false on moving ground and where the pose is doubtful
-  double registration_ms = 0.0;  ///< CPU time of the registration; filled by the thread that runs it
+  /// Not kNone: the pose is dead reckoning from before the contradiction, in mode kPriorOnly, with a covariance that
+  /// grows, and the map does not take the scan. Registered poses again where the place has been found again.
+  LostReason lost = LostReason::kNone;
+  std::int64_t lost_since_ns = 0;  ///< stamp of the first pose that says so; 0: not lost
+  double registration_ms = 0.0;    ///< CPU time of the registration; filled by the thread that runs it
 };
 
 /// True for a pose that is none yet: before gravity is found (covariance 0), or of a continued run whose place no

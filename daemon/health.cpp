@@ -36,6 +36,12 @@ std::string silence_text(const char* what, std::int64_t last_ns, std::int64_t no
   return fmt::format("no {} for {:.0f} s", what, seconds_between(last_ns, now_ns));
 }
 
+std::string lost_text(const RegistrationStatus& registration) {
+  return fmt::format("lost since {:.1f} s: {}; dead reckoning, not mapped",
+                     seconds_between(registration.lost_since_ns, registration.pose.stamp_ns),
+                     kLostReasonTexts.name(registration.lost));
+}
+
 constexpr NameTable<BarometerFault, 6> kBarometerFaultTexts{{{
     {BarometerFault::kOk, "ok"},
     {BarometerFault::kOff, "off: silent"},
@@ -237,6 +243,8 @@ void HealthMonitor::fill_registration(const StatusSnapshot& now, HealthReport& r
   if (stale) {
     add_entry(report, "registration", HealthLevel::kStale,
               pose_ns == 0 ? "waiting for the first scan" : silence_text("pose", pose_ns, now.now_ns), 0.0);
+  } else if (registration.lost != LostReason::kNone) {
+    add_entry(report, "registration", HealthLevel::kError, lost_text(registration), registration.overlap);
   } else {
     add_entry(report, "registration",
               registration.mode == PoseMode::kRegistered ? HealthLevel::kOk : HealthLevel::kWarning,

@@ -61,6 +61,8 @@ struct RegistrationStatus {
   PoseMode mode = PoseMode::kInitializing;
   Method effective_method = Method::k3Dof;
   bool degenerate = false;
+  LostReason lost = LostReason::kNone;  ///< of the last pose
+  std::int64_t lost_since_ns = 0;
   AltimeterState altimeter;  ///< adaptive method only, as the next one
   MountState mount;
   PoseSummary pose;

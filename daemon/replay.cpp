@@ -8,6 +8,7 @@
 
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
+#include "core/names.hpp"
 #include "core/stamp.hpp"
 #include "daemon/counts.hpp"
 #include "daemon/lock_step.hpp"
@@ -28,6 +29,7 @@ class OutputSink : public EstimateSink {
   explicit OutputSink(files::RunOutput& output) : output_(output) {}
   void on_pose(const PoseEstimate& pose, const Prior& prior) override {
     output_.add_pose(pose, prior);
+    if (pose.lost != LostReason::kNone) note_lost(pose);
     if (pose.mode != PoseMode::kRegistered) return;
     if (pose.effective_method == pose.method) return;
     const bool without_imu = pose.effective_method == Method::k6Dof && pose.method != Method::k6DofAltitude;
@@ -35,12 +37,31 @@ class OutputSink : public EstimateSink {
     without_height_ += without_imu ? 0 : 1;
   }
 
+  /// Times that the robot was lost, in one line; empty: never.
+  [[nodiscard]] std::string lost_text() const {
+    if (lost_ == 0) return {};
+    std::string text = "lost " + std::to_string(lost_) + (lost_ == 1 ? " time" : " times") + ", " +
+                       std::to_string(lost_poses_) + " poses: ";
+    return text + std::string(kLostReasonTexts.name(first_reason_)) + (lost_ == 1 ? "" : " (the first)") +
+           "; dead reckoning there, not mapped";
+  }
   /// Scans registered without a height from pressure, and without an IMU.
   [[nodiscard]] std::uint64_t without_height() const { return without_height_; }
   [[nodiscard]] std::uint64_t without_imu() const { return without_imu_; }
 
  private:
+  void note_lost(const PoseEstimate& pose) {
+    if (lost_ == 0) first_reason_ = pose.lost;
+    if (pose.lost_since_ns != lost_since_ns_) ++lost_;
+    lost_since_ns_ = pose.lost_since_ns;
+    ++lost_poses_;
+  }
+
   files::RunOutput& output_;
+  std::uint64_t lost_ = 0;
+  std::uint64_t lost_poses_ = 0;
+  std::int64_t lost_since_ns_ = 0;
+  LostReason first_reason_ = LostReason::kNone;
   std::uint64_t without_height_ = 0;
   std::uint64_t without_imu_ = 0;
 };
@@ -175,6 +196,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
     summary.warnings.emplace_back("the IMU was silent for " + std::to_string(sink.without_imu()) +
                                   " scans: they were registered as 6-DOF");
   }
+  if (const std::string lost = sink.lost_text(); !lost.empty()) summary.warnings.push_back(lost);
   warn_of_two_lidars(pipeline, used.lidar.port, summary);
   warn_of_unusable_sensors(reader.manifest(), pipeline, summary);
   output.write_counters(summary.counts);

@@ -27,10 +27,11 @@ bool is_finite(const PoseEstimate& pose) {
          pose.covariance.allFinite();
 }
 
-// The adaptive method follows it only in an elevator, where the scans stay out of the map.
+// The others follow it only on moving ground, where the scans stay out of the map.
 bool height_from_altimeter(const PoseEstimate& pose) {
   const MethodTraits traits = traits_of(pose.effective_method, pose.height_source);
-  return traits.follows_altimeter() || (traits.method == Method::kAdaptive && !pose.for_map);
+  const bool rides = traits.method == Method::kAdaptive && !pose.for_map && pose.lost == LostReason::kNone;
+  return traits.follows_altimeter() || rides || pose.lost == LostReason::kMovingGround;
 }
 
 }  // namespace

@@ -138,14 +138,16 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
   }
   const MethodTraits& traits = traits_for(end);
   if (traits.method == Method::kAdaptive) use_mount();
-  const Prediction prediction = predict(end, traits);
+  Prediction prediction = predict(end, traits);
+  rise_with_ground(end, traits, prediction);
   prepare_scan(scan, state_.history, state_.motion.scan_motion(end, prediction), deskewer_, sampler_, out);
   if (state_.search.active()) {
-    search_place(map, end, prediction, out);
+    lost() ? search_lost(map, end, prediction, out) : search_place(map, end, prediction, out);
     return;
   }
 
-  const bool riding = traits.method == Method::kAdaptive && state_.height.riding();
+  const bool riding =
+      traits.method == Method::kAdaptive ? state_.height.riding() : state_.ground_since_ns != 0;
   const MatchResult result = knows(map) && !riding ? match(map, end, prediction, traits) : MatchResult{};
   const bool registered = result.solved && acceptable(result, prediction);
   copy_statistics(result, pose);
@@ -156,7 +158,16 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
   set_fixed_variances(end, traits, pose.covariance);
 
   pose.for_map = !riding;
-  if (traits.method == Method::kAdaptive) learn(end, prediction, registered, pose);
+  if (traits.method == Method::kAdaptive) {
+    learn(end, prediction, registered, pose);
+  } else {
+    describe_ground(end, pose);
+  }
+  if (registered) watch(end, pose);
+  if (lost()) {
+    state_.last = pose;
+    return;
+  }
 
   // A scan with neither IMU nor registration does not become the start of the next prediction: the scan
   // before it stays the start.
@@ -212,6 +223,14 @@ bool Registration::propagate(PoseEstimate& out) const {
   out.mode = searching() ? PoseMode::kInitializing : PoseMode::kPriorOnly;
   out.T_map_base = prediction.T_map_base;
   out.T_map_odom = prediction.T_map_odom;
+  if (lost()) {
+    out.T_map_base = dead_reckoned(now);
+    out.T_map_odom = out.T_map_base * now.T_odom_base.inverse();
+    describe_lost(now, out);
+    return true;
+  }
+  out.lost = state_.last.lost;
+  out.lost_since_ns = state_.last.lost_since_ns;
   out.covariance = state_.last.covariance + as_pose_covariance(covariance_of(prediction));
   set_fixed_variances(now, traits, out.covariance);
   return true;

@@ -16,6 +16,7 @@
 #include "core/mounts/mount_estimator.hpp"
 #include "core/prior/prior_history.hpp"
 #include "core/registration/known_place.hpp"
+#include "core/registration/lost_detector.hpp"
 #include "core/registration/map_drift.hpp"
 #include "core/registration/map_height.hpp"
 #include "core/registration/method.hpp"
@@ -27,6 +28,20 @@
 #include "core/registration/tilt_offset.hpp"
 
 namespace isobar {
+
+/// A robot that is lost, see PoseEstimate::lost.
+struct LostState {
+  LostReason reason = LostReason::kNone;
+  std::int64_t since_ns = 0;
+  Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();   ///< dead-reckoned at the start
+  Eigen::Isometry3d T_odom_base = Eigen::Isometry3d::Identity();  ///< the prior's, there
+  bool has_height = false;                                        ///< the prior's height carries z
+  double height_m = 0.0;                                          ///< there
+  double error_m = 0.0;                                           ///< of position there, 1 sigma
+  double error_rad = 0.0;                                         ///< of attitude
+  double matched_overlap = 0.0;                                   ///< of the scans before, smoothed; 0: none
+  double matched_rms_m = 0.0;                                     ///< the same
+};
 
 /// What a Registration has learnt, and another one with other settings takes over.
 struct RegistrationState {
@@ -44,6 +59,11 @@ struct RegistrationState {
   MountEstimator mounts;
   Eigen::Quaterniond q_base_lidar;  ///< as found so far
   PlaceSearch search;
+  LostDetector lost_detector;
+  LostState lost;
+  std::int64_t ground_since_ns = 0;  ///< methods that ask no altimeter: start of a ride; 0: none
+  double scan_height_m = 0.0;        ///< Prior::height_m at the last scan
+  double risen_variance_m2 = 0.0;    ///< of z, from moving ground
   std::optional<KnownPlace> place;
   PoseEstimate last;
   std::int64_t first_prior_ns = 0;  ///< 0: none yet; the history forgets
@@ -70,7 +90,9 @@ class Registration {
   /// Number of the map frame, 1 …
   [[nodiscard]] std::uint32_t session() const { return state_.last.session; }
   /// The place of resume() is not confirmed yet.
-  [[nodiscard]] bool searching() const { return state_.place.has_value() || state_.search.active(); }
+  [[nodiscard]] bool searching() const {
+    return state_.place.has_value() || (state_.search.active() && !lost());
+  }
 
   /// Appends a prior; priors come in order of time.
   void add_prior(const Prior& prior);
@@ -101,13 +123,25 @@ class Registration {
   [[nodiscard]] bool knows(const MapSnapshot& map) const {
     return !map.empty() && map.session() == session();
   }
+  // registration_lost.cpp
+  [[nodiscard]] bool lost() const { return state_.lost.reason != LostReason::kNone; }
+  void rise_with_ground(const Prior& end, const MethodTraits& traits, Prediction& prediction);
+  void describe_ground(const Prior& end, PoseEstimate& pose) const;
+  void watch(const Prior& end, PoseEstimate& pose);
+  void begin_lost(const Prior& end, LostReason reason, PoseEstimate& pose);
+  void search_around(const Prior& end);
+  void find_again(PoseEstimate& pose);
+  void search_lost(const MapSnapshot& map, const Prior& end, const Prediction& expected, RegisteredScan& out);
+  void describe_lost(const Prior& end, PoseEstimate& pose) const;
+  [[nodiscard]] Eigen::Isometry3d dead_reckoned(const Prior& end) const;
+  [[nodiscard]] bool plausible(const Prior& end, const Eigen::Isometry3d& T_map_base) const;
   // registration_place.cpp
   void next_frame();
   bool start_at_place(const Prior& prior);
   void search_place(const MapSnapshot& map, const Prior& end, const Prediction& expected,
                     RegisteredScan& out);
   PlaceVerdict try_hypotheses(const MapSnapshot& map, const Prior& end, const Prediction& expected,
-                              const MethodTraits& traits);
+                              const MethodTraits& traits, std::size_t per_scan);
   PlaceVerdict confirm_place(const MapSnapshot& map, const Prior& end, const Prediction& expected,
                              const MethodTraits& traits, PoseEstimate& pose);
   [[nodiscard]] MatchResult match(const MapSnapshot& map, const Prior& prior, const Prediction& prediction,

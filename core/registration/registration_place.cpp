@@ -79,6 +79,10 @@ void Registration::next_frame() {
   state_.last = blank;
   state_.motion = MotionModel(config_);
   state_.search.stop();
+  state_.lost_detector.restart();
+  state_.lost = {};
+  state_.ground_since_ns = 0;
+  state_.risen_variance_m2 = 0.0;
   state_.place.reset();
   state_.scans_without_gravity = state_.bootstrap_scans = 0;
   state_.level_since_ns = 0;
@@ -119,8 +123,9 @@ void Registration::search_place(const MapSnapshot& map, const Prior& end, const 
     state_.last = pose;
     return;
   }
-  const PlaceVerdict verdict = state_.search.confirming() ? confirm_place(map, end, expected, traits, pose)
-                                                          : try_hypotheses(map, end, expected, traits);
+  const PlaceVerdict verdict = state_.search.confirming()
+                                   ? confirm_place(map, end, expected, traits, pose)
+                                   : try_hypotheses(map, end, expected, traits, PlaceSearch::kPerScan);
   if (verdict == PlaceVerdict::kUnknown) {
     next_frame();
     pose.session = session();
@@ -140,9 +145,10 @@ void Registration::search_place(const MapSnapshot& map, const Prior& end, const 
 }
 
 PlaceVerdict Registration::try_hypotheses(const MapSnapshot& map, const Prior& end,
-                                          const Prediction& expected, const MethodTraits& traits) {
+                                          const Prediction& expected, const MethodTraits& traits,
+                                          std::size_t per_scan) {
   PlaceSearch& search = state_.search;
-  for (std::size_t i = 0; i < PlaceSearch::kPerScan; ++i) {
+  for (std::size_t i = 0; i < per_scan; ++i) {
     const Prediction hypothesis = with_height_error(search.next(expected), end);
     search.judge(expected, knows(map) ? match(map, end, hypothesis, traits) : MatchResult{});
   }

@@ -104,6 +104,18 @@ TEST_CASE("wheels that were never heard are none, unless they are expected; once
   CHECK(entry(report_of(monitor, heard), "wheels").level == HealthLevel::kError);
 }
 
+TEST_CASE("a robot that is lost is an error of the registration, with the reason and since when") {
+  HealthMonitor monitor{Config{}};
+  StatusSnapshot status = working(kStart, true);
+  status.registration.mode = PoseMode::kPriorOnly;
+  status.registration.lost = LostReason::kTilt;
+  status.registration.lost_since_ns = kStart - 3 * kSecond;
+  const HealthReport report = report_of(monitor, status);
+  CHECK(entry(report, "registration").level == HealthLevel::kError);
+  CHECK(std::string(entry(report, "registration").message) ==
+        "lost since 3.0 s: the scans are tilted against gravity; dead reckoning, not mapped");
+}
+
 TEST_CASE("a robot without a base station is well if it is configured so, and waits for one otherwise") {
   HealthMonitor waiting{Config{}};
   CHECK(report_of(waiting, working(kStart, false)).entries[0].level == HealthLevel::kStale);

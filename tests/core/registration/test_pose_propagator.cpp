@@ -167,6 +167,21 @@ TEST_CASE("in method odometry the height between poses is dead reckoning's, not 
   CHECK(odometry.T_odom_base.translation().z() == doctest::Approx(0.0).epsilon(1e-9));
 }
 
+TEST_CASE("on moving ground the height between poses is the altimeter's in 4-DOF too") {
+  const Drive drive{.climb_m_s = 1.0};
+  PosePropagator propagator;
+  Odometry odometry;
+  static_cast<void>(propagator.propagate(drive.prior(0), odometry));
+  static_cast<void>(propagator.propagate(drive.prior(1), odometry));
+  PoseEstimate pose = drive.registered(0);
+  pose.method = pose.effective_method = Method::k4Dof;
+  pose.mode = PoseMode::kPriorOnly;
+  pose.lost = LostReason::kMovingGround;
+  propagator.add_pose(pose);
+  REQUIRE(propagator.propagate(drive.prior(200), odometry));
+  CHECK(odometry.T_map_base.translation().z() == doctest::Approx(Drive::time_s(200)).epsilon(1e-6));
+}
+
 TEST_CASE("without wheels the velocity between the last scans is extrapolated for a limited time") {
   const Drive drive{.has_wheels = false};
   // The circle departs from the straight line by v w t^2 / 2 and the velocity is that of 0.05 s before the
