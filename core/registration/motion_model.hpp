@@ -69,6 +69,7 @@ class MotionModel {
   [[nodiscard]] Eigen::Vector3d velocity_at(std::int64_t stamp_ns) const;
   [[nodiscard]] double wheel_error_m(const Prior& now, double step_m, double dt_s) const;
   [[nodiscard]] double free_error_m(double dt_s) const;
+  [[nodiscard]] double start_error_m(const Prior& now) const;
   [[nodiscard]] double rotation_error_rad(double turn_rad, double rate_rad_s, double dt_s) const;
 
   RegistrationConfig config_;
@@ -77,6 +78,7 @@ class MotionModel {
   Eigen::Isometry3d T_map_base_ = Eigen::Isometry3d::Identity();  // pose at the last scan
   Eigen::Vector3d v_map_m_s_ = Eigen::Vector3d::Zero();           // filtered, of the last registrations
   std::int64_t confirmed_ns_ = 0;                                 // last scan that was registered
+  int registered_ = 0;                                            // scans since the start
   double unconfirmed_m_ = 0.0;                                    // distance predicted since then
 };
 

@@ -32,6 +32,24 @@ TEST_CASE("without wheels the velocity of the registrations replaces dead reckon
   }
 }
 
+TEST_CASE("without wheels a run that begins in motion finds its speed") {
+  const Motion fast = [](std::int64_t stamp_ns) {
+    const double x_m = -4.0 + 3.0 * 1e-9 * static_cast<double>(stamp_ns - kRunStartNs);
+    return Eigen::Isometry3d(Eigen::Translation3d(x_m, 0.5, 0.7));
+  };
+  const MakePrior moving = [&](std::int64_t stamp_ns) { return perfect_prior(fast, stamp_ns); };
+  for (const Method method : {Method::k4Dof, Method::k6Dof, Method::kAdaptive}) {
+    CAPTURE(static_cast<int>(method));
+    RegistrationRun run(furnished_room(), fast, without_wheels(moving), method);
+    run.steps(6);
+    const Eigen::Vector3d before = run.position_error();
+    run.steps(10);
+    CHECK(run.pose().mode == PoseMode::kRegistered);
+    CHECK((run.position_error() - before).norm() <
+          0.1);  // on 3 m; 1.3 m where the robot is believed to stand
+  }
+}
+
 TEST_CASE(
     "after five seconds without lidar, bridged by the prior, the next scans register to the map again") {
   RegistrationRun run(furnished_room(), circle, drifting(circle), Method::k3Dof);
