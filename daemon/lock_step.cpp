@@ -73,6 +73,12 @@ void LockStep::take_imu(const ImuSample& sample) {
 }
 
 void LockStep::queue_scan() {
+  if (!has_imu_) {
+    // A prior that knows nothing but the time.
+    Prior at_end;
+    at_end.stamp_ns = filling_->end_stamp_ns;
+    registration_.add_prior(at_end);
+  }
   queue_.push(std::move(filling_), clock_ns_);
   if (spare_.empty()) {
     filling_ = std::make_unique<Scan>();

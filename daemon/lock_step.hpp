@@ -34,6 +34,8 @@ class LockStep {
   /// Continues an earlier run, before the first event, with the tiles of the storage around its place and the
   /// scans of the journal in the folder of its map.
   void continue_from(const RunStart& start, const std::filesystem::path& map_folder);
+  /// No IMU will come: every scan is registered as 6-DOF, from the motion of the scans before. Before the first event.
+  void go_without_imu() { has_imu_ = false; }
   void handle(const recording::Event& event);
   /// Registers the waiting scans and stores the tiles in memory. Call once, at the end.
   void finish();
@@ -65,6 +67,7 @@ class LockStep {
   std::vector<std::unique_ptr<Scan>> spare_;
   RegisteredScan registered_;
   std::uint64_t scans_ = 0;
+  bool has_imu_ = true;
 };
 
 }  // namespace isobar

@@ -67,6 +67,13 @@ class OutputSink : public EstimateSink {
 };
 
 void warn_of_missing_sensors(const recording::Manifest& manifest, ReplaySummary& summary) {
+  if (!manifest.imu) {
+    summary.warnings.emplace_back(
+        "no [imu]: lidar alone, every scan as 6-DOF from a constant velocity; gravity is unknown: the first "
+        "scan is "
+        "level; wheels and barometers are not used; no pose in the first 3 s");
+    return;
+  }
   if (!manifest.barometer) summary.warnings.emplace_back("no [barometer]: 3-DOF runs as 4-DOF");
   if (manifest.barometer && !manifest.base_barometer) {
     summary.warnings.emplace_back(
@@ -89,6 +96,11 @@ std::vector<files::RunCount> collect_counts(const recording::RecordingReader& re
   return counts;
 }
 
+void warn_of_no_pose(ReplaySummary& summary) {
+  if (summary.registered > 0) return;
+  summary.warnings.emplace_back("no scan could be registered: all poses are the prior's");
+}
+
 /// Warns of sensors in the manifest without a single usable sample. counters.csv has the reasons.
 void warn_of_unusable_sensors(const recording::Manifest& manifest, const LockStep& pipeline,
                               ReplaySummary& summary) {
@@ -96,16 +108,16 @@ void warn_of_unusable_sensors(const recording::Manifest& manifest, const LockSte
   const auto warn = [&](bool named, std::uint64_t samples, const char* what) {
     if (named && samples == 0) summary.warnings.emplace_back(what);
   };
-  warn(true, used.imu_accepted, "the [imu] gave no usable sample: gravity and motion are unknown");
+  warn(manifest.imu.has_value(), used.imu_accepted,
+       "the [imu] gave no usable sample: gravity and motion are unknown");
+  if (!manifest.imu) return warn_of_no_pose(summary);
   warn(manifest.barometer.has_value(), used.pressure_accepted,
        "the [barometer] gave no usable sample: 3-DOF runs as 4-DOF");
   warn(manifest.base_barometer.has_value(), used.base_accepted,
        "the [base_barometer] gave no usable sample: the height is relative to the start");
   warn(manifest.wheel.has_value(), used.wheel_accepted,
        "the [wheel] gave no usable sample: constant velocity between scans");
-  if (summary.registered == 0) {
-    summary.warnings.emplace_back("no scan could be registered: all poses are the prior's");
-  }
+  warn_of_no_pose(summary);
 }
 
 /// Warns of packets of a second lidar, and of a rate of scans that no lidar has.
@@ -167,6 +179,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   const auto store =
       FileTileStore::create(files::RunOutput::map_directory(out), map_header(used), map_limits(used));
   LockStep pipeline(stage_settings(used), sink, store.get());
+  if (!reader.manifest().imu) pipeline.go_without_imu();
   recording::Event event;
   std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
   std::int64_t last_ns = std::numeric_limits<std::int64_t>::min();
@@ -192,7 +205,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
     summary.warnings.emplace_back("no height from pressure for " + std::to_string(sink.without_height()) +
                                   " scans: 3-DOF ran as 4-DOF there");
   }
-  if (sink.without_imu() > 0) {
+  if (sink.without_imu() > 0 && reader.manifest().imu) {
     summary.warnings.emplace_back("the IMU was silent for " + std::to_string(sink.without_imu()) +
                                   " scans: they were registered as 6-DOF");
   }

@@ -44,7 +44,6 @@ TileStoreLimits map_limits(const Config& config) {
 
 Config with_sensors_of(const recording::Manifest& manifest, Config config) {
   if (!manifest.lidar) throw DataError("recording.toml: no [lidar]: there is nothing to register");
-  if (!manifest.imu) throw DataError("recording.toml: no [imu]: roll and pitch cannot be known without");
   if (velodyne::find_model(manifest.lidar->model) == nullptr) {
     throw DataError("recording.toml: lidar.model: \"" + printable(manifest.lidar->model) +
                     "\" has no driver; there are VLP-16 and HDL-32E");
@@ -53,7 +52,7 @@ Config with_sensors_of(const recording::Manifest& manifest, Config config) {
   config.lidar.port = manifest.lidar->port;
   if (config.lidar.sender.empty()) config.lidar.sender = manifest.lidar->sender;
   config.lidar.mount = manifest.lidar->mount;
-  config.imu.mount = manifest.imu->mount;
+  if (manifest.imu) config.imu.mount = manifest.imu->mount;
   if (manifest.barometer) config.barometer.mount = manifest.barometer->mount;
   return config;
 }

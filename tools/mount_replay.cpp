@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/errors.hpp"
 #include "core/mounts/corrected_mount.hpp"
 #include "core/stamp.hpp"
 #include "daemon/lock_step.hpp"
@@ -98,6 +99,9 @@ class MountSink : public EstimateSink {
 MountReplay replay_for_mount(const std::filesystem::path& recording, const Config& config,
                              const Eigen::Vector3d& error_rad, const std::function<void(double)>& progress) {
   recording::RecordingReader reader(recording);
+  if (!reader.manifest().imu) {
+    throw DataError(recording.string() + ": recording.toml: no [imu]: mounts are found against the gyro");
+  }
   const Config used = with_sensors_of(reader.manifest(), config);
   StageSettings settings = stage_settings(used);
   const Eigen::Vector3d configured_rpy_deg = used.lidar.mount.rpy_deg;

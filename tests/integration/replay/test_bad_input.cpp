@@ -56,6 +56,27 @@ TEST_CASE("without wheels the run warns and uses constant velocity between scans
   CHECK(largest_error_m(short_drive(), out) < 0.3);
 }
 
+TEST_CASE("without an IMU the lidar runs alone, as 6-DOF, and the run says what that costs") {
+  for (const bool with_others : {true, false}) {
+    const auto folder = copy_with(short_drive(), with_others ? "no-imu" : "lidar-only",
+                                  [with_others](auto& manifest) {
+                                    manifest.imu.reset();
+                                    if (with_others) return;
+                                    manifest.wheel.reset();
+                                    manifest.barometer.reset();
+                                    manifest.base_barometer.reset();
+                                  },
+                                  {});
+    std::filesystem::path out;
+    const auto summary = run(folder, out);
+    CHECK(warns_of(summary, "no [imu]: lidar alone"));
+    CHECK(summary.registered + 35 > summary.scans);  // the first 3 s wait for gravity
+    const std::string status = bytes_of(out / "status.csv");
+    CHECK(status.find(",registered,6dof,") != std::string::npos);
+    CHECK(largest_error_m(short_drive(), out) < 0.5);
+  }
+}
+
 TEST_CASE("without a barometer 3-DOF runs as 4-DOF and the run warns") {
   const auto folder = copy_with(short_drive(), "no-baro",
                                 [](auto& manifest) {
