@@ -142,6 +142,7 @@ void PriorEstimator::add_pressure(const PressureSample& measured) {
   if (reading.event == ReferenceEvent::kBaseReturned || reading.event == ReferenceEvent::kBaseSwitched) {
     s.altimeter_shift_m += reading.weather_shift_m;
   }
+  s.watch_drift();
   if (!s.attitude.started() || !s.height.started()) return;
   // The filter extrapolates with its present speed: what the acceleration has changed since is added here.
   const double delay_s = seconds_between(reading.stamp_ns, s.imu_gate.stamp_ns());

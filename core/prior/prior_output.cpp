@@ -84,7 +84,28 @@ bool PriorEstimator::State::disturbed_for(double seconds) const {
 BarometerFault PriorEstimator::State::robot_fault() const {
   const BarometerFault seen = altimeter.robot_fault();
   if (seen != BarometerFault::kOk && seen != BarometerFault::kSpiking) return seen;
+  const DriftSuspect drifts = drift.suspect();
+  if (drifts == DriftSuspect::kRobot || drifts == DriftSuspect::kUnknown) return BarometerFault::kDrifting;
   return disturbed_for(kWrongS) || height.pressure_faulty() ? BarometerFault::kWrong : seen;
+}
+
+BarometerFault PriorEstimator::State::base_fault(std::size_t station) const {
+  const BarometerFault seen = altimeter.base_fault(station);
+  if (seen != BarometerFault::kOk && seen != BarometerFault::kSpiking) return seen;
+  const bool drifts = drift.suspect() == DriftSuspect::kBase || drift.suspect() == DriftSuspect::kUnknown;
+  return drifts && station == altimeter.base_active() ? BarometerFault::kDrifting : seen;
+}
+
+// A robot that stands does not climb: what the altimeter does then is its own.
+void PriorEstimator::State::watch_drift() {
+  if (!wheels.valid(imu_gate.stamp_ns()) || !standstill.standing() || height.ground_moves()) {
+    drift.restart();
+    return;
+  }
+  drift.add({.stamp_ns = imu_gate.stamp_ns(),
+             .residual_m = altimeter_m - altimeter_shift_m,
+             .base_m = base_air_m,
+             .base = reading_source == HeightSource::kDifferential});
 }
 
 void PriorEstimator::State::watch_barometers() {
@@ -94,7 +115,7 @@ void PriorEstimator::State::watch_barometers() {
   };
   update(barometers.robot, robot_fault(), counters.robot_faults);
   for (std::size_t station = 0; station < barometers.base.size(); ++station) {
-    update(barometers.base[station], altimeter.base_fault(station), counters.base_faults);
+    update(barometers.base[station], base_fault(station), counters.base_faults);
     barometers.base_heard[station] =
         barometers.base_heard[station] || barometers.base[station] != BarometerFault::kOff;
   }

@@ -15,6 +15,7 @@
 
 #include <limits>
 
+#include "core/altitude/drift_watch.hpp"
 #include "core/prior/attitude_filter.hpp"
 #include "core/prior/climb_meter.hpp"
 #include "core/prior/dead_reckoning.hpp"
@@ -65,6 +66,7 @@ struct PriorEstimator::State {
   SensorCompensation base_compensation;
   DifferentialAltimeter altimeter;
   HeightFilter height;
+  DriftWatch drift;  // of the altimeter, while the robot stands
 
   Eigen::Vector3d p_odom_base = Eigen::Vector3d::Zero();
   double yaw_before_rad = 0.0;                            // yaw of a restart after a clock jump
@@ -105,7 +107,9 @@ struct PriorEstimator::State {
   void fill_attitude(const ImuSample& sample, Prior& out) const;
   void fill_height(std::int64_t stamp_ns, Prior& out) const;
   void watch_barometers();
+  void watch_drift();
   [[nodiscard]] BarometerFault robot_fault() const;
+  [[nodiscard]] BarometerFault base_fault(std::size_t station) const;
   [[nodiscard]] bool disturbed_for(double seconds) const;
   [[nodiscard]] HeightSource source(std::int64_t stamp_ns) const;
 

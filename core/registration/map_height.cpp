@@ -43,7 +43,9 @@ AltimeterState MapHeight::altimeter() const {
   out.bias_m = bias_m();
   out.bias_sd_m = bias_sd_m();
   out.innovation_m = innovation_m_;
-  out.faulty = faulty_;
+  out.drifts = drift_.suspect();
+  out.drift_m_s = drift_.rate_m_s();
+  out.faulty = altimeter_faulty();
   return out;
 }
 
@@ -53,6 +55,8 @@ void MapHeight::restart() {
   P_(kBias, kBias) = squared(config_.start_bias_sigma_m);
   zero_known_ = faulty_ = unseen_start_ = false;
   mean_innovation_m_ = 0.0;
+  drift_.restart();
+  base_sum_m_ = way_m_ = 0.0;
   sum_m_ = count_ = outside_s_ = unconfirmed_m2_ = risen_m_ = taken_m_ = 0.0;
   ride_.end();
 }
@@ -108,6 +112,7 @@ void MapHeight::take_reading(const Prior& prior) {
   x_[kBias] += prior.altimeter_shift_m - shift_m_;
   shift_m_ = prior.altimeter_shift_m;
   sum_m_ += prior.altimeter_m;
+  base_sum_m_ += prior.base_air_m;
   count_ += 1.0;
   noise_m2_ = prior.altimeter_variance_m2;
 }
@@ -152,13 +157,24 @@ double MapHeight::update(double z_m, double moved_m, double z_variance_m2, bool 
   predict(std::min(dt_s, 60.0), moved_m, tilt_variance_rad2);
   if (!registered) P_(kMap, kMap) += z_variance_m2;
   if (registered) unconfirmed_m2_ = 0.0;
+  way_m_ += moved_m;
+  if (riding()) drift_.restart();
   if (!riding() && count_ > 0.0) measure(z_m, dt_s);
-  sum_m_ = count_ = 0.0;
+  sum_m_ = count_ = base_sum_m_ = 0.0;
   if (!registered) return 0.0;
   const double share = std::min(1.0, moved_m / kCorrectionWayM);
   const double step_m = std::clamp(-x_[kMap] * share, -kLargestStepM, kLargestStepM);
   x_[kMap] += kStays * step_m;
   return step_m;
+}
+
+void MapHeight::watch_drift(double residual_m) {
+  drift_.add({.stamp_ns = last_.stamp_ns,
+              .residual_m = residual_m,
+              .base_m = base_sum_m_ / count_,
+              .way_m = way_m_,
+              .base = last_.height_source == HeightSource::kDifferential});
+  way_m_ = 0.0;
 }
 
 void MapHeight::measure(double z_m, double dt_s) {
@@ -167,6 +183,8 @@ void MapHeight::measure(double z_m, double dt_s) {
     zero_m_ = reading_m - z_m;
     zero_known_ = true;
   }
+  // What the map's height is known to err by is not the altimeter's.
+  watch_drift(reading_m - zero_m_ - (z_m - x_[kMap]) - shift_m_);
   const Vector h(-1.0, 1.0, 1.0, 0.0);
   const Vector Ph = P_ * h;
   const double noise_m2 = noise_m2_ / count_;
@@ -186,7 +204,7 @@ void MapHeight::measure(double z_m, double dt_s) {
   Vector K = Ph / variance;
   // Schmidt-Kalman: zero gain on the map. Innovations of one sign are a drift of the altimeter, which b follows late.
   mean_innovation_m_ += (innovation_m_ - mean_innovation_m_) * std::min(1.0, dt_s / kDriftMemoryS);
-  if (faulty_ || std::abs(mean_innovation_m_) > kDriftM) K[kMap] = K[kSlope] = 0.0;
+  if (altimeter_faulty() || std::abs(mean_innovation_m_) > kDriftM) K[kMap] = K[kSlope] = 0.0;
   x_ += K * innovation_m_;
   const Matrix keep = Matrix::Identity() - K * h.transpose();
   P_ = (keep * P_ * keep.transpose() + noise_m2 * K * K.transpose()).eval();

@@ -19,6 +19,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "core/altitude/drift_watch.hpp"
 #include "core/estimates.hpp"
 #include "core/prior/prior_history.hpp"
 #include "core/registration/ride_meter.hpp"
@@ -68,7 +69,7 @@ class MapHeight {
   /// Variance of the map's height at the robot [m^2].
   [[nodiscard]] double variance_m2() const { return P_(kMap, kMap); }
   /// The altimeter departs from the map by more than zones and weather explain: a drift or a fault of a barometer.
-  [[nodiscard]] bool altimeter_faulty() const { return faulty_; }
+  [[nodiscard]] bool altimeter_faulty() const { return faulty_ || drift_.suspect() != DriftSuspect::kNone; }
 
  private:
   enum State { kMap, kBias, kTurbulence, kSlope, kStates };
@@ -79,12 +80,14 @@ class MapHeight {
   void take_reading(const Prior& prior);
   void predict(double dt_s, double moved_m, double tilt_variance_rad2);
   void measure(double z_m, double dt_s);
+  void watch_drift(double residual_m);
   void watch_ride(const Prior& prior, bool stands);
   void take_rise();
   void end_ride();
 
   MapHeightConfig config_;
   RideMeter ride_;
+  DriftWatch drift_;
   Vector x_ = Vector::Zero();
   Matrix P_ = Matrix::Zero();
   Prior last_;  // the last prior taken
@@ -93,10 +96,12 @@ class MapHeight {
   double zero_m_ = 0.0;
   double sum_m_ = 0.0;  // altimeter readings since the last update
   double count_ = 0.0;
-  double noise_m2_ = 0.0;  // white, of one reading
-  double shift_m_ = 0.0;   // Prior::altimeter_shift_m already taken into the bias
-  double taken_m_ = 0.0;   // of RideMeter::risen_m()
-  double risen_m_ = 0.0;   // not taken yet
+  double base_sum_m_ = 0.0;  // the base station's part of them
+  double way_m_ = 0.0;       // since the last reading that was compared
+  double noise_m2_ = 0.0;    // white, of one reading
+  double shift_m_ = 0.0;     // Prior::altimeter_shift_m already taken into the bias
+  double taken_m_ = 0.0;     // of RideMeter::risen_m()
+  double risen_m_ = 0.0;     // not taken yet
   double unconfirmed_m2_ = 0.0;
   double innovation_m_ = 0.0;
   double mean_innovation_m_ = 0.0;

@@ -82,7 +82,7 @@ const std::map<std::string, Names> kMayIncludeInCore{
     {"core/map", {}},
     {"core/prior", {"core/altitude"}},
     {"core/mounts", {"core/prior"}},
-    {"core/registration", {"core/map", "core/mounts", "core/prior"}},
+    {"core/registration", {"core/altitude", "core/map", "core/mounts", "core/prior"}},
 };
 
 /// Libraries and the places that may include them. A library that is not listed may be included anywhere.
