@@ -47,7 +47,7 @@ constexpr NameTable<BarometerFault, 6> kBarometerFaultTexts{{{
     {BarometerFault::kOff, "off: silent"},
     {BarometerFault::kStuck, "stuck: its value does not change by a single bit"},
     {BarometerFault::kSpiking, "spiking: single values jump repeatedly"},
-    {BarometerFault::kDrifting, "drifting: faster than weather, and not with the height"},
+    {BarometerFault::kDrifting, "drifting: neither weather nor the height changes so"},
     {BarometerFault::kWrong, "wrong: impossible values, or a jump that neither motion nor weather explains"},
 }}};
 
@@ -235,7 +235,7 @@ void HealthMonitor::fill_prior(const StatusSnapshot& now, HealthReport& report) 
             prior.height_m);
 }
 
-void HealthMonitor::fill_registration(const StatusSnapshot& now, HealthReport& report) const {
+void HealthMonitor::fill_registration(const StatusSnapshot& now, HealthReport& report) {
   const RegistrationStatus& registration = now.registration;
   const std::int64_t pose_ns = registration.pose.stamp_ns;
   const bool stale = pose_ns == 0 || now.now_ns - pose_ns > kStageSilenceNs;

@@ -10,6 +10,7 @@
 #include "daemon/barometer_thread.hpp"
 #include "daemon/lidar_thread.hpp"
 #include "daemon/map_thread.hpp"
+#include "daemon/mount_news.hpp"
 #include "daemon/output_status.hpp"
 #include "daemon/prior_thread.hpp"
 #include "daemon/registration_thread.hpp"
@@ -63,13 +64,14 @@ class HealthMonitor {
   void fill_base_stations(const StatusSnapshot& now, ipc::HealthReport& report) const;
   static void fill_faults(const StatusSnapshot& now, ipc::HealthReport& report);
   void fill_prior(const StatusSnapshot& now, ipc::HealthReport& report) const;
-  static void fill_adaptive(const RegistrationStatus& registration, ipc::HealthReport& report);
-  void fill_registration(const StatusSnapshot& now, ipc::HealthReport& report) const;
+  void fill_adaptive(const RegistrationStatus& registration, ipc::HealthReport& report);
+  void fill_registration(const StatusSnapshot& now, ipc::HealthReport& report);
   void fill_map(const StatusSnapshot& now, ipc::HealthReport& report) const;
   void fill_deadlines(const StatusSnapshot& now, ipc::HealthReport& report) const;
 
   Config config_;
   StartOver start_over_;
+  MountNews mount_news_;
   StatusSnapshot last_;
   std::unique_ptr<StageTimes> times_;
 };

@@ -1,35 +1,66 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the adaptive method has found: bias of the altimeter, mount of the lidar.
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <string>
 
 #include "core/geometry.hpp"
+#include "core/mounts/mount_text.hpp"
 #include "daemon/health.hpp"
 #include "daemon/health_entries.hpp"
 
 namespace isobar {
+namespace {
+
+// Bias from which on its correction is said [m], and in standard deviations.
+constexpr double kSaidM = 0.1;
+constexpr double kSaidSigmas = 3.0;
+
+const char* barometer_of(DriftSuspect drifts) {
+  switch (drifts) {
+    case DriftSuspect::kRobot:
+      return "the robot's barometer";
+    case DriftSuspect::kBase:
+      return "the base station's barometer";
+    case DriftSuspect::kNone:
+    case DriftSuspect::kUnknown:
+      break;
+  }
+  return "robot's or base station's barometer";
+}
+
+std::string text_of(const AltimeterState& altimeter) {
+  const double bias_m = altimeter.bias_m;
+  if (altimeter.drifts != DriftSuspect::kNone) {
+    return fmt::format("{} drifts by {:.1f} mm/s, {:.2f} m off; check it; the height follows the scans",
+                       barometer_of(altimeter.drifts), 1e3 * altimeter.drift_m_s, bias_m);
+  }
+  if (altimeter.faulty) {
+    return fmt::format(
+        "{:.2f} m off the map, more than air explains; check both barometers; the height follows the scans",
+        bias_m);
+  }
+  const bool said = std::abs(bias_m) > kSaidM && std::abs(bias_m) > kSaidSigmas * altimeter.bias_sd_m;
+  return fmt::format("bias {:.3f} m, sd {:.3f} m{}", bias_m, altimeter.bias_sd_m,
+                     said ? ": a ventilated zone, weather or an old drift, corrected" : "");
+}
+
+}  // namespace
 
 void HealthMonitor::fill_adaptive(const RegistrationStatus& registration, ipc::HealthReport& report) {
   if (registration.effective_method != Method::kAdaptive) return;
-  const double bias_m = registration.altimeter.bias_m;
-  add_entry(
-      report, "altimeter", registration.altimeter.faulty ? ipc::HealthLevel::kWarning : ipc::HealthLevel::kOk,
-      registration.altimeter.faulty
-          ? fmt::format(
-                "differs from the map by {:.2f} m, more than air explains: a barometer, of the robot or of "
-                "the base station, drifts or is wrong; the height follows the scans",
-                bias_m)
-          : fmt::format("bias {:.3f} m, sd {:.3f} m", bias_m, registration.altimeter.bias_sd_m),
-      bias_m);
-  if (!registration.mount.found) return;
-  const auto& error = registration.mount.error_rad;
-  const auto& sigma = registration.mount.sigma_rad;
-  add_entry(report, "lidar/mount", ipc::HealthLevel::kOk,
-            fmt::format(
-                "turned by {:.2f}, {:.2f}, {:.2f} deg (roll, pitch, yaw; sd {:.2f}, {:.2f}, {:.2f}) against "
-                "lidar.rpy_deg, and corrected; `isobar calibrate mounts` gives the line for the file",
-                error[0] / kRadPerDeg, error[1] / kRadPerDeg, error[2] / kRadPerDeg, sigma[0] / kRadPerDeg,
-                sigma[1] / kRadPerDeg, sigma[2] / kRadPerDeg),
-            error[1] / kRadPerDeg);
+  const AltimeterState& altimeter = registration.altimeter;
+  add_entry(report, "altimeter", altimeter.faulty ? ipc::HealthLevel::kWarning : ipc::HealthLevel::kOk,
+            text_of(altimeter), altimeter.bias_m);
+  const MountState& mount = registration.mount;
+  if (!mount.found) return;
+  const std::string line = mount_line(mount, config_.lidar.mount.rpy_deg);
+  add_entry(report, "lidar/mount", ipc::HealthLevel::kOk, line, mount.error_rad[1] / kRadPerDeg);
+  if (mount_news_.is_news(mount)) {
+    spdlog::info("the lidar's mount is found and corrected; the line for the configuration: {}", line);
+  }
 }
 
 }  // namespace isobar

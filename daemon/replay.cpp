@@ -8,6 +8,7 @@
 
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
+#include "core/mounts/mount_text.hpp"
 #include "core/names.hpp"
 #include "core/stamp.hpp"
 #include "daemon/counts.hpp"
@@ -30,6 +31,7 @@ class OutputSink : public EstimateSink {
   void on_pose(const PoseEstimate& pose, const Prior& prior) override {
     output_.add_pose(pose, prior);
     if (pose.lost != LostReason::kNone) note_lost(pose);
+    last_ = pose;
     if (pose.mode != PoseMode::kRegistered) return;
     if (pose.effective_method == pose.method) return;
     const bool without_imu = pose.effective_method == Method::k6Dof && pose.method != Method::k6DofAltitude;
@@ -48,6 +50,8 @@ class OutputSink : public EstimateSink {
   /// Scans registered without a height from pressure, and without an IMU.
   [[nodiscard]] std::uint64_t without_height() const { return without_height_; }
   [[nodiscard]] std::uint64_t without_imu() const { return without_imu_; }
+  /// The last pose.
+  [[nodiscard]] const PoseEstimate& last() const { return last_; }
 
  private:
   void note_lost(const PoseEstimate& pose) {
@@ -62,6 +66,7 @@ class OutputSink : public EstimateSink {
   std::uint64_t lost_poses_ = 0;
   std::int64_t lost_since_ns_ = 0;
   LostReason first_reason_ = LostReason::kNone;
+  PoseEstimate last_;
   std::uint64_t without_height_ = 0;
   std::uint64_t without_imu_ = 0;
 };
@@ -213,6 +218,9 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   warn_of_two_lidars(pipeline, used.lidar.port, summary);
   warn_of_unusable_sensors(reader.manifest(), pipeline, summary);
   output.write_counters(summary.counts);
+  if (used.method == Method::kAdaptive) {
+    output.write_mounts(mounts_file_text(sink.last().mount, used.lidar.mount.rpy_deg));
+  }
   refuse_empty_run(summary, pipeline, recording);
   summary.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   return summary;

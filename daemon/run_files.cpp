@@ -8,6 +8,7 @@
 
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
+#include "core/mounts/mount_text.hpp"
 #include "daemon/counts.hpp"
 #include "ipc/shared_memory.hpp"
 
@@ -48,7 +49,8 @@ void do_or_log(const Part& part) {
 
 }  // namespace
 
-RunFiles::RunFiles(const Config& config) : directory_(config.output.directory), maps_(config) {
+RunFiles::RunFiles(const Config& config)
+    : directory_(config.output.directory), configured_rpy_deg_(config.lidar.mount.rpy_deg), maps_(config) {
   if (!directory_.empty()) files::refuse_foreign_folder(directory_, "", "output.directory");
   choose_start();
   if (directory_.empty()) return;
@@ -144,6 +146,9 @@ void RunFiles::close(const StatusSnapshot& last) {
   }
   counts.push_back({"poses not written", output_->dropped_lines(), ""});
   do_or_log([&] { output_->write_counters(counts); });
+  if (last.registration.effective_method == Method::kAdaptive) {
+    do_or_log([&] { output_->write_mounts(mounts_file_text(last.registration.mount, configured_rpy_deg_)); });
+  }
   spdlog::info("{} poses and {} map points in {}", output_->poses(), output_->map_points(),
                directory_.string());
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -33,7 +34,7 @@ class RunFiles {
   /// File of the checkpoint; empty: nothing is configured that a later run could continue.
   [[nodiscard]] std::filesystem::path checkpoint_file() const;
 
-  /// Writes the last poses, map.ply and counters.csv. What the disk refuses is logged. Call once, after all
+  /// Writes the last poses, map.ply, counters.csv and mounts.toml. What the disk refuses is logged. Call once, after all
   /// threads have stopped.
   void close(const StatusSnapshot& last);
 
@@ -45,6 +46,7 @@ class RunFiles {
   void begin_beside(std::uint32_t session, const std::string& why);
 
   std::filesystem::path directory_;
+  Eigen::Vector3d configured_rpy_deg_;
   MapStores maps_;
   RunStart start_;
   std::optional<files::RunOutput> output_;

@@ -10,6 +10,7 @@
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
 #include "core/mounts/corrected_mount.hpp"
+#include "core/mounts/mount_text.hpp"
 #include "tools/commands.hpp"
 #include "tools/mount_replay.hpp"
 #include "tools/progress.hpp"
@@ -136,15 +137,6 @@ void print_scale(const char* what, const char* rule, const ScaleEstimate& scale)
   if (!std::isfinite(scale.sigma)) return;
   std::printf("%s: %s x %s +- %s\n", what, rule, fixed(scale.scale, 4).c_str(),
               fixed(scale.sigma, 4).c_str());
-}
-
-std::string rpy_text(const Eigen::Vector3d& rpy_deg) {
-  std::string text;
-  for (const double angle_deg : rpy_deg) {
-    const std::string number = fixed(angle_deg, 2);
-    text += (text.empty() ? "" : ", ") + (number == "-0.00" ? std::string("0.00") : number);
-  }
-  return "[" + text + "]";
 }
 
 void print_result(const MountEstimate& found, const Eigen::Vector3d& configured_rpy_deg) {

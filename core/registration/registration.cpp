@@ -83,6 +83,8 @@ PoseEstimate Registration::description_of(const Prior& prior, const MethodTraits
   pose.method = asked_;
   pose.effective_method = traits.method;
   pose.height_source = prior.height_source;
+  pose.altimeter = state_.last.altimeter;
+  pose.mount = state_.last.mount;
   return pose;
 }
 

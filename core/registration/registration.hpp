@@ -58,6 +58,7 @@ struct RegistrationState {
   TiltOffset tilt;
   MountEstimator mounts;
   Eigen::Quaterniond q_base_lidar;  ///< as found so far
+  double wheel_turn_rad = 0.0;      ///< Prior::wheel_turn_rad of the last registered scan
   PlaceSearch search;
   LostDetector lost_detector;
   LostState lost;
@@ -149,7 +150,7 @@ class Registration {
   [[nodiscard]] bool acceptable(const MatchResult& match, const Prediction& prediction) const;
   [[nodiscard]] Prediction predict(const Prior& end, const MethodTraits& traits);
   void learn(const Prior& end, const Prediction& prediction, bool registered, PoseEstimate& pose);
-  void learn_mount(const PoseEstimate& pose);
+  void learn_mount(const Prior& end, const PoseEstimate& pose);
   void use_mount();
   void describe_mount(PoseEstimate& pose) const;
   void own_tilt(const Prior& end, PoseEstimate& pose);

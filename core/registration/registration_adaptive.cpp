@@ -83,19 +83,21 @@ void Registration::learn(const Prior& end, const Prediction& prediction, bool re
                          PoseEstimate& pose) {
   if (registered) {
     own_tilt(end, pose);
-    learn_mount(pose);
+    learn_mount(end, pose);
   }
   own_height(prediction, registered, pose);
   add_drift(pose);
   describe_mount(pose);
 }
 
-void Registration::learn_mount(const PoseEstimate& pose) {
+void Registration::learn_mount(const Prior& end, const PoseEstimate& pose) {
   ScanMotionEvidence evidence;
   evidence.stamp_ns = pose.stamp_ns;
   evidence.session = pose.session;
   evidence.T_map_base = pose.T_map_base;
   evidence.q_base_lidar = state_.q_base_lidar;
+  if (end.velocity_valid) evidence.wheel_turn_rad = end.wheel_turn_rad - state_.wheel_turn_rad;
+  state_.wheel_turn_rad = end.wheel_turn_rad;
   state_.mounts.add(evidence, state_.history);
 }
 

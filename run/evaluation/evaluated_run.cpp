@@ -54,15 +54,20 @@ std::string cut_note(const std::string& name, const StampRepairs& repairs) {
 
 RunFolder load_estimate(const fs::path& path) {
   if (fs::is_directory(path)) return read_run_folder(path, kMaxMapPoints);
-  return {parse_tum(files::read_text_file(path), path.string()), {}, {}, {}, {}};
+  return {parse_tum(files::read_text_file(path), path.string()), {}, {}, {}, {}, {}};
 }
 
 EvaluatedMethod evaluate_one(const ReferenceData& reference, const EstimateSource& source,
                              const EvaluationOptions& options) {
   RunFolder run = load_estimate(source.path);
   add_modes(run.status, run.covariances);
-  EvaluatedMethod method{
-      source.name, {}, source.path, std::move(run.status), std::move(run.map.points), std::move(run.notes)};
+  EvaluatedMethod method{source.name,
+                         {},
+                         source.path,
+                         std::move(run.status),
+                         std::move(run.map.points),
+                         std::move(run.notes),
+                         std::move(run.mounts)};
   try {
     method.evaluation = evaluate(reference.trajectory, reference.segments, run.trajectory,
                                  sigmas_of(method.status), options, std::move(run.covariances));

@@ -43,6 +43,7 @@ struct EvaluatedMethod {
   std::vector<StatusRow> status;                 ///< empty for a .tum file
   std::vector<std::array<float, 3>> map_points;  ///< reference frame [m], thinned; empty for a .tum file
   std::vector<std::string> notes{};              ///< what was left out, in sentences
+  std::string mounts{};                          ///< mounts.toml of the run; empty without it
 };
 
 /// Reference and all evaluated estimates.

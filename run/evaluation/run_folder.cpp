@@ -109,6 +109,8 @@ RunFolder read_run_folder(const std::filesystem::path& directory, std::size_t ma
   if (std::filesystem::exists(covariance_file)) {
     run.covariances = parse_covariance_csv(files::read_text_file(covariance_file), covariance_file.string());
   }
+  const std::filesystem::path mounts_file = directory / files::kMountsFile;
+  if (std::filesystem::exists(mounts_file)) run.mounts = files::read_text_file(mounts_file);
   const std::filesystem::path map_file = directory / files::kMapPointsFile;
   if (!std::filesystem::exists(map_file)) return run;
   try {

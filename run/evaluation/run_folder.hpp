@@ -38,6 +38,7 @@ struct RunFolder {
   std::vector<StatusRow> status;            ///< empty without status.csv
   std::vector<PoseCovariance> covariances;  ///< empty without covariance.csv: a run of an older version
   files::PlyPoints map;                     ///< map frame [m]; empty without map.ply
+  std::string mounts;                       ///< mounts.toml; empty without it
   std::vector<std::string> notes;           ///< what was left out, in sentences
 };
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::array<const char*, 5> kOfSession{kTrajectoryFile, kStatusFile, kCovarianceFile, kMapPointsFile,
                                                 kMapDirectory};
-constexpr std::array<const char*, 3> kOfRun{kSettingsFile, kCountersFile, kCheckpointFile};
+constexpr std::array<const char*, 4> kOfRun{kSettingsFile, kCountersFile, kCheckpointFile, kMountsFile};
 
 /// Number of the map frame to which a file belongs; 0 for a file of none.
 std::uint32_t session_of(const std::string& file, const fs::path& first) {

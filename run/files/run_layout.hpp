@@ -14,6 +14,7 @@ inline constexpr const char* kCovarianceFile = "covariance.csv";  ///< of each p
 inline constexpr const char* kMapPointsFile = "map.ply";          ///< the map's points: x, y, z, intensity
 inline constexpr const char* kSettingsFile = "settings.toml";     ///< every setting of the run
 inline constexpr const char* kCountersFile = "counters.csv";      ///< name, count, first message
+inline constexpr const char* kMountsFile = "mounts.toml";         ///< mounts as found, for the configuration
 inline constexpr const char* kMapDirectory = "map";               ///< the map's tiles (run/tile_store)
 inline constexpr const char* kCheckpointFile = "checkpoint";      ///< where a later run goes on: Checkpoint
 

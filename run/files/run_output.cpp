@@ -67,6 +67,8 @@ void RunOutput::write_settings(std::string_view toml) const {
   replace_file(directory_ / kSettingsFile, toml);
 }
 
+void RunOutput::write_mounts(std::string_view toml) const { replace_file(directory_ / kMountsFile, toml); }
+
 void RunOutput::write_counters(const std::vector<RunCount>& counts) const {
   std::string text = "name,count,first_message\n";
   for (const RunCount& count : counts) {

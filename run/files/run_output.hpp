@@ -48,6 +48,8 @@ class RunOutput {
   MapExport write_map(FileTileStore& store, const MapHeader& header);
   /// Writes settings.toml.
   void write_settings(std::string_view toml) const;
+  /// Writes mounts.toml.
+  void write_mounts(std::string_view toml) const;
   /// Writes counters.csv.
   void write_counters(const std::vector<RunCount>& counts) const;
 

@@ -105,6 +105,12 @@ std::string top_section(const evaluation::EvaluatedRun& run) {
                                                              : ""));
 }
 
+/// The mounts that the run has found, as its mounts.toml.
+std::string mounts_section(const evaluation::EvaluatedRun& run) {
+  const std::string& mounts = main_method(run).mounts;
+  return mounts.empty() ? "" : heading("Mounts found") + "<pre>" + escaped(mounts) + "</pre>\n";
+}
+
 std::string time_section(const evaluation::EvaluatedRun& run) {
   const std::optional<Picture> picture = scan_time_picture(run, 1040.0);
   if (!picture) return "";
@@ -120,8 +126,8 @@ std::string render_report(const ReportInput& input) {
   const evaluation::EvaluatedRun& run = input.run;
   std::string html = page_head(input.title, input.description, input.command) + paragraph(run_summary(run)) +
                      tiles(run) + z_rpe_section(run) + height_section(run) + altimeter_section(run) +
-                     side_section(run) + top_section(run) + time_section(run) + heading("All figures") +
-                     figures_table(run);
+                     side_section(run) + top_section(run) + mounts_section(run) + time_section(run) +
+                     heading("All figures") + figures_table(run);
   const std::string floors = floors_table(run);
   if (!floors.empty()) html += heading("Height of each floor") + floors;
   if (!run.notes.empty()) html += heading("Notes") + bullet_list(run.notes);

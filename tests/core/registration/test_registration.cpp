@@ -116,4 +116,11 @@ TEST_CASE("registering a scan allocates nothing") {
   CHECK(allocation_count() > 0);  // the counter works
 }
 
+TEST_CASE("the adaptive method finds the scale of the wheels' distance") {
+  RegistrationRun straight(furnished_room(), along_x, drifting(along_x), Method::kAdaptive);
+  straight.steps(70);
+  CHECK(straight.pose().mount.wheel_distance.scale == doctest::Approx(1.0 / 1.04).epsilon(0.02));
+  CHECK(straight.pose().mount.wheel_distance.sigma > 0.0);
+}
+
 }  // namespace isobar::test::test_registration

@@ -133,7 +133,7 @@ TEST_CASE("removing a run leaves the files of others") {
   const TemporaryFolder folder;
   for (const char* name :
        {"trajectory.tum", "trajectory_2.tum", "status.csv", "covariance.csv", "map.ply", "settings.toml",
-        "counters.csv", "checkpoint", "notes.txt", "trajectory_old.tum"}) {
+        "counters.csv", "checkpoint", "mounts.toml", "notes.txt", "trajectory_old.tum"}) {
     files::write_text_file(folder.path() / name, "x");
   }
   CHECK(files::holds_run(folder.path()));
@@ -143,6 +143,7 @@ TEST_CASE("removing a run leaves the files of others") {
   CHECK(fs::exists(folder.path() / "trajectory_old.tum"));
   CHECK_FALSE(fs::exists(folder.path() / "trajectory_2.tum"));
   CHECK_FALSE(fs::exists(folder.path() / "covariance.csv"));
+  CHECK_FALSE(fs::exists(folder.path() / "mounts.toml"));
 }
 
 }  // namespace isobar::test::test_line_file
