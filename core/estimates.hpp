@@ -126,7 +126,6 @@ enum class LostReason : std::uint8_t {
   kNone,
   kTurn,          ///< they turn, and the gyro does not, or not as they do
   kTilt,          ///< they are tilted against gravity
-  kFreeSpace,     ///< the scans stand in what earlier ones saw through
   kMovingGround,  ///< the ground rises or sinks, and scans that show what moves with it cannot tell the height
 };
 

@@ -23,11 +23,10 @@ inline constexpr NameTable<PoseMode, 3> kPoseModeNames{{{
     {PoseMode::kInitializing, "initializing"},
 }}};
 
-inline constexpr NameTable<LostReason, 5> kLostReasonTexts{{{
+inline constexpr NameTable<LostReason, 4> kLostReasonTexts{{{
     {LostReason::kNone, "no"},
     {LostReason::kTurn, "the scans turn against the gyro"},
     {LostReason::kTilt, "the scans are tilted against gravity"},
-    {LostReason::kFreeSpace, "the scans stand in what earlier ones saw through"},
     {LostReason::kMovingGround, "the ground moves, and scans of a cabin cannot tell its height"},
 }}};
 
