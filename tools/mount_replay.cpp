@@ -94,6 +94,9 @@ class MountSink : public EstimateSink {
   Eigen::Vector3d p_last_m_ = Eigen::Vector3d::Zero();
 };
 
+// Error of a step's rotation [deg]: the scans are to be compared with the gyro, not held by it.
+constexpr double kFreeStepDeg = 0.2;
+
 }  // namespace
 
 MountReplay replay_for_mount(const std::filesystem::path& recording, const Config& config,
@@ -106,6 +109,7 @@ MountReplay replay_for_mount(const std::filesystem::path& recording, const Confi
   StageSettings settings = stage_settings(used);
   const Eigen::Vector3d configured_rpy_deg = used.lidar.mount.rpy_deg;
   settings.method = Method::k6Dof;
+  settings.registration.step_rotation_floor_deg = kFreeStepDeg;
   settings.T_base_lidar.linear() = corrected_rotation(configured_rpy_deg, error_rad);
   MountSink sink(settings, Eigen::Quaterniond(rotation_from_rpy_deg(configured_rpy_deg)));
   LockStep pipeline(settings, sink);

@@ -28,6 +28,9 @@ bool same_way(const MapCell& a, const MapCell& b) {
 // Noise of a single point along the normal, standard deviation [m].
 constexpr float kPointNoiseM = 0.01F;
 
+// Reach of that noise from a surface: three standard deviations.
+constexpr float kNoiseReachM = 3.0F * kPointNoiseM;
+
 // Share of the distance between a cell's own mean and the plane of its neighbourhood that the cell keeps, 0 … 1: the
 // posterior mean under the roughness of the surface (variance of the cells' means about the plane) and the noise of
 // `count` points. A plane moved off its own points would pull each scan that sees them again.
@@ -118,14 +121,26 @@ Moments PlaneFitter::cube_around(const MapBlock& block, int slot) const {
   return sum.in_metres(cell_m_);
 }
 
+// True if the noise of the plane's points reaches a face of the cell that the plane runs along: the points beyond are in
+// the next cell, and the mean of those inside is off the surface.
+bool PlaneFitter::cut_off(const Plane& plane) const {
+  Eigen::Index axis = 0;
+  plane.normal.cwiseAbs().maxCoeff(&axis);
+  return std::abs(plane.mean[axis]) > 0.5F * cell_m_ - kNoiseReachM;
+}
+
 bool PlaneFitter::fit(Surroundings& around, const MapCell& cell, PackedPlane& packed) const {
   PlaneCriteria own = criteria_;
   own.max_normal_deviation_rad *= kOwnCellDeviationFactor;
   Plane plane;  // about the cell's centre
-  if (!fit_plane(cell.moments.in_metres(cell_m_), own, plane) &&
-      !fit_plane(neighbourhood(around, cell), criteria_, plane) &&
-      !fit_plane(cube_around(around.centre(), cell.slot), criteria_, plane)) {
-    return false;
+  const bool own_fits = fit_plane(cell.moments.in_metres(cell_m_), own, plane);
+  if (!own_fits || cut_off(plane)) {
+    Plane wider;
+    if (fit_plane(neighbourhood(around, cell), criteria_, wider)) {
+      plane = wider;
+    } else if (!own_fits && !fit_plane(cube_around(around.centre(), cell.slot), criteria_, plane)) {
+      return false;
+    }
   }
   // The stored point is the cell's own mean, moved towards the plane. A plane far from the mean is not the cell's
   // own surface.

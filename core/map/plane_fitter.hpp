@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fits the plane of a cell to the smallest neighbourhood that has a good one: the cell alone, the cell and
-// its neighbours, or a cube of 4 x 4 x 4 cells. The cube, about 1 m wide, gives normals to far walls, where
-// lidar rings are farther apart than cells.
+// Fits the plane of a cell to the smallest neighbourhood that has a good one: the cell alone (unless a face of it cuts the
+// noise of the surface in two), the cell and its neighbours, or a cube of 4 x 4 x 4 cells. The cube, about 1 m wide, gives
+// normals to far walls, where lidar rings are farther apart than cells.
 #pragma once
 
 #include <Eigen/Core>
@@ -34,6 +34,7 @@ class PlaneFitter {
   // A block and its 26 neighbours, looked up on first use.
   class Surroundings;
 
+  [[nodiscard]] bool cut_off(const Plane& plane) const;
   bool fit(Surroundings& around, const MapCell& cell, PackedPlane& packed) const;
   [[nodiscard]] Moments neighbourhood(Surroundings& around, const MapCell& centre) const;
   [[nodiscard]] Moments cube_around(const MapBlock& block, int slot) const;

@@ -41,6 +41,8 @@ constexpr double kSteepestRad = 5.0 * kRadPerDeg;
 // Heights that are tried: some peaks are walls. Least distance between the two planes [m].
 constexpr int kMostAttempts = 6;
 constexpr double kApartM = 1.0;
+// Least points of the second plane, as a share of the first's: a ceiling is no smaller than that, ledges of walls are.
+constexpr double kLeastSecondShare = 0.1;
 
 // Normal equations of the points within `band_m` of `plane` and `radius_m` of the robot.
 struct Fit {
@@ -137,6 +139,7 @@ LevelPlanes level_planes(std::span<const LevelPoint> p_level) {
     if (planes.at(found)) ++found;
   }
   if (planes[1] && planes[1]->points > planes[0]->points) std::swap(planes[0], planes[1]);
+  if (planes[1] && planes[1]->points < kLeastSecondShare * planes[0]->points) planes[1].reset();
   return planes;
 }
 

@@ -23,7 +23,7 @@ struct Chunk {
   Eigen::Array<float, kChunk, 6> jacobian;
   Column residual_m;
   Column squared_lever_m2;
-  Column variance;  // of a residual over noise_m^2: 1 where it does not depend on the fixed directions
+  Column variance;  // of a residual over noise_m^2: 1 where it does not depend on pose_variance
   int count = 0;    // rows in use; the others are zero
 };
 
@@ -51,7 +51,7 @@ void load(std::span<const Pair> pairs, const PairNoise& noise, Chunk& chunk) {
   chunk.squared_lever_m2 = p.col(0).square() + p.col(1).square() + p.col(2).square();
   chunk.variance.setOnes();
   for (int k = 0; k < 6; ++k) {
-    const float relative = noise.fixed_variance[k] / (noise.noise_m * noise.noise_m);
+    const float relative = noise.pose_variance[k] / (noise.noise_m * noise.noise_m);
     if (relative > 0.0F) {
       chunk.variance += relative * chunk.jacobian.col(k).square();
     }

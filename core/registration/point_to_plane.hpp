@@ -16,9 +16,10 @@ namespace isobar {
 
 /// Noise model of a residual.
 struct PairNoise {
-  /// Variance of the fixed directions, twist coordinates [rad^2, m^2], zero in the free directions: pairs
-  /// that depend on the fixed height or on gravity's attitude get a smaller weight.
-  Eigen::Matrix<float, 6, 1> fixed_variance = Eigen::Matrix<float, 6, 1>::Zero();
+  /// Variance of the pose of a scan in the map that no solution removes, twist coordinates [rad^2, m^2]: of the fixed
+  /// directions, and of the attitudes of the scans that laid the planes. Pairs that depend on it, by their lever or
+  /// their normal, get a smaller weight.
+  Eigen::Matrix<float, 6, 1> pose_variance = Eigen::Matrix<float, 6, 1>::Zero();
   /// 1 in the free directions, 0 in the fixed ones. The scale weights residuals by their normal's free part.
   Eigen::Matrix<float, 6, 1> free = Eigen::Matrix<float, 6, 1>::Ones();
   float noise_m = 0.02F;  ///< standard deviation of scan and map together; smallest scale of the loss

@@ -45,7 +45,8 @@ struct RegistrationConfig {
   double degenerate_information = 0.01;
   /// Error of height between a scan and the map when pressure fixes it [m].
   double height_error_m = 0.04;
-  /// Error of roll and pitch when gravity fixes them [deg].
+  /// Error of a scan's roll and pitch against the scans that laid the map [deg]: far points count by it, not by the noise
+  /// of the range.
   double attitude_error_deg = 0.4;
 
   // The prior of one step.
@@ -53,16 +54,15 @@ struct RegistrationConfig {
   double step_distance_error = 0.05;
   /// Smallest error of a step's translation [m].
   double step_translation_floor_m = 0.002;
-  /// Smallest error of a step's rotation [deg]. A gyro alone is better over a tenth of a second; the attitude
-  /// filter is not, since its corrections are steps.
-  double step_rotation_floor_deg = 0.2;
+  /// Smallest error of a step's rotation [deg]: that of a gyro on a shaking robot over a tenth of a second.
+  double step_rotation_floor_deg = 0.05;
   /// Error of a step's rotation as share of the turn: an offset of 5 ms between the
   /// clocks of lidar and IMU is 5 % of a scan.
   double step_rotation_share = 0.05;
   /// Error of the mounts of lidar and IMU against each other [deg], 1 sigma, before any evidence.
   double mount_error_deg = 0.5;
   /// Error of roll and pitch from gravity in the adaptive method [deg], 1 sigma of one scan.
-  double gravity_error_deg = 0.1;
+  double gravity_error_deg = 0.2;
   /// Without wheels: random acceleration [m/s^2].
   double free_acceleration_m_s2 = 3.0;
   /// Without wheels: time constant with which a velocity decays that no scan confirms [s].

@@ -10,16 +10,20 @@ namespace {
 // Bounds of the adaptive voxel. Finer than 5 cm resolves the lidar's noise, coarser than 3 m misses objects.
 constexpr float kFinestVoxelM = 0.05F;
 constexpr float kCoarsestVoxelM = 3.0F;
+// Step of the order without pattern: a prime beyond the largest scan.
+constexpr std::size_t kStep = 1'000'003;
 }  // namespace
 
 Sampler::Sampler(double map_voxel_m, std::size_t sample_points)
     : map_grid_(static_cast<float>(map_voxel_m)),
+      beside_m_(static_cast<float>(map_voxel_m)),
       sample_points_(sample_points),
       finest_voxel_m_(std::max(static_cast<float>(map_voxel_m), kFinestVoxelM)),
       sample_voxel_m_(std::max(4.0F * static_cast<float>(map_voxel_m), kFinestVoxelM)),
       sample_grid_(sample_voxel_m_),
       map_filter_(RegisteredScan::kMaxPoints),
-      sample_filter_(RegisteredScan::kMaxPoints) {
+      sample_filter_(RegisteredScan::kMaxPoints),
+      deciders_(RegisteredScan::kMaxPoints) {
   sample_.reserve(sample_points);
   candidates_.reserve(RegisteredScan::kMaxPoints);
 }
@@ -30,7 +34,7 @@ void Sampler::start(RegisteredScan& out) {
   map_filter_.start();
   sample_filter_.start();
   sample_grid_ = VoxelGrid(sample_voxel_m_);
-  last_voxel_.fill(VoxelGrid::kNowhere);
+  ends_.fill({});
 }
 
 void Sampler::add(std::span<const ScanPoint> points, RegisteredScan& out) {
@@ -45,27 +49,48 @@ void Sampler::add_part(std::span<const ScanPoint> points, RegisteredScan& out) {
   // Near the sensor one laser hits a voxel many times in a row: this rejects most points before the hash
   // table. Branch-free: the outcome is unpredictable and && would mispredict.
   std::size_t arrivals = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::uint64_t voxel = map_grid_.voxel_of(points[i]);
-    std::uint64_t& last = last_voxel_[points[i].ring];
-    arrivals_[arrivals] = {voxel, i};
-    arrivals += std::size_t{voxel != last} & std::size_t{voxel != VoxelGrid::kNowhere};
-    last = voxel;
+  for (const ScanPoint& point : points) {
+    RingEnd& end = ends_[point.ring];
+    arrivals_[arrivals] = {end.voxel, end.point, point};
+    arrivals += std::size_t{end.arrives()};
+    end = {end.voxel, map_grid_.voxel_of(point), point};
   }
-  for (const Arrival& arrival : std::span(arrivals_).first(arrivals)) {
-    if (!map_filter_.first(arrival.voxel)) {
-      continue;
-    }
-    const ScanPoint point = points[arrival.index];
-    out.points[out.point_count++] = point;
-    if (sample_filter_.first(sample_grid_.voxel_of(point))) {
+  for (const Arrival& arrival : std::span(arrivals_).first(arrivals)) keep(arrival, out);
+}
+
+bool Sampler::beside(const ScanPoint& a, const ScanPoint& b) const {
+  const float x_m = a.x_m - b.x_m;
+  const float y_m = a.y_m - b.y_m;
+  const float z_m = a.z_m - b.z_m;
+  return x_m * x_m + y_m * y_m + z_m * z_m < beside_m_ * beside_m_;
+}
+
+void Sampler::keep(const Arrival& arrival, RegisteredScan& out) {
+  if (!map_filter_.first(arrival.voxel)) return;
+  const ScanPoint kept = beside(arrival.point, arrival.next) ? arrival.next : arrival.point;
+  deciders_[out.point_count] = arrival.point;
+  out.points[out.point_count++] = kept;
+}
+
+// One point for each voxel of the coarser grid, in an order without pattern: in the order of firing it would be the lowest
+// laser's or the left edge's, while the map holds them all.
+void Sampler::choose_candidates(const RegisteredScan& out) {
+  const std::size_t count = out.point_count;
+  std::size_t index = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    index += kStep;  // prime and larger than any count: every index once
+    if (sample_filter_.first(sample_grid_.voxel_of(deciders_[index % count]))) {
+      const ScanPoint& point = out.points[index % count];
       candidates_.emplace_back(point.x_m, point.y_m, point.z_m);
     }
   }
 }
 
-void Sampler::finish() {
-  // Every n-th candidate: they are in order of azimuth.
+void Sampler::finish(RegisteredScan& out) {
+  for (const RingEnd& end : ends_) {
+    if (end.arrives()) keep({end.voxel, end.point, end.point}, out);
+  }
+  choose_candidates(out);
   sample_.clear();
   const std::size_t wanted = std::min(sample_points_, candidates_.size());
   for (std::size_t i = 0; i < wanted; ++i) {

@@ -18,7 +18,12 @@ namespace isobar {
 ///
 ///     sampler.start(out);
 ///     for (each part) sampler.add(part, out);
-///     sampler.finish();
+///     sampler.finish(out);
+///
+/// The voxel of a return decides whether the *next* return of its laser is kept, if that one lies beside it. The noise of
+/// a kept point is then independent of its choice. Of a surface along a face of the grid, points chosen by their own voxel
+/// would be the outliers on both sides, equal in number, and the surface would move onto the face: a floor follows the
+/// tilt of the robot by half, and walls its yaw.
 class Sampler {
  public:
   /// `map_voxel_m`: edge of the voxels, one point each for the map. `sample_points`: upper bound of sample().
@@ -26,33 +31,48 @@ class Sampler {
 
   /// Begins a scan: sets out.point_count to 0.
   void start(RegisteredScan& out);
-  /// Appends to out.points the first of `points` (p_base) in each voxel that is still empty. `points` may lie
-  /// in out.points itself. All parts of a scan together: at most RegisteredScan::kMaxPoints.
+  /// Appends to out.points one of `points` (p_base, in the order of firing) for each voxel that is still empty; the last
+  /// return of each laser waits. `points` may lie in out.points itself. All parts of a scan together: at most
+  /// RegisteredScan::kMaxPoints.
   void add(std::span<const ScanPoint> points, RegisteredScan& out);
-  /// Draws the sample from the points that were kept.
-  void finish();
+  /// Appends the returns that waited, and draws the sample from the points that were kept.
+  void finish(RegisteredScan& out);
 
   /// The sample of the last scan, p_base.
   [[nodiscard]] std::span<const Eigen::Vector3f> sample() const { return sample_; }
 
  private:
   static constexpr std::size_t kPart = 512;
-  /// A point whose voxel differs from that of the point before it on its ring.
+  /// A return whose voxel differs from that of the return before it on its ring, and the return after it.
   struct Arrival {
     std::uint64_t voxel;
-    std::size_t index;  // in its part
+    ScanPoint point;
+    ScanPoint next;
+  };
+  /// The last return of a ring.
+  struct RingEnd {
+    std::uint64_t voxel_before = VoxelGrid::kNowhere;
+    std::uint64_t voxel = VoxelGrid::kNowhere;
+    ScanPoint point{};
+
+    [[nodiscard]] bool arrives() const { return (voxel != voxel_before) & (voxel != VoxelGrid::kNowhere); }
   };
 
+  [[nodiscard]] bool beside(const ScanPoint& a, const ScanPoint& b) const;
+  void keep(const Arrival& arrival, RegisteredScan& out);
+  void choose_candidates(const RegisteredScan& out);
   void add_part(std::span<const ScanPoint> points, RegisteredScan& out);
 
   VoxelGrid map_grid_;
+  float beside_m_;  // largest distance of two returns beside each other
   std::size_t sample_points_;
   float finest_voxel_m_;
   float sample_voxel_m_;  // adapts to the scene, so that the sample's size stays near sample_points_
   VoxelGrid sample_grid_;
   VoxelFilter map_filter_;
   VoxelFilter sample_filter_;
-  std::array<std::uint64_t, 256> last_voxel_{};  // by ring
+  std::vector<ScanPoint> deciders_;  // the return whose voxel decided, for each kept point
+  std::array<RingEnd, 256> ends_{};  // by ring
   std::array<Arrival, kPart> arrivals_{};
   std::vector<Eigen::Vector3f> sample_;
   std::vector<Eigen::Vector3f> candidates_;

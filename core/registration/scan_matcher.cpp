@@ -2,6 +2,7 @@
 #include "core/registration/scan_matcher.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/geometry.hpp"
@@ -23,14 +24,15 @@ ScanMatcher::ScanMatcher(const RegistrationConfig& config, const Eigen::Vector3d
     : config_(config), p_base_lidar_(p_base_lidar), correspondences_(config.sample_points) {}
 
 MatchResult ScanMatcher::match(const MatchProblem& problem) {
-  const PairNoise noise = pair_noise(problem);
+  const std::array<PairNoise, 2> noise{pair_noise(problem, false), pair_noise(problem, true)};
   SearchSchedule schedule(config_, free_error_m(problem.prediction, problem.traits.basis));
   MatchResult result;
   result.T_map_base = problem.prediction.T_map_base;
   correspondences_.start(problem.map, result.T_map_base.translation());
   Step step;
   for (int i = 0; i < config_.max_iterations; ++i) {
-    const Iteration iteration = iterate(problem, noise, schedule, result.T_map_base);
+    const Iteration iteration =
+        iterate(problem, noise[schedule.settled() ? 1 : 0], schedule, result.T_map_base);
     step = iteration.step;
     if (!step.solved) return result;
     result.T_map_base = moved_by(step.twist, result.T_map_base);
@@ -60,15 +62,18 @@ ScanMatcher::Iteration ScanMatcher::iterate(const MatchProblem& problem, const P
   return iteration;
 }
 
-PairNoise ScanMatcher::pair_noise(const MatchProblem& problem) const {
+PairNoise ScanMatcher::pair_noise(const MatchProblem& problem, bool settled) const {
   PairNoise noise;
   const Vector6d free = free_directions(problem.traits.basis);
   const double attitude = config_.attitude_error_deg * kRadPerDeg;
   const double height2 =
       config_.height_error_m * config_.height_error_m + std::clamp(problem.height_variance_m2, 0.0, 1.0);
-  Vector6d fixed;
-  fixed << attitude * attitude, attitude * attitude, 0.0, 0.0, 0.0, height2;
-  noise.fixed_variance = fixed.cwiseProduct(Vector6d::Ones() - free).cast<float>();
+  Vector6d variance;
+  variance << attitude * attitude, attitude * attitude, 0.0, 0.0, 0.0, height2;
+  // Roll and pitch are in doubt whether the scan is free in them or not: the planes were laid by scans with such errors,
+  // and far from their lidar 0.4 deg outweigh the noise of the range. The search needs its far points as they are.
+  const Vector6d in_doubt = settled ? Vector6d(1.0, 1.0, 0.0, 0.0, 0.0, 0.0) : Vector6d::Zero();
+  noise.pose_variance = variance.cwiseProduct((Vector6d::Ones() - free).cwiseMax(in_doubt)).cast<float>();
   noise.free = free.cast<float>();
   noise.noise_m = static_cast<float>(config_.min_residual_scale_m);
   return noise;

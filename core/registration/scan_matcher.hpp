@@ -67,7 +67,7 @@ class ScanMatcher {
     double residual_rms_m = 0.0;
   };
 
-  [[nodiscard]] PairNoise pair_noise(const MatchProblem& problem) const;
+  [[nodiscard]] PairNoise pair_noise(const MatchProblem& problem, bool settled) const;
   [[nodiscard]] PriorTerm prior_term(const Prediction& prediction, const Eigen::Isometry3d& T_map_base) const;
   [[nodiscard]] SolverWeights weights(float scale_m, double share) const;
   Iteration iterate(const MatchProblem& problem, const PairNoise& noise, const SearchSchedule& schedule,

@@ -18,7 +18,7 @@ void prepare_scan(const Scan& scan, const PriorHistory& history, const ScanMotio
         deskewer.move(points.subspan(done, std::min(kPart, points.size() - done)), moved.data());
     sampler.add({moved.data(), kept}, out);
   }
-  sampler.finish();
+  sampler.finish(out);
 }
 
 }  // namespace isobar

@@ -29,6 +29,8 @@ class SearchSchedule {
   /// Largest distance of a correspondence [m].
   [[nodiscard]] double distance_m() const { return distance_m_; }
 
+  /// True once a fine step was small: what follows refines the pose.
+  [[nodiscard]] bool settled() const { return settled_; }
   /// Which planes count.
   [[nodiscard]] PairChoice choice() const { return settled_ ? PairChoice::kOwnCell : PairChoice::kNearest; }
 

@@ -60,7 +60,7 @@ StageCosts StageProbe::split(const Scan& scan, const MapSnapshot& map, const Reg
   const std::span<const ScanPoint> deskewed(scratch_->points, scratch_->point_count);
   sampler_.start(*scratch_);
   sampler_.add(deskewed, *scratch_);
-  sampler_.finish();
+  sampler_.finish(*scratch_);
   costs.sample_ms = sampling.elapsed_ms();
 
   const double match_ms = time_match(map, registered.pose);

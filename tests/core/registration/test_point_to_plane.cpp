@@ -103,7 +103,7 @@ TEST_CASE("a tenth of far outliers does not shift the minimum away from the wall
 
 TEST_CASE("a pair has weight one if it does not depend on the fixed height, and a smaller one if it does") {
   PairNoise noise;
-  noise.fixed_variance(5) = 0.06F * 0.06F;
+  noise.pose_variance(5) = 0.06F * 0.06F;
   noise.noise_m = 0.02F;
   const std::vector<Pair> wall{{Eigen::Vector3f::UnitX(), Eigen::Vector3f::UnitX(), 0.0F}};
   const std::vector<Pair> ramp{{Eigen::Vector3f::UnitX(), Eigen::Vector3f(0.6F, 0.0F, 0.8F), 0.0F}};
@@ -115,7 +115,7 @@ TEST_CASE("a pair has weight one if it does not depend on the fixed height, and 
 TEST_CASE("the sums equal those of a plain loop in double precision, for any number of pairs") {
   std::mt19937 random(14);
   PairNoise noise;
-  noise.fixed_variance << 1e-4F, 2e-4F, 0.0F, 0.0F, 0.0F, 9e-4F;
+  noise.pose_variance << 1e-4F, 2e-4F, 0.0F, 0.0F, 0.0F, 9e-4F;
   constexpr double kScaleM = 0.03;
   for (const int count : {0, 1, 63, 64, 65, 128, 1'801}) {
     std::vector<Pair> pairs;
@@ -126,7 +126,7 @@ TEST_CASE("the sums equal those of a plain loop in double precision, for any num
                        random_vector(random, 0.05F).x()});
       const Vector6d jacobian = closed_form_jacobian(pairs.back());
       const double variance =
-          1.0 + jacobian.cwiseAbs2().dot(noise.fixed_variance.cast<double>()) / (0.02 * 0.02);
+          1.0 + jacobian.cwiseAbs2().dot(noise.pose_variance.cast<double>()) / (0.02 * 0.02);
       const double error2 = static_cast<double>(pairs.back().residual_m) * pairs.back().residual_m;
       const double loss = 1.0 + error2 / (variance * 9.0 * kScaleM * kScaleM);
       const double weight = 1.0 / (loss * loss * variance);
@@ -152,7 +152,7 @@ TEST_CASE("the sums equal those of a plain loop in double precision, for any num
 TEST_CASE("the scale does not depend on the order of the pairs; without pairs it is the smallest") {
   std::mt19937 random(15);
   PairNoise noise;
-  noise.fixed_variance << 1e-4F, 1e-4F, 0.0F, 0.0F, 0.0F, 4e-4F;
+  noise.pose_variance << 1e-4F, 1e-4F, 0.0F, 0.0F, 0.0F, 4e-4F;
   std::vector<Pair> pairs;
   for (int i = 0; i < 777; ++i) {
     pairs.push_back({random_vector(random, 3.0F), random_vector(random, 1.0F).normalized(),

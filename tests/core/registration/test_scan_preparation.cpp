@@ -67,7 +67,7 @@ TEST_CASE("one pass in parts gives the same bits as deskewing the whole scan and
     const std::size_t kept = deskewer.move({scan->points, scan->point_count}, expected->points);
     whole.start(*expected);
     whole.add({expected->points, kept}, *expected);
-    whole.finish();
+    whole.finish(*expected);
     out->point_count = 12'345;  // stale content of the buffer
     prepare_scan(*scan, history, motion, deskewer, in_parts, *out);
     REQUIRE(out->point_count == expected->point_count);
