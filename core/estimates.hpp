@@ -64,6 +64,9 @@ struct Prior {
 
   double wheel_turn_rad = 0.0;  ///< sum of the turns about z by the wheels; gaps count as zero
 
+  /// Bias of the accelerometer as far as the attitude filter has learnt it, in base_link: T_odom_base is free of it.
+  Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();
+
   double roll_pitch_variance_rad2 = 0.0;   ///< of roll and of pitch, each
   double yaw_rate_variance_rad2_s2 = 0.0;  ///< of the angular rate about z, bias included
   double velocity_variance_m2_s2 = 0.0;    ///< of each axis of v_base_m_s

@@ -75,6 +75,7 @@ class AttitudeFilter {
   void update_gyro_bias(const Eigen::Vector3d& bias_rad_s, double sigma_rad_s);
 
   [[nodiscard]] const Eigen::Quaterniond& q_world_base() const { return q_world_base_; }
+  [[nodiscard]] const Eigen::Vector3d& accel_bias_m_s2() const { return accel_bias_; }
   [[nodiscard]] const Eigen::Vector3d& rate_rad_s() const { return rate_rad_s_; }  ///< bias removed
   [[nodiscard]] const Eigen::Vector3d& gyro_bias_rad_s() const { return gyro_bias_; }
   [[nodiscard]] double roll_pitch_variance_rad2() const { return 0.5 * (P_(0, 0) + P_(1, 1)); }

@@ -53,6 +53,7 @@ void PriorEstimator::State::fill_attitude(const ImuSample& sample, Prior& out) c
   out.attitude_valid = attitude.started();
   if (attitude.started()) {
     out.T_odom_base.linear() = attitude.q_world_base().toRotationMatrix();
+    out.accel_bias_m_s2 = attitude.accel_bias_m_s2();
     out.w_base_rad_s = attitude.rate_rad_s();
     out.roll_pitch_variance_rad2 = attitude.roll_pitch_variance_rad2();
     out.yaw_rate_variance_rad2_s2 = attitude.yaw_rate_variance_rad2_s2();

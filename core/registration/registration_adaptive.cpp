@@ -31,6 +31,19 @@ double moving_part(double roll_pitch_variance_rad2) {
   return std::max(0.0, roll_pitch_variance_rad2 - squared(kBiasRad));
 }
 
+Eigen::Vector3d up_of(const Prior& prior) { return prior.T_odom_base.linear().row(2).transpose(); }
+
+// Direction of the accelerometer's mean force, unit vector in base_link. Against it the offset is constant; the attitude
+// filter learns the bias of the accelerometer, by tenths of a degree in the first minutes, and its up moves with that.
+Eigen::Vector3d up_force_of(const Prior& prior) {
+  return (kGravity * up_of(prior) + prior.accel_bias_m_s2).normalized();
+}
+
+// The offset of the mean force as an offset of the attitude filter's up.
+Eigen::Vector3d offset_of_attitude(const Prior& prior, const Eigen::Vector3d& offset_of_force_rad) {
+  return up_of(prior).cross(up_force_of(prior)) + offset_of_force_rad;
+}
+
 }  // namespace
 
 // Looks for level surfaces while the robot stands: what they say of gravity's offset must be known before the map
@@ -41,7 +54,7 @@ bool Registration::find_level(const Scan& scan, const Prior& prior, RegisteredSc
                       prior.w_base_rad_s.norm() < kHaltRadS;
   if (!stands) {
     state_.tilt.restart(prior.roll_pitch_variance_rad2);
-    state_.motion.start(prior, state_.tilt.offset_rad());
+    state_.motion.start(prior, offset_of_attitude(prior, state_.tilt.offset_rad()));
     return true;
   }
   if (state_.level_since_ns == 0) {
@@ -54,20 +67,22 @@ bool Registration::find_level(const Scan& scan, const Prior& prior, RegisteredSc
   level_.add({out.points, out.point_count});
   out.point_count = 0;
   if (seconds_between(state_.level_since_ns, prior.stamp_ns) < kLevelS) return false;
-  const Eigen::Vector3d up_base = prior.T_odom_base.linear().row(2).transpose();
+  const Eigen::Vector3d up_base = up_of(prior);
   const auto level = level_.find(up_base, prior.roll_pitch_variance_rad2);
   state_.tilt.restart(prior.roll_pitch_variance_rad2);
   if (level) {
     state_.tilt.restart_on_level(level->surfaces_covariance_rad2.topLeftCorner<2, 2>());
   }
-  state_.motion.start(prior,
-                      level ? level->up_by_gravity.cross(level->up_by_surfaces) : state_.tilt.offset_rad());
+  state_.motion.start(prior, level ? level->up_by_gravity.cross(level->up_by_surfaces)
+                                   : offset_of_attitude(prior, state_.tilt.offset_rad()));
   return true;
 }
 
 Prediction Registration::predict(const Prior& end, const MethodTraits& traits) {
-  Prediction prediction = state_.motion.predict(
-      end, traits, {.offset_rad = state_.tilt.offset_rad(), .sigma_rad = state_.tilt.offset_sigma_rad()});
+  Prediction prediction =
+      state_.motion.predict(end, traits,
+                            {.offset_rad = offset_of_attitude(end, state_.tilt.offset_rad()),
+                             .sigma_rad = state_.tilt.offset_sigma_rad()});
   if (traits.method != Method::kAdaptive) return prediction;
   MapHeight& height = state_.height;
   height.advance_to(end.stamp_ns, state_.history);
@@ -137,7 +152,7 @@ void Registration::own_tilt(const Prior& end, PoseEstimate& pose) {
   const Eigen::Vector3d step_m = pose.T_map_base.translation() - state_.last.T_map_base.translation();
   const double dt_s = std::clamp(seconds_between(state_.last.stamp_ns, pose.stamp_ns), 0.0, 1.0);
   state_.tilt.add(
-      pose.T_map_base.linear(), end.T_odom_base.linear().row(2).transpose(), dt_s, step_m.norm(),
+      pose.T_map_base.linear(), up_force_of(end), dt_s, step_m.norm(),
       moving_part(end.roll_pitch_variance_rad2),
       squared(gravity_sigma_rad(config_.gravity_error_deg * kRadPerDeg, state_.tilt.offset_sigma_rad())));
 }

@@ -62,7 +62,7 @@ struct RegistrationConfig {
   /// Error of the mounts of lidar and IMU against each other [deg], 1 sigma, before any evidence.
   double mount_error_deg = 0.5;
   /// Error of roll and pitch from gravity in the adaptive method [deg], 1 sigma of one scan.
-  double gravity_error_deg = 0.2;
+  double gravity_error_deg = 0.3;
   /// Without wheels: random acceleration [m/s^2].
   double free_acceleration_m_s2 = 3.0;
   /// Without wheels: time constant with which a velocity decays that no scan confirms [s].

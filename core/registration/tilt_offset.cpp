@@ -12,9 +12,9 @@ namespace {
 
 // Random walk of the map's tilt with the way [rad/sqrt(m)]: 0.02 deg a metre of new ground.
 constexpr double kTiltWalkRadSqrtM = 6e-4;
-// Random walk of the offset [rad/sqrt(s)]: the attitude filter learns the accelerometer's bias, by tenths of a degree in
-// the first minutes, and gravity's direction moves with it.
-constexpr double kOffsetWalkRadSqrtS = 4e-4;
+// Random walk of the offset of the mean force [rad/sqrt(s)]: temperature moves the accelerometer's bias by 2 mg in minutes,
+// a flexing mast as much.
+constexpr double kOffsetWalkRadSqrtS = 2e-4;
 // Correlation time of gravity's direction in an attitude filter [s], and the least error of it and of a scan [rad].
 constexpr double kGravityTimeS = 4.0;
 constexpr double kLeastSigmaRad = 1.2e-3;
