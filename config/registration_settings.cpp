@@ -42,11 +42,7 @@ void add_information(RegistrationConfig& r, SectionBuilder& s) {
            "correlated, and counting each would make the covariance too small.");
   s.number("normal_error_deg", &r.normal_error_deg, "deg", 0.0, 10.0,
            "Error of the map's normals, 1 sigma. Along a corridor it imitates information, which is "
-           "subtracted.");
-  s.number(
-      "degenerate_information", &r.degenerate_information, "", 0.0, 0.3,
-      "Information per pair below which a direction is degenerate. 0.01: one pair in a hundred faces it; "
-      "1/3 is a scan that constrains all directions alike.");
+           "subtracted; a direction whose information may be such noise is left to the prior.");
   s.number("height_error_m", &r.height_error_m, "m", 0.0, 1.0,
            "Error of height between a scan and the map while pressure fixes it, 1 sigma. 0.04: slow local "
            "pressure noise (height.turbulence_sigma_m).");

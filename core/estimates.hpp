@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 
+#include "core/localisability.hpp"
 #include "core/samples.hpp"
 
 namespace isobar {
@@ -69,6 +70,7 @@ struct Prior {
 
   double roll_pitch_variance_rad2 = 0.0;   ///< of roll and of pitch, each
   double yaw_rate_variance_rad2_s2 = 0.0;  ///< of the angular rate about z, bias included
+  double yaw_bias_variance_rad2_s2 = 0.0;  ///< the part of it that lasts: the gyro's bias
   double velocity_variance_m2_s2 = 0.0;    ///< of each axis of v_base_m_s
 
   bool attitude_valid = false;  ///< aligned to gravity
@@ -141,7 +143,8 @@ struct PoseEstimate {
   Method method = Method::k3Dof;            ///< configured method
   Method effective_method = Method::k3Dof;  ///< method that ran: 3-DOF without any height runs as 4-DOF
   HeightSource height_source = HeightSource::kNone;
-  bool degenerate = false;  ///< the scan leaves a free direction unconstrained, which then follows the prior
+  bool degenerate =
+      false;  ///< the scan leaves a free direction unconstrained: localisability.weak_count() > 0
 
   Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_map_odom = Eigen::Isometry3d::Identity();  ///< T_map_base = T_map_odom * T_odom_base
@@ -155,6 +158,8 @@ struct PoseEstimate {
   double residual_rms_m = 0.0;       ///< weighted point-to-plane rms
   Eigen::Vector3d smallest_eigenvalues =
       Eigen::Vector3d::Zero();  ///< of the information matrix per pair, ascending
+  Localisability
+      localisability;  ///< how well the scan holds each free direction, and who holds the weak ones
   AltimeterState altimeter;
   MountState mount;
   bool for_map = true;  ///< the map may take the scan; false on moving ground and where the pose is doubtful

@@ -44,4 +44,13 @@ inline constexpr NameTable<DriftSuspect, 4> kDriftSuspectNames{{{
     {DriftSuspect::kUnknown, "robot_or_base_station"},
 }}};
 
+inline constexpr NameTable<Holder, 6> kHolderNames{{{
+    {Holder::kScan, "scan"},
+    {Holder::kGravityDirection, "gravity"},
+    {Holder::kGyro, "gyro"},
+    {Holder::kWheels, "wheels"},
+    {Holder::kAltimeter, "altimeter"},
+    {Holder::kMotion, "motion"},
+}}};
+
 }  // namespace isobar

@@ -248,10 +248,12 @@ void HealthMonitor::fill_registration(const StatusSnapshot& now, HealthReport& r
   } else {
     add_entry(report, "registration",
               registration.mode == PoseMode::kRegistered ? HealthLevel::kOk : HealthLevel::kWarning,
-              fmt::format("mode: {}, method: {}, overlap {:.2f}{}", kPoseModeNames.name(registration.mode),
-                          kMethodNames.name(registration.effective_method), registration.overlap,
-                          registration.degenerate ? ", degenerate" : ""),
+              fmt::format("mode: {}, method: {}, overlap {:.2f}", kPoseModeNames.name(registration.mode),
+                          kMethodNames.name(registration.effective_method), registration.overlap),
               registration.overlap);
+    if (registration.mode == PoseMode::kRegistered) {
+      add_localisability(report, registration.localisability);
+    }
   }
   if (registration.scans > 0) {
     add_entry(report, "registration/ms", idle ? HealthLevel::kStale : HealthLevel::kOk,

@@ -73,4 +73,7 @@ void add_missing_files(ipc::HealthReport& report, const std::string& missing);
 /// Entry of the faults that the shared-memory library reported and survived, see ipc::library_fault_count().
 void add_library_faults(ipc::HealthReport& report, std::uint64_t now, std::uint64_t before);
 
+/// Entry of the directions of the pose that the scans leave open, and of who holds them. A warning where nobody does.
+void add_localisability(ipc::HealthReport& report, const Localisability& localisability);
+
 }  // namespace isobar

@@ -147,7 +147,7 @@ void RegistrationThread::on_pose(const PoseEstimate& pose, const Prior& /*prior*
   draft_status_.mode = pose.mode;
   draft_status_.effective_method = pose.effective_method;
   draft_status_.overlap = pose.overlap;
-  draft_status_.degenerate = pose.degenerate;
+  draft_status_.localisability = pose.localisability;
   draft_status_.lost = pose.lost;
   draft_status_.lost_since_ns = pose.lost_since_ns;
   draft_status_.altimeter = pose.altimeter;

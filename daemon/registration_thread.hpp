@@ -60,7 +60,7 @@ struct RegistrationStatus {
   double registration_ms = 0.0;
   PoseMode mode = PoseMode::kInitializing;
   Method effective_method = Method::k3Dof;
-  bool degenerate = false;
+  Localisability localisability;
   LostReason lost = LostReason::kNone;  ///< of the last pose
   std::int64_t lost_since_ns = 0;
   AltimeterState altimeter;  ///< adaptive method only, as the next one

@@ -47,6 +47,14 @@ void pull_to_gravity(const Eigen::Vector3d& up_base, double sigma_rad, Predictio
   prediction.deviation.head<2>().setConstant(std::sqrt(weight * gravity_variance));
 }
 
+// Sources of the components of a prediction.
+std::array<Holder, 6> holders_of(const MethodTraits& method, bool followed, bool on_wheels) {
+  const Holder turn = followed ? Holder::kGyro : Holder::kMotion;
+  const Holder tilt = method.tilt != Constraint::kFree && followed ? Holder::kGravityDirection : turn;
+  const Holder way = on_wheels ? Holder::kWheels : Holder::kMotion;
+  return {tilt, tilt, turn, way, way, method.follows_altimeter() ? Holder::kAltimeter : way};
+}
+
 double non_negative_root(double x) { return std::sqrt(std::max(x, 0.0)); }
 
 }  // namespace
@@ -148,6 +156,7 @@ Prediction MotionModel::predict(const Prior& now, const MethodTraits& method,
                     prediction);
   }
   prediction.T_map_odom = prediction.T_map_base * now.T_odom_base.inverse();
+  prediction.holders = holders_of(method, followed, on_wheels);
   return prediction;
 }
 

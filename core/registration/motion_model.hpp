@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 
 #include "core/estimates.hpp"
@@ -19,6 +20,9 @@ struct Prediction {
   Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
   Vector6d deviation = Vector6d::Zero();  ///< of each component [rad, m]
   Eigen::Isometry3d T_map_odom = Eigen::Isometry3d::Identity();
+  /// Who knows each component.
+  std::array<Holder, 6> holders{Holder::kMotion, Holder::kMotion, Holder::kMotion,
+                                Holder::kMotion, Holder::kMotion, Holder::kMotion};
 };
 
 /// Constant offset between gravity and the lidar, see TiltOffset: rotation vector in axes of base_link, 1 sigma.

@@ -85,7 +85,8 @@ bool PlaceSearch::can_judge(std::size_t sampled_points) { return sampled_points 
 bool PlaceSearch::fits(const Prediction& expected, const MatchResult& result) const {
   const double climb_m = result.T_map_base.translation().z() - expected.T_map_base.translation().z();
   // The floor alone matches wherever the robot is.
-  const bool floor_only = result.degenerate && result.overlap < kDegenerateShare * known_overlap_;
+  const bool floor_only =
+      result.localisability.weak_count() > 0 && result.overlap < kDegenerateShare * known_overlap_;
   const bool much = result.overlap >= kShareOfOverlap * known_overlap_;
   return result.solved && !floor_only &&
          (!has_height_ || std::abs(climb_m) <= (much ? kLargestClimbM : kLeastClimbM)) &&

@@ -21,6 +21,7 @@ constexpr float kLossPerDeviation = 3.0F;
 
 struct Chunk {
   Eigen::Array<float, kChunk, 6> jacobian;
+  Eigen::Array<float, kChunk, 3> p;
   Column residual_m;
   Column squared_lever_m2;
   Column variance;  // of a residual over noise_m^2: 1 where it does not depend on pose_variance
@@ -28,7 +29,7 @@ struct Chunk {
 };
 
 void load(std::span<const Pair> pairs, const PairNoise& noise, Chunk& chunk) {
-  Eigen::Array<float, kChunk, 3> p;
+  Eigen::Array<float, kChunk, 3>& p = chunk.p;
   chunk.count = static_cast<int>(pairs.size());
   if (chunk.count < kChunk) {
     p.setZero();
@@ -115,7 +116,14 @@ NormalEquations accumulate(std::span<const Pair> pairs, const PairNoise& noise, 
     sum.weight_sum += weight.sum();
     sum.squared_error_sum += (weight * squared_error).sum();
     sum.squared_lever_sum += (weight * chunk.squared_lever_m2).sum();
+    for (int row = 0; row < 3; ++row) {
+      const Column weighted = weight * chunk.p.col(row);
+      sum.lever_sum(row) += weighted.sum();
+      for (int col = 0; col <= row; ++col)
+        sum.lever_square_sum(row, col) += (weighted * chunk.p.col(col)).sum();
+    }
   });
+  sum.lever_square_sum = sum.lever_square_sum.selfadjointView<Eigen::Lower>();
   sum.hessian = sum.hessian.selfadjointView<Eigen::Lower>();
   return sum;
 }

@@ -37,12 +37,9 @@ struct RegistrationConfig {
   /// Number of pairs with the information of one independent pair: neighbouring residuals are correlated, and
   /// counting every pair would make the covariance too small.
   double correlated_pairs = 15.0;
-  /// Error of the map's normals [deg]. It creates spurious information in directions that no surface
-  /// constrains (along a corridor), which is subtracted.
+  /// Error of the map's normals [deg]. It imitates information in directions that no surface constrains (along a
+  /// corridor), which is subtracted; a direction whose information may be noise alone is left to the prior.
   double normal_error_deg = 1.5;
-  /// Information per pair below which a direction is degenerate. 1/3: all directions are constrained alike;
-  /// 0.01: one pair in a hundred faces that direction.
-  double degenerate_information = 0.01;
   /// Error of height between a scan and the map when pressure fixes it [m].
   double height_error_m = 0.04;
   /// Error of a scan's roll and pitch against the scans that laid the map [deg]: far points count by it, not by the noise

@@ -6,10 +6,13 @@
 #include <cmath>
 
 #include "core/geometry.hpp"
+#include "core/squared.hpp"
 
 namespace isobar {
 
 namespace {
+
+constexpr std::size_t kHolders = 6;
 
 Vector6d free_directions(const Basis& basis) { return basis.rowwise().norm(); }
 
@@ -89,8 +92,9 @@ PriorTerm ScanMatcher::prior_term(const Prediction& prediction, const Eigen::Iso
 SolverWeights ScanMatcher::weights(float scale_m, double share) const {
   SolverWeights weights;
   weights.pair_information = 1.0 / (config_.correlated_pairs * scale_m * scale_m * share);
-  weights.false_information = std::pow(std::sin(config_.normal_error_deg * kRadPerDeg), 2);
-  weights.degenerate_information = config_.degenerate_information;
+  weights.normal_variance = squared(std::sin(config_.normal_error_deg * kRadPerDeg));
+  weights.point_variance_m2 = squared(static_cast<double>(scale_m));
+  weights.correlated_pairs = config_.correlated_pairs * share;
   return weights;
 }
 
@@ -101,7 +105,7 @@ void ScanMatcher::count(const Iteration& iteration, std::size_t sampled_points, 
   result.residual_rms_m = iteration.residual_rms_m;
 }
 
-void ScanMatcher::summarise(const MatchProblem& problem, const Step& step, MatchResult& result) {
+void ScanMatcher::summarise(const MatchProblem& problem, const Step& step, MatchResult& result) const {
   result.solved = true;
   if (!problem.p_base.empty()) {
     const double share =
@@ -109,10 +113,38 @@ void ScanMatcher::summarise(const MatchProblem& problem, const Step& step, Match
     result.overlap = std::min(1.0, share);
   }
   result.smallest_eigenvalues = step.smallest_eigenvalues;
-  result.degenerate = step.degenerate;
+  describe_directions(problem, step, prior_term(problem.prediction, result.T_map_base), result);
   const Vector6d fixed = Vector6d::Ones() - free_directions(problem.traits.basis);
   result.twist_covariance = step.covariance;
   result.twist_covariance.diagonal() += fixed.cwiseProduct(problem.prediction.deviation.cwiseAbs2());
+}
+
+// The scan, or that part of the prior which knows most of the direction.
+void ScanMatcher::describe_directions(const MatchProblem& problem, const Step& step, const PriorTerm& prior,
+                                      MatchResult& result) {
+  Localisability& out = result.localisability;
+  out.count = static_cast<std::uint8_t>(problem.traits.basis.cols());
+  for (std::size_t i = 0; i < out.count; ++i) {
+    const StepDirection& known = step.directions[i];
+    Direction& direction = out.directions[i];
+    direction.strength = static_cast<float>(known.strength);
+    Eigen::Map<Eigen::Vector3f>(direction.axis.data()) = known.axis.tail<3>().cast<float>();
+    Eigen::Map<Eigen::Vector3f>(direction.axis.data() + 3) = known.axis.head<3>().cast<float>();
+    double most = direction.strength < Localisability::kWeak ? 0.0 : known.scan_information;
+    direction.holder = most > 0.0 ? Holder::kScan : Holder::kMotion;
+    std::array<double, kHolders> information{};
+    for (int k = 0; k < 6; ++k) {
+      // Rotations of the axis are metres at the lever's end.
+      const double part = known.axis(k) / (k < 3 ? step.lever_m : 1.0);
+      const auto holder = static_cast<std::size_t>(problem.prediction.holders[static_cast<std::size_t>(k)]);
+      information[holder] += squared(part) * prior.information(k, k);
+    }
+    for (std::size_t holder = 0; holder < kHolders; ++holder) {
+      if (!(information[holder] > most)) continue;
+      most = information[holder];
+      direction.holder = static_cast<Holder>(holder);
+    }
+  }
 }
 
 void copy_statistics(const MatchResult& match, PoseEstimate& pose) {
@@ -121,7 +153,8 @@ void copy_statistics(const MatchResult& match, PoseEstimate& pose) {
   pose.matched_pairs = match.matched_pairs;
   pose.residual_rms_m = match.residual_rms_m;
   pose.overlap = match.overlap;
-  pose.degenerate = match.degenerate;
+  pose.localisability = match.localisability;
+  pose.degenerate = match.localisability.weak_count() > 0;
   pose.smallest_eigenvalues = match.smallest_eigenvalues;
 }
 

@@ -44,7 +44,7 @@ struct MatchResult {
   double residual_rms_m = 0.0;      ///< of the last iteration, weighted
 
   double overlap = 0.0;  ///< matched_pairs / sampled_points, 0 … 1
-  bool degenerate = false;
+  Localisability localisability;
   Eigen::Vector3d smallest_eigenvalues = Eigen::Vector3d::Zero();
 };
 
@@ -73,7 +73,9 @@ class ScanMatcher {
   Iteration iterate(const MatchProblem& problem, const PairNoise& noise, const SearchSchedule& schedule,
                     const Eigen::Isometry3d& T_map_base);
   static void count(const Iteration& iteration, std::size_t sampled_points, MatchResult& result);
-  static void summarise(const MatchProblem& problem, const Step& step, MatchResult& result);
+  static void describe_directions(const MatchProblem& problem, const Step& step, const PriorTerm& prior,
+                                  MatchResult& result);
+  void summarise(const MatchProblem& problem, const Step& step, MatchResult& result) const;
 
   RegistrationConfig config_;
   Eigen::Vector3d p_base_lidar_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 #include "core/estimates.hpp"
 #include "core/registration/method.hpp"
@@ -16,6 +17,8 @@ struct NormalEquations {
   double weight_sum = 0.0;
   double squared_error_sum = 0.0;  ///< weighted [m^2]
   double squared_lever_sum = 0.0;  ///< weighted squared distance of the points from the robot [m^2]
+  Eigen::Vector3d lever_sum = Eigen::Vector3d::Zero();         ///< weighted sum of p [m]
+  Eigen::Matrix3d lever_square_sum = Eigen::Matrix3d::Zero();  ///< weighted sum of p p^T [m^2]
 };
 
 /// Prior term: deviation of the current estimate from the prediction, as a twist, and its information.
@@ -24,18 +27,27 @@ struct PriorTerm {
   Matrix6d information = Matrix6d::Zero();  ///< inverse covariance of the prediction, twist coordinates
 };
 
-/// Weights of the scan's information.
+/// Weights of the scan's information, and the noise that imitates it.
 struct SolverWeights {
-  double pair_information = 1.0;        ///< 1 / variance of one pair, correlation included [1/m^2]
-  double false_information = 0.0;       ///< spurious information per pair from errors of normals, 0 … 1
-  double degenerate_information = 0.0;  ///< a direction with less information per pair is degenerate
+  double pair_information = 1.0;   ///< 1 / variance of one pair, correlation included [1/m^2]
+  double normal_variance = 0.0;    ///< of a normal, either axis across it [rad^2]
+  double point_variance_m2 = 0.0;  ///< of a point, each axis
+  double correlated_pairs = 1.0;   ///< pairs with the information of one independent pair
+};
+
+/// A free direction and how well the scan holds it, see scan_information.hpp.
+struct StepDirection {
+  Vector6d axis = Vector6d::Zero();  ///< unit vector of twists, rotations times the points' mean distance
+  double strength = 0.0;             ///< probability that the scan shows it, 0 ... 1
+  double scan_information = 0.0;     ///< of the scan, in units of the prior's, per squared axis
 };
 
 struct Step {
   Vector6d twist = Vector6d::Zero();                               ///< step; zero outside the basis
   Matrix6d covariance = Matrix6d::Zero();                          ///< of the twist; zero outside the basis
   Eigen::Vector3d smallest_eigenvalues = Eigen::Vector3d::Zero();  ///< information per pair, ascending
-  bool degenerate = false;
+  std::array<StepDirection, 6> directions;  ///< weakest first, as many as the basis has columns
+  double lever_m = 1.0;                     ///< of the directions' rotations
   bool solved = false;  ///< false: singular (neither scan nor prior constrain a direction) or not finite
 };
 

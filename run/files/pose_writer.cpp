@@ -75,19 +75,25 @@ std::string_view status_line(const PoseEstimate& pose, double altimeter_height_m
   const auto sd = [&](int axis) { return std::sqrt(std::max(0.0, pose.covariance(axis, axis))); };
   const Eigen::Vector3d p = pose.T_map_base.translation();
   const Eigen::Vector3d& eigenvalues = pose.smallest_eigenvalues;
+  const Direction& weakest = pose.localisability.directions[0];
+  const auto part = [&](std::size_t axis) { return static_cast<double>(weakest.axis[axis]); };
+  const bool any = pose.localisability.count > 0;
   const AltimeterState& altimeter = pose.altimeter;
   const double known = pose.effective_method == Method::kAdaptive ? 1.0 : NAN;
   const int length = std::snprintf(
       line.data(), line.size(),
       "%lld,%u,%s,%s,%s,%d,%u,%u,%u,%.4f,%.6f,%.6g,%.6g,%.6g,%.3f,%.4f,%.4f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%."
-      "6g,%.4f,%.4f,%.4f,%d,%s\n",
+      "6g,%.4f,%.4f,%.4f,%d,%s,"
+      "%zu,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%s\n",
       static_cast<long long>(pose.stamp_ns), pose.sequence, kPoseModeNames.name(pose.mode).data(),
       kMethodNames.name(pose.effective_method).data(), kHeightSourceNames.name(pose.height_source).data(),
       pose.degenerate ? 1 : 0, pose.iterations, pose.sampled_points, pose.matched_pairs, pose.overlap,
       pose.residual_rms_m, eigenvalues[0], eigenvalues[1], eigenvalues[2], pose.registration_ms,
       altimeter_height_m, altimeter_sd_m, p.x(), p.y(), p.z(), sd(0), sd(1), sd(2), sd(5),
       known * altimeter.bias_m, known * altimeter.bias_sd_m, known * altimeter.innovation_m,
-      altimeter.faulty ? 1 : 0, kDriftSuspectNames.name(altimeter.drifts).data());
+      altimeter.faulty ? 1 : 0, kDriftSuspectNames.name(altimeter.drifts).data(),
+      pose.localisability.weak_count(), static_cast<double>(weakest.strength), part(0), part(1), part(2),
+      part(3), part(4), part(5), any ? kHolderNames.name(weakest.holder).data() : "none");
   return text_of(line, length);
 }
 

@@ -174,4 +174,31 @@ TEST_CASE("the figures hold rate, age, rejects and drops of each sensor, and the
   CHECK(report.status.stages[2].median_ms == doctest::Approx(2.0).epsilon(0.1));  // a bucket is 19 % wide
 }
 
+TEST_CASE("weak directions are named, with who holds them; a direction that nothing measures is a warning") {
+  HealthMonitor monitor{Config{}};
+  StatusSnapshot status = working(kStart, true);
+  Localisability& known = status.registration.localisability;
+  known.count = 3;
+  known.directions[0].axis = {0.5F, 0.866F, 0.0F, 0.0F, 0.0F, 0.0F};
+  known.directions[0].strength = 0.02F;
+  known.directions[0].holder = Holder::kWheels;
+  known.directions[1].strength = known.directions[2].strength = 1.0F;
+  const HealthReport held = report_of(monitor, status);
+  const ipc::HealthEntry& said = entry(held, "registration/localisability");
+  CHECK(said.level == HealthLevel::kOk);
+  CHECK(std::string(said.message) == "along 60 deg: 2 % of localisability, held by wheels");
+  CHECK(said.value == doctest::Approx(0.02));
+
+  known.directions[0].axis = {0.0F, 0.0F, -1.0F, 0.0F, 0.0F, 0.0F};
+  known.directions[0].holder = Holder::kMotion;
+  const HealthReport open = report_of(monitor, status);
+  CHECK(entry(open, "registration/localisability").level == HealthLevel::kWarning);
+  CHECK(std::string(entry(open, "registration/localisability").message).starts_with("z: 2 %"));
+
+  known.directions[0].strength = 0.9F;
+  const HealthReport strong = report_of(monitor, status);
+  CHECK(std::string(entry(strong, "registration/localisability").message) ==
+        "the scans hold every direction");
+}
+
 }  // namespace isobar::test::test_robot_health
