@@ -35,6 +35,7 @@ Prior interpolate(const Prior& before, const Prior& after, std::int64_t stamp_ns
   out.w_base_rad_s = lerp(before.w_base_rad_s, after.w_base_rad_s, f);
   out.roll_pitch_variance_rad2 = lerp(before.roll_pitch_variance_rad2, after.roll_pitch_variance_rad2, f);
   out.yaw_rate_variance_rad2_s2 = lerp(before.yaw_rate_variance_rad2_s2, after.yaw_rate_variance_rad2_s2, f);
+  out.yaw_bias_variance_rad2_s2 = lerp(before.yaw_bias_variance_rad2_s2, after.yaw_bias_variance_rad2_s2, f);
   out.velocity_variance_m2_s2 = lerp(before.velocity_variance_m2_s2, after.velocity_variance_m2_s2, f);
   out.attitude_valid = before.attitude_valid && after.attitude_valid;
   out.velocity_valid = before.velocity_valid && after.velocity_valid;

@@ -57,11 +57,13 @@ void PriorEstimator::State::fill_attitude(const ImuSample& sample, Prior& out) c
     out.w_base_rad_s = attitude.rate_rad_s();
     out.roll_pitch_variance_rad2 = attitude.roll_pitch_variance_rad2();
     out.yaw_rate_variance_rad2_s2 = attitude.yaw_rate_variance_rad2_s2();
+    out.yaw_bias_variance_rad2_s2 = attitude.gyro_bias_variance(2);
   } else {
     out.T_odom_base.linear() = rotation_about_z(yaw_before_rad);
     out.w_base_rad_s = R_base_imu * sample.gyro_rad_s;
     out.roll_pitch_variance_rad2 = 1.0;
     out.yaw_rate_variance_rad2_s2 = squared(config.attitude.gyro_bias_sigma_rad_s);
+    out.yaw_bias_variance_rad2_s2 = out.yaw_rate_variance_rad2_s2;
   }
 }
 

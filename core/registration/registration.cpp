@@ -19,20 +19,6 @@ namespace {
 constexpr std::uint32_t kMaxScansWithoutGravity = 30;
 // Bootstrap scans before registration must succeed: they enter the map at the predicted pose.
 constexpr std::uint32_t kMaxBootstrapScans = 20;
-// Floor of reported variances [m^2, rad^2]: 0.1 mm, 0.1 mrad.
-constexpr double kLeastVariance = 1e-8;
-
-Matrix6d covariance_of(const Prediction& prediction) { return prediction.deviation.cwiseAbs2().asDiagonal(); }
-
-// Roll and pitch fixed by gravity and z fixed by the altimeter have the prior's variances.
-void set_fixed_variances(const Prior& prior, const MethodTraits& traits, Matrix6d& covariance) {
-  if (traits.tilt == Constraint::kFixed) {
-    covariance(3, 3) = covariance(4, 4) = std::max(prior.roll_pitch_variance_rad2, kLeastVariance);
-  }
-  if (traits.height == Constraint::kFixed) {
-    covariance(2, 2) = std::max(prior.height_variance_m2, kLeastVariance);
-  }
-}
 
 }  // namespace
 
@@ -113,11 +99,12 @@ bool Registration::start_motion(const Scan& scan, const Prior& prior, Registered
   if (state_.place) return start_at_place(prior);
   if (traits_.method != Method::kAdaptive) {
     state_.motion.start(prior);
+    restart_drift(prior);
     return true;
   }
   if (!find_level(scan, prior, out)) return false;
   state_.height.restart();
-  state_.drift.restart();
+  restart_drift(prior);
   return true;
 }
 
@@ -156,23 +143,25 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
   pose.mode = mode_after(registered, traits);
   pose.T_map_base = registered ? result.T_map_base : prediction.T_map_base;
   pose.T_map_odom = pose.T_map_base * end.T_odom_base.inverse();
-  pose.covariance = as_pose_covariance(registered ? result.twist_covariance : covariance_of(prediction));
-  set_fixed_variances(end, traits, pose.covariance);
+  pose.covariance = as_pose_covariance(result.twist_covariance);
 
   pose.for_map = !riding;
-  if (traits.method == Method::kAdaptive) {
-    learn(end, prediction, registered, pose);
-  } else {
-    describe_ground(end, pose);
-  }
+  if (traits.method == Method::kAdaptive) learn(end, prediction, registered, pose);
+  own_covariance(end, traits, registered, pose);
+  if (traits.method != Method::kAdaptive) describe_ground(end, pose);
   if (registered) watch(end, pose);
   if (lost()) {
     state_.last = pose;
     return;
   }
 
-  // A scan with neither IMU nor registration does not become the start of the next prediction: the scan
-  // before it stays the start.
+  continue_from(end, prediction, registered, pose);
+}
+
+// The start of the next prediction. A scan with neither IMU nor registration does not become it: the scan before it
+// stays the start.
+void Registration::continue_from(const Prior& end, const Prediction& prediction, bool registered,
+                                 const PoseEstimate& pose) {
   if (registered) {
     state_.motion.correct(end, pose.T_map_base);
   } else if (end.attitude_valid) {
@@ -233,8 +222,9 @@ bool Registration::propagate(PoseEstimate& out) const {
   }
   out.lost = state_.last.lost;
   out.lost_since_ns = state_.last.lost_since_ns;
-  out.covariance = state_.last.covariance + as_pose_covariance(covariance_of(prediction));
-  set_fixed_variances(now, traits, out.covariance);
+  DeadReckoningError ahead = state_.unseen;
+  ahead.move(now, step_to(now, prediction.T_map_base));
+  out.covariance = state_.last.covariance + ahead.covariance() - state_.unseen.covariance();
   return true;
 }
 

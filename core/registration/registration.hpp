@@ -15,6 +15,8 @@
 #include "core/mounts/level_surfaces.hpp"
 #include "core/mounts/mount_estimator.hpp"
 #include "core/prior/prior_history.hpp"
+#include "core/registration/dead_reckoning_error.hpp"
+#include "core/registration/halt_turn.hpp"
 #include "core/registration/known_place.hpp"
 #include "core/registration/lost_detector.hpp"
 #include "core/registration/map_drift.hpp"
@@ -55,6 +57,9 @@ struct RegistrationState {
   MotionModel motion;
   MapHeight height;
   MapDrift drift;
+  DeadReckoningError unseen;  ///< since the last registered scan
+  HaltTurn halt;
+  bool posed = false;  ///< `last` is a pose of this frame
   TiltOffset tilt;
   MountEstimator mounts;
   Eigen::Quaterniond q_base_lidar;  ///< as found so far
@@ -154,8 +159,18 @@ class Registration {
   void use_mount();
   void describe_mount(PoseEstimate& pose) const;
   void own_tilt(const Prior& end, PoseEstimate& pose);
-  void add_drift(PoseEstimate& pose);
   void own_height(const Prediction& prediction, bool registered, PoseEstimate& pose);
+  void continue_from(const Prior& end, const Prediction& prediction, bool registered, const PoseEstimate& pose);
+  // registration_covariance.cpp
+  void restart_drift(const Prior& prior);
+  void own_covariance(const Prior& end, const MethodTraits& traits, bool registered, PoseEstimate& pose);
+  void lay_scan(const MethodTraits& traits, const Matrix6d& scan_covariance, const PoseEstimate& pose);
+  void watch_halt(const Prior& end, const PoseEstimate& pose);
+  [[nodiscard]] UnseenStep step_to(const Prior& end, const Eigen::Isometry3d& T_map_base) const;
+  [[nodiscard]] double height_variance() const;
+  [[nodiscard]] double mount_sigma_rad() const;
+  [[nodiscard]] Matrix6d mount_covariance(const Eigen::Vector3d& p_map) const;
+  void fix_variances(const Prior& prior, const MethodTraits& traits, Matrix6d& covariance) const;
   [[nodiscard]] PoseMode mode_after(bool registered, const MethodTraits& traits);
 
   RegistrationConfig config_;

@@ -21,8 +21,6 @@ constexpr double kLevelS = 2.5;
 // Speeds below which the robot stands; a gyro's bias is below the second.
 constexpr double kHaltMS = 0.01;
 constexpr double kHaltRadS = 0.03;
-// Error of base_link's own roll and pitch: the mount of what defines it, 1 sigma.
-constexpr double kBaseTiltRad = 0.15 * kRadPerDeg;
 
 // The variance of gravity's direction is mostly the accelerometer's bias, which is constant and part of the offset. What
 // exceeds it comes from motion that the filter could not tell from gravity.
@@ -101,7 +99,6 @@ void Registration::learn(const Prior& end, const Prediction& prediction, bool re
     learn_mount(end, pose);
   }
   own_height(prediction, registered, pose);
-  add_drift(pose);
   describe_mount(pose);
 }
 
@@ -157,20 +154,6 @@ void Registration::own_tilt(const Prior& end, PoseEstimate& pose) {
       squared(gravity_sigma_rad(config_.gravity_error_deg * kRadPerDeg, state_.tilt.offset_sigma_rad())));
 }
 
-// The error of the map itself, which no scan shows: growing with the way in x, y and yaw; of gravity's offset in roll and
-// pitch.
-void Registration::add_drift(PoseEstimate& pose) {
-  const Eigen::Vector3d step_m = pose.T_map_base.translation() - state_.last.T_map_base.translation();
-  state_.drift.move(step_m.head<2>());
-  const Eigen::Matrix3d& drift = state_.drift.covariance();
-  pose.covariance.topLeftCorner<2, 2>() += drift.topLeftCorner<2, 2>();
-  pose.covariance.block<2, 1>(0, 5) += drift.topRightCorner<2, 1>();
-  pose.covariance.block<1, 2>(5, 0) += drift.bottomLeftCorner<1, 2>();
-  pose.covariance(5, 5) += drift(2, 2);
-  const double tilt = state_.tilt.tilt_variance_rad2() + squared(kBaseTiltRad);
-  pose.covariance.diagonal().segment<2>(3).array() += tilt;
-}
-
 // Height of the adaptive method: the scan's, less the error of the map's height as far as the altimeter knows it.
 void Registration::own_height(const Prediction& prediction, bool registered, PoseEstimate& pose) {
   MapHeight& height = state_.height;
@@ -182,7 +165,6 @@ void Registration::own_height(const Prediction& prediction, bool registered, Pos
   const Eigen::Vector3d up(0.0, 0.0, step_m);
   pose.T_map_base.pretranslate(up);
   pose.T_map_odom.pretranslate(up);
-  pose.covariance(2, 2) += height.variance_m2();
   pose.altimeter = height.altimeter();
 }
 

@@ -142,6 +142,7 @@ void Registration::describe_lost(const Prior& end, PoseEstimate& pose) const {
   pose.covariance.diagonal().segment<2>(3).setConstant(squared(lost.error_rad) +
                                                        end.roll_pitch_variance_rad2);
   pose.covariance(5, 5) = squared(lost.error_rad) + turn_m2;
+  pose.covariance += state_.drift.covariance();
 }
 
 void Registration::search_lost(const MapSnapshot& map, const Prior& end, const Prediction& expected,

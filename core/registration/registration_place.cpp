@@ -103,6 +103,8 @@ bool Registration::start_at_place(const Prior& prior) {
   state_.motion.start_at(prior, expected.T_map_base);
   state_.height.restart();
   state_.tilt.restart();
+  restart_drift(prior);
+  state_.drift.restart_at(expected.T_map_base.translation());
   state_.search.begin(place, seconds_between(place.stamp_ns, prior.stamp_ns), expected);
   state_.place.reset();
   return true;

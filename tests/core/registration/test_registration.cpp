@@ -87,12 +87,17 @@ TEST_CASE("in a corridor without features the wheels bridge its axis, and the po
   run.steps(80);
   CHECK(run.pose().mode == PoseMode::kRegistered);
   CHECK(run.pose().degenerate);
+  const Direction& weakest = run.pose().localisability.directions[0];
+  CHECK(run.pose().localisability.weak_count() == 1);
+  CHECK(std::abs(weakest.axis[0]) > 0.95F);
+  CHECK(weakest.holder == Holder::kWheels);
   // 5.6 m with 4 % of scale error are 0.22 m: along the axis the wheels are the only source.
   CHECK(run.position_error().x() == doctest::Approx(0.224).epsilon(0.25).scale(0.0));
   CHECK(std::abs(run.position_error().y()) < 0.02);
   CHECK(run.rotation_error_deg() < 0.3);
   // The covariance agrees: large along the corridor, small across.
   CHECK(run.pose().covariance(0, 0) > 4.0 * run.pose().covariance(1, 1));
+  CHECK(std::sqrt(run.pose().covariance(0, 0)) > 0.224 / 3.0);
 }
 
 TEST_CASE("method odometry ignores the scan") {

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The part of Registration that says how far a pose may be off, in the frame of the map, whose origin is the start:
+//
+//     pose = scan against the map  +  map against the start  +  dead reckoning since the last scan  +  mounts
+//            (ICP)                    (MapDrift, MapHeight)     (DeadReckoningError)
+//
+// in directions that gravity or the altimeter fix, their error instead.
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry.hpp"
+#include "core/registration/registration.hpp"
+#include "core/so3.hpp"
+#include "core/squared.hpp"
+#include "core/stamp.hpp"
+
+namespace isobar {
+
+namespace {
+
+// Floor of reported variances [m^2, rad^2]: 0.1 mm, 0.1 mrad.
+constexpr double kLeastVariance = 1e-8;
+// What the air of zones, doors and weather adds to the altimeter's own variance, and does not average out [m].
+constexpr double kZoneM = 0.05;
+// Largest error of gravity at the start, 1 sigma.
+constexpr double kUnsettledGravityRad = 0.4 * kRadPerDeg;
+// Rates below which the robot stands; a gyro's bias is below the second.
+constexpr double kStandingMS = 0.01;
+constexpr double kStandingRadS = 0.03;
+// Dead reckoning with which ground was laid that no scan of the map before has shown.
+constexpr double kLaidWayM = 3.0;
+constexpr double kLaidS = 3.0;
+// Longest step from which a velocity is taken [s].
+constexpr double kLongestGapS = 0.5;
+
+// Rows of a pose's covariance that the ICP moves: 1, else 0.
+Eigen::Matrix<double, 6, 1> free_rows(const Basis& basis) {
+  const Eigen::Matrix<double, 6, 1> of_twist = basis.rowwise().norm();
+  Eigen::Matrix<double, 6, 1> rows;
+  rows << of_twist.tail<3>(), of_twist.head<3>();
+  return rows;
+}
+
+Matrix6d masked(const Matrix6d& covariance, const Eigen::Matrix<double, 6, 1>& rows) {
+  return rows.asDiagonal() * covariance * rows.asDiagonal();
+}
+
+// Projection on the directions of way that wheels hold where the scan does not.
+Eigen::Matrix3d held_by_wheels(const Localisability& localisability) {
+  Eigen::Matrix3d held = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < localisability.weak_count(); ++i) {
+    const Direction& weak = localisability.directions[i];
+    if (weak.holder != Holder::kWheels) continue;
+    const Eigen::Vector3d along = Eigen::Map<const Eigen::Vector3f>(weak.axis.data()).cast<double>();
+    held += (1.0 - static_cast<double>(weak.strength)) * along * along.transpose();
+  }
+  return held;
+}
+
+// The map is turned about the start by the lidar's yaw mount, of second moment `mount_rad2`; the pose itself by what of
+// it has been corrected since, `corrected_rad`.
+Matrix6d turned_about_start(const Eigen::Vector3d& p_map, double mount_rad2, double corrected_rad) {
+  Eigen::Matrix<double, 6, 1> turn = Eigen::Matrix<double, 6, 1>::Zero();
+  turn.head<2>() << -p_map.y(), p_map.x();
+  Matrix6d covariance = mount_rad2 * turn * turn.transpose();
+  covariance.col(5) += squared(corrected_rad) * turn;
+  covariance.row(5) += squared(corrected_rad) * turn.transpose();
+  covariance(5, 5) += squared(corrected_rad);
+  return covariance;
+}
+
+}  // namespace
+
+// Error of one mount, of lidar or IMU, 1 sigma: RegistrationConfig::mount_error_deg is that of the two against each other,
+// of hands that build robots; most are built better.
+double Registration::mount_sigma_rad() const { return 0.6 * config_.mount_error_deg * kRadPerDeg; }
+
+void Registration::restart_drift(const Prior& prior) {
+  // Of a map that begins level with gravity and keeps that: gravity has not settled at the first scan.
+  const double gravity_rad =
+      std::min(std::sqrt(std::max(prior.roll_pitch_variance_rad2, 0.0)), kUnsettledGravityRad);
+  const bool free_tilt = traits_.tilt == Constraint::kFree;
+  state_.drift.restart(free_tilt ? std::hypot(config_.mount_error_deg * kRadPerDeg, gravity_rad) : 0.0);
+  state_.unseen.restart();
+  state_.posed = false;
+}
+
+void Registration::own_covariance(const Prior& end, const MethodTraits& traits, bool registered,
+                                  PoseEstimate& pose) {
+  const Eigen::Matrix<double, 6, 1> rows = free_rows(traits.basis);
+  const bool adaptive = traits.method == Method::kAdaptive;
+  Matrix6d covariance = Matrix6d::Zero();
+  if (registered) {
+    covariance = masked(pose.covariance, rows);
+    lay_scan(traits, covariance, pose);
+  } else {
+    state_.unseen.move(end, step_to(end, pose.T_map_base));
+    state_.drift.carry(pose.T_map_base.translation());
+  }
+  watch_halt(end, pose);
+  covariance += masked(state_.drift.covariance(), rows);
+  covariance(5, 5) += state_.halt.variance_rad2();
+  if (adaptive) {
+    // The owner of height knows its error, on known ground as well as when that was mapped.
+    covariance.row(2).setZero();
+    covariance.col(2).setZero();
+    covariance(2, 2) = std::max(registered ? pose.covariance(2, 2) : 0.0, kLeastVariance) + height_variance();
+  }
+  Matrix6d unseen = state_.unseen.covariance();
+  if (adaptive) {
+    unseen.row(2).setZero();
+    unseen.col(2).setZero();
+  }
+  covariance += unseen + mount_covariance(pose.T_map_base.translation());
+  // The start is exact by definition, and a matrix of zeros is none.
+  covariance.diagonal().array() += kLeastVariance;
+  pose.covariance = covariance;
+  fix_variances(end, traits, pose.covariance);
+  state_.posed = true;
+}
+
+double Registration::height_variance() const {
+  const double now_m2 = state_.height.variance_m2();
+  return state_.drift.on_known_ground() ? std::min(now_m2, state_.drift.height_variance_m2()) : now_m2;
+}
+
+void Registration::lay_scan(const MethodTraits& traits, const Matrix6d& scan_covariance,
+                            const PoseEstimate& pose) {
+  if (state_.unseen.way_m() > kLaidWayM || state_.unseen.time_s() > kLaidS) {
+    state_.drift.add_unseen(state_.unseen.covariance());
+  }
+  if (traits.method == Method::kAdaptive) state_.drift.know_tilt(state_.tilt.tilt_variance_rad2());
+  LaidScan laid;
+  laid.T_map_base = pose.T_map_base;
+  laid.covariance = scan_covariance;
+  laid.offset_rad = traits.tilt == Constraint::kFixed ? config_.mount_error_deg * kRadPerDeg : 0.0;
+  laid.on_wheels = held_by_wheels(pose.localisability);
+  laid.height_variance_m2 = state_.height.variance_m2();
+  state_.drift.lay(laid);
+  const double dt_s = seconds_between(state_.last.stamp_ns, pose.stamp_ns);
+  const bool moves = state_.posed && dt_s > 0.0 && dt_s < kLongestGapS;
+  const Eigen::Vector3d step_m = pose.T_map_base.translation() - state_.last.T_map_base.translation();
+  state_.unseen.restart(moves ? Eigen::Vector3d(step_m / dt_s) : Eigen::Vector3d::Zero());
+}
+
+void Registration::watch_halt(const Prior& end, const PoseEstimate& pose) {
+  const bool stands = end.attitude_valid && end.velocity_valid && end.v_base_m_s.norm() < kStandingMS &&
+                      end.w_base_rad_s.norm() < kStandingRadS;
+  const Eigen::Matrix3d R = pose.T_map_odom.linear();
+  if (stands) {
+    state_.halt.stand(pose.stamp_ns, std::atan2(R(1, 0), R(0, 0)));
+  } else if (state_.halt.standing()) {
+    Matrix6d turned = Matrix6d::Zero();
+    turned(5, 5) = state_.halt.variance_rad2();
+    state_.drift.add(turned);
+    state_.halt.leave();
+  }
+}
+
+UnseenStep Registration::step_to(const Prior& end, const Eigen::Isometry3d& T_map_base) const {
+  UnseenStep step;
+  step.R_map_base = T_map_base.linear();
+  step.tilt_rad = mount_sigma_rad();
+  if (!state_.posed) return step;
+  step.step_m = T_map_base.translation() - state_.last.T_map_base.translation();
+  step.dt_s = std::max(0.0, seconds_between(state_.last.stamp_ns, end.stamp_ns));
+  // A ride moves the robot, not its wheels.
+  if (end.ground_moves) step.step_m.z() = 0.0;
+  return step;
+}
+
+Matrix6d Registration::mount_covariance(const Eigen::Vector3d& p_map) const {
+  const Eigen::Quaterniond corrected =
+      state_.q_base_lidar * Eigen::Quaterniond(T_base_lidar_.linear()).conjugate();
+  const double corrected_rad = log_so3(corrected).z();
+  const MountState& mount = state_.last.mount;
+  const double left_rad =
+      mount.found && mount.yaw_found ? std::min(mount.sigma_rad[2], mount_sigma_rad()) : mount_sigma_rad();
+  return turned_about_start(p_map, squared(corrected_rad) + squared(left_rad), corrected_rad);
+}
+
+// Roll and pitch are those of base_link, which the mount of the IMU or of the lidar defines; z fixed by the altimeter
+// errs as the air does.
+void Registration::fix_variances(const Prior& prior, const MethodTraits& traits, Matrix6d& covariance) const {
+  covariance.diagonal().segment<2>(3).array() += squared(mount_sigma_rad());
+  if (traits.tilt == Constraint::kFixed) {
+    covariance.diagonal().segment<2>(3).array() += std::max(prior.roll_pitch_variance_rad2, kLeastVariance);
+  }
+  if (traits.height == Constraint::kFixed) {
+    covariance.row(2).setZero();
+    covariance.col(2).setZero();
+    covariance(2, 2) = std::max(prior.height_variance_m2, kLeastVariance) + squared(kZoneM);
+  }
+}
+
+}  // namespace isobar
