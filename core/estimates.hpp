@@ -76,6 +76,7 @@ struct Prior {
   bool attitude_valid = false;  ///< aligned to gravity
   bool velocity_valid = false;  ///< wheels present and fresh; else v_base_m_s is zero and x, y are constant
   bool standing_still = false;  ///< gyro, accelerometer and wheels agree on standstill
+  bool may_stand = false;       ///< none of the sensors that there are contradicts standstill, wheels or not
 };
 
 /// Degrees of freedom that the ICP estimates, and the source of the height.

@@ -40,6 +40,7 @@ Prior interpolate(const Prior& before, const Prior& after, std::int64_t stamp_ns
   out.attitude_valid = before.attitude_valid && after.attitude_valid;
   out.velocity_valid = before.velocity_valid && after.velocity_valid;
   out.standing_still = before.standing_still && after.standing_still;
+  out.may_stand = before.may_stand && after.may_stand;
   return out;
 }
 

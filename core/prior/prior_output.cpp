@@ -45,6 +45,7 @@ Prior PriorEstimator::State::prior_at(const ImuSample& sample) const {
   out.altimeter_shift_m = altimeter_shift_m;
   out.base_air_m = base_air_m;
   out.wheel_turn_rad = wheels.turn_rad(sample.stamp_ns);
+  out.may_stand = attitude.started() && standstill.may_stand() && !height.ground_moves();
   out.standing_still = out.velocity_valid && standstill.standing() && !height.ground_moves();
   return out;
 }

@@ -48,7 +48,7 @@ void StandstillDetector::add_wheel(double speed_m_s, double turn_rate_rad_s) {
   if (speed_m_s <= config_.max_wheel_speed_m_s && std::abs(turn_rate_rad_s) <= config_.max_wheel_rate_rad_s)
     return;
   wheels_moved_ = true;
-  standing_ = resting_ = false;
+  standing_ = resting_ = may_stand_ = false;
 }
 
 void StandstillDetector::add_imu(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& gyro_bias_rad_s,
@@ -64,7 +64,9 @@ void StandstillDetector::add_imu(const Eigen::Vector3d& gyro_rad_s, const Eigen:
   if (elapsed_s_ * kParts >= config_.window_s * (parts_ + 1)) close_part();
   const double limit =
       kBreakFactor * config_.max_gyro_rms_rad_s + config_.max_rate_rad_s + kBiasSigmas * bias_sigma_rad_s;
-  if ((gyro_rad_s - gyro_bias_rad_s).cwiseAbs().maxCoeff() > limit) standing_ = false;
+  if ((gyro_rad_s - gyro_bias_rad_s).cwiseAbs().maxCoeff() > limit) {
+    standing_ = may_stand_ = false;
+  }
   if (elapsed_s_ >= config_.window_s && count_ >= kLeastSamples)
     close_window(gyro_bias_rad_s, bias_sigma_rad_s);
 }
@@ -110,7 +112,7 @@ void StandstillDetector::close_window(const Eigen::Vector3d& gyro_bias_rad_s, do
               force_variance <= config_.max_accel_rms_m_s2 * config_.max_accel_rms_m_s2 &&
               rate <= config_.max_rate_rad_s + kBiasSigmas * bias_sigma_rad_s;
   close_rest(gyro_variance, force_variance, rate, config_.max_rate_rad_s + kBiasSigmas * bias_sigma_rad_s);
-  window_ready_ = standing_;
+  window_ready_ = may_stand_ = standing_;
   window_mean_gyro_ = gyro_mean;
   window_gyro_variance_ = std::max(0.0, gyro_variance) / count_;
   window_length_s_ = elapsed_s_;

@@ -35,6 +35,8 @@ class StandstillDetector {
   void restart();
 
   [[nodiscard]] bool standing() const { return standing_; }
+  /// False while something moves; true as well before the first window has been judged.
+  [[nodiscard]] bool may_stand() const { return may_stand_; }
   /// True once per quiet window; mean_gyro_rad_s(), window_s() and gyro_variance_of_mean() are that window's.
   bool take_window();
   /// True once per window of rest.
@@ -73,6 +75,7 @@ class StandstillDetector {
   double count_ = 0.0;
   bool wheels_moved_ = false;
   bool standing_ = false;
+  bool may_stand_ = true;
   bool window_ready_ = false;
 };
 

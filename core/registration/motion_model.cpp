@@ -27,6 +27,8 @@ constexpr double kLongestVelocityStepS = 0.5;
 // outdoors 13 m of 62 were lost, along a corridor 0.5 m.
 constexpr double kUnknownSpeedMS = 5.0;
 constexpr int kScansToVelocity = 4;
+// Step of a pose that is held: the velocity is known, it is zero [m].
+constexpr double kStoodM = 1e-4;
 // Smallest error of a step without wheels: the error of a velocity from registrations.
 constexpr double kFreeMotionFloorM = 0.02;
 // Doubt about gravity's offset beyond which the map stays rigid, so that it does not hide the offset [rad].
@@ -193,7 +195,8 @@ void MotionModel::correct(const Prior& now, const Eigen::Isometry3d& T_map_base)
   } else {
     v_map_m_s_.setZero();
   }
-  ++registered_;
+  const bool stood = (T_map_base.translation() - T_map_base_.translation()).norm() < kStoodM;
+  registered_ = stood ? std::max(registered_ + 1, kScansToVelocity) : registered_ + 1;
   last_ = now;
   T_map_base_ = T_map_base;
   confirmed_ns_ = now.stamp_ns;

@@ -50,6 +50,8 @@ class MotionModel {
   /// A search has found the robot at `T_map_base`, the pose at the time of `now`; the velocity is unknown.
   void relocate(const Prior& now, const Eigen::Isometry3d& T_map_base);
   [[nodiscard]] bool started() const { return started_; }
+  /// Pose of the last scan.
+  [[nodiscard]] const Eigen::Isometry3d& T_map_base() const { return T_map_base_; }
 
   /// Precondition of all below: started(). `offset`: for methods whose tilt is soft.
   [[nodiscard]] Prediction predict(const Prior& now, const MethodTraits& method,

@@ -19,6 +19,10 @@ namespace {
 constexpr std::uint32_t kMaxScansWithoutGravity = 30;
 // Bootstrap scans before registration must succeed: they enter the map at the predicted pose.
 constexpr std::uint32_t kMaxBootstrapScans = 20;
+// Pairs below this multiple of the least number must fit: fragments of a revolution find planes anywhere. Rough ground has
+// residuals of 0.1 m at most.
+constexpr std::size_t kFewFactor = 3;
+constexpr double kScatteredM = 0.12;
 
 }  // namespace
 
@@ -141,11 +145,11 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
   const bool registered = result.solved && acceptable(result, prediction);
   copy_statistics(result, pose);
   pose.mode = mode_after(registered, traits);
-  pose.T_map_base = registered ? result.T_map_base : prediction.T_map_base;
+  pose.T_map_base = registered ? registered_pose(end, traits, result) : prediction.T_map_base;
   pose.T_map_odom = pose.T_map_base * end.T_odom_base.inverse();
   pose.covariance = as_pose_covariance(result.twist_covariance);
 
-  pose.for_map = !riding;
+  pose.for_map = !riding && state_.held.for_map(end.standing_still);
   if (traits.method == Method::kAdaptive) learn(end, prediction, registered, pose);
   own_covariance(end, traits, registered, pose);
   if (traits.method != Method::kAdaptive) describe_ground(end, pose);
@@ -180,6 +184,15 @@ MatchResult Registration::match(const MapSnapshot& map, const Prior& prior, cons
                          .height_variance_m2 = prior.height_variance_m2});
 }
 
+Eigen::Isometry3d Registration::registered_pose(const Prior& end, const MethodTraits& traits,
+                                                const MatchResult& result) {
+  const Eigen::Isometry3d& T_held = state_.motion.T_map_base();
+  // A height that follows the altimeter does so at rest as well.
+  const bool held =
+      !traits.follows_altimeter() && state_.held.holds(end.may_stand, T_held, result.T_map_base);
+  return held ? T_held : result.T_map_base;
+}
+
 PoseMode Registration::mode_after(bool registered, const MethodTraits& traits) {
   // Bootstrap: until the first success scans enter the map at the predicted pose. The first revolution may be
   // incomplete, and one scan may cover too little of the place.
@@ -190,7 +203,9 @@ PoseMode Registration::mode_after(bool registered, const MethodTraits& traits) {
 }
 
 bool Registration::acceptable(const MatchResult& match, const Prediction& prediction) const {
-  if (match.matched_pairs < config_.min_pairs || match.overlap < config_.min_overlap) {
+  const bool scattered =
+      match.matched_pairs < kFewFactor * config_.min_pairs && match.residual_rms_m > kScatteredM;
+  if (match.matched_pairs < config_.min_pairs || match.overlap < config_.min_overlap || scattered) {
     return false;
   }
   const Vector6d correction = twist_between(prediction.T_map_base, match.T_map_base);

@@ -17,6 +17,7 @@
 #include "core/prior/prior_history.hpp"
 #include "core/registration/dead_reckoning_error.hpp"
 #include "core/registration/halt_turn.hpp"
+#include "core/registration/held_pose.hpp"
 #include "core/registration/known_place.hpp"
 #include "core/registration/lost_detector.hpp"
 #include "core/registration/map_drift.hpp"
@@ -63,7 +64,8 @@ struct RegistrationState {
   TiltOffset tilt;
   MountEstimator mounts;
   Eigen::Quaterniond q_base_lidar;  ///< as found so far
-  double wheel_turn_rad = 0.0;      ///< Prior::wheel_turn_rad of the last registered scan
+  HeldPose held;
+  double wheel_turn_rad = 0.0;  ///< Prior::wheel_turn_rad of the last registered scan
   PlaceSearch search;
   LostDetector lost_detector;
   LostState lost;
@@ -160,7 +162,8 @@ class Registration {
   void describe_mount(PoseEstimate& pose) const;
   void own_tilt(const Prior& end, PoseEstimate& pose);
   void own_height(const Prediction& prediction, bool registered, PoseEstimate& pose);
-  void continue_from(const Prior& end, const Prediction& prediction, bool registered, const PoseEstimate& pose);
+  void continue_from(const Prior& end, const Prediction& prediction, bool registered,
+                     const PoseEstimate& pose);
   // registration_covariance.cpp
   void restart_drift(const Prior& prior);
   void own_covariance(const Prior& end, const MethodTraits& traits, bool registered, PoseEstimate& pose);
@@ -171,6 +174,8 @@ class Registration {
   [[nodiscard]] double mount_sigma_rad() const;
   [[nodiscard]] Matrix6d mount_covariance(const Eigen::Vector3d& p_map) const;
   void fix_variances(const Prior& prior, const MethodTraits& traits, Matrix6d& covariance) const;
+  /// The pose of a registered scan: the scan's, or that of a robot that stands.
+  Eigen::Isometry3d registered_pose(const Prior& end, const MethodTraits& traits, const MatchResult& result);
   [[nodiscard]] PoseMode mode_after(bool registered, const MethodTraits& traits);
 
   RegistrationConfig config_;
