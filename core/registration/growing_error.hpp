@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "core/estimates.hpp"
+#include "core/so3.hpp"
 
 namespace isobar {
 
@@ -23,8 +24,7 @@ struct GrowingError {
 
   /// The robot has moved by `step_m`, axes of the map.
   void move(const Eigen::Vector3d& step_m) {
-    Eigen::Matrix3d turned;  // theta -> theta x step
-    turned << 0.0, step_m.z(), -step_m.y(), -step_m.z(), 0.0, step_m.x(), step_m.y(), -step_m.x(), 0.0;
+    const Eigen::Matrix3d turned = skew(step_m).transpose();  // theta -> theta x step
     random.topRows<3>() += turned * random.bottomRows<3>();
     random.leftCols<3>() += random.rightCols<3>() * turned.transpose();
     constants.topRows<3>() += turned * constants.bottomRows<3>();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/registration/halt.hpp"
 #include "core/squared.hpp"
 #include "core/stamp.hpp"
 
@@ -12,8 +13,6 @@ namespace {
 
 // A longer step between priors is a gap in the acceleration.
 constexpr double kGapS = 0.1;
-// Wheel speed below which the robot stands.
-constexpr double kStandingMS = 0.01;
 // Gate of a reading, in standard deviations, and how long it stays shut: doors are over by then.
 constexpr double kGateSigmas = 3.0;
 constexpr double kGateS = 3.0;
@@ -72,7 +71,7 @@ void MapHeight::take(const Prior& prior) {
   if (any_ && prior.altimeter_count != last_.altimeter_count) take_reading(prior);
   if (!any_) shift_m_ = prior.altimeter_shift_m;
   // A robot that drives is on stairs, not in an elevator.
-  const bool stands = prior.velocity_valid && prior.v_base_m_s.norm() < kStandingMS;
+  const bool stands = wheels_stand(prior);
   if (dt_s > kGapS) {
     ride_.forget();
   } else {

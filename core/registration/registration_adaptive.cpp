@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/geometry.hpp"
+#include "core/registration/halt.hpp"
 #include "core/registration/registration.hpp"
 #include "core/so3.hpp"
 #include "core/squared.hpp"
@@ -18,9 +19,6 @@ namespace {
 
 // Time at rest in which gravity settles and level surfaces are looked for [s].
 constexpr double kLevelS = 2.5;
-// Speeds below which the robot stands; a gyro's bias is below the second.
-constexpr double kHaltMS = 0.01;
-constexpr double kHaltRadS = 0.03;
 
 // The variance of gravity's direction is mostly the accelerometer's bias, which is constant and part of the offset. What
 // exceeds it comes from motion that the filter could not tell from gravity.
@@ -47,10 +45,7 @@ Eigen::Vector3d offset_of_attitude(const Prior& prior, const Eigen::Vector3d& of
 // Looks for level surfaces while the robot stands: what they say of gravity's offset must be known before the map
 // begins, which cannot be tilted afterwards. False while the halt lasts and scans are missing.
 bool Registration::find_level(const Scan& scan, const Prior& prior, RegisteredScan& out) {
-  // By the wheels: Prior::standing_still needs a longer look.
-  const bool stands = prior.attitude_valid && prior.velocity_valid && prior.v_base_m_s.norm() < kHaltMS &&
-                      prior.w_base_rad_s.norm() < kHaltRadS;
-  if (!stands) {
+  if (!halts(prior)) {
     state_.tilt.restart(prior.roll_pitch_variance_rad2);
     state_.motion.start(prior, offset_of_attitude(prior, state_.tilt.offset_rad()));
     return true;

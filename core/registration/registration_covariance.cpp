@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "core/geometry.hpp"
+#include "core/registration/halt.hpp"
 #include "core/registration/registration.hpp"
 #include "core/so3.hpp"
 #include "core/squared.hpp"
@@ -24,9 +25,6 @@ constexpr double kLeastVariance = 1e-8;
 constexpr double kZoneM = 0.05;
 // Largest error of gravity at the start, 1 sigma.
 constexpr double kUnsettledGravityRad = 0.4 * kRadPerDeg;
-// Rates below which the robot stands; a gyro's bias is below the second.
-constexpr double kStandingMS = 0.01;
-constexpr double kStandingRadS = 0.03;
 // Dead reckoning with which ground was laid that no scan of the map before has shown.
 constexpr double kLaidWayM = 3.0;
 constexpr double kLaidS = 3.0;
@@ -43,6 +41,11 @@ Eigen::Matrix<double, 6, 1> free_rows(const Basis& basis) {
 
 Matrix6d masked(const Matrix6d& covariance, const Eigen::Matrix<double, 6, 1>& rows) {
   return rows.asDiagonal() * covariance * rows.asDiagonal();
+}
+
+void leave_out_z(Matrix6d& covariance) {
+  covariance.row(2).setZero();
+  covariance.col(2).setZero();
 }
 
 // Projection on the directions of way that wheels hold where the scan does not.
@@ -102,15 +105,11 @@ void Registration::own_covariance(const Prior& end, const MethodTraits& traits, 
   covariance(5, 5) += state_.halt.variance_rad2();
   if (adaptive) {
     // The owner of height knows its error, on known ground as well as when that was mapped.
-    covariance.row(2).setZero();
-    covariance.col(2).setZero();
+    leave_out_z(covariance);
     covariance(2, 2) = std::max(registered ? pose.covariance(2, 2) : 0.0, kLeastVariance) + height_variance();
   }
   Matrix6d unseen = state_.unseen.covariance();
-  if (adaptive) {
-    unseen.row(2).setZero();
-    unseen.col(2).setZero();
-  }
+  if (adaptive) leave_out_z(unseen);
   covariance += unseen + mount_covariance(pose.T_map_base.translation());
   // The start is exact by definition, and a matrix of zeros is none.
   covariance.diagonal().array() += kLeastVariance;
@@ -144,10 +143,8 @@ void Registration::lay_scan(const MethodTraits& traits, const Matrix6d& scan_cov
 }
 
 void Registration::watch_halt(const Prior& end, const PoseEstimate& pose) {
-  const bool stands = end.attitude_valid && end.velocity_valid && end.v_base_m_s.norm() < kStandingMS &&
-                      end.w_base_rad_s.norm() < kStandingRadS;
   const Eigen::Matrix3d R = pose.T_map_odom.linear();
-  if (stands) {
+  if (halts(end)) {
     state_.halt.stand(pose.stamp_ns, std::atan2(R(1, 0), R(0, 0)));
   } else if (state_.halt.standing()) {
     Matrix6d turned = Matrix6d::Zero();
@@ -187,8 +184,7 @@ void Registration::fix_variances(const Prior& prior, const MethodTraits& traits,
     covariance.diagonal().segment<2>(3).array() += std::max(prior.roll_pitch_variance_rad2, kLeastVariance);
   }
   if (traits.height == Constraint::kFixed) {
-    covariance.row(2).setZero();
-    covariance.col(2).setZero();
+    leave_out_z(covariance);
     covariance(2, 2) = std::max(prior.height_variance_m2, kLeastVariance) + squared(kZoneM);
   }
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/pose_carrying.hpp"
+#include "core/registration/halt.hpp"
 #include "core/registration/registration.hpp"
 #include "core/registration/twist.hpp"
 #include "core/so3.hpp"
@@ -31,8 +32,6 @@ constexpr double kAgreesSigmas = 3.0;
 constexpr double kStrictPauseS = 1000.0;
 // Hypotheses that are matched with one scan: a robot may stay lost for long, and its scans keep coming.
 constexpr std::size_t kHypotheses = 2;
-// Speed of the wheels below which the robot stands, as in an elevator.
-constexpr double kStandsMS = 0.01;
 
 }  // namespace
 
@@ -41,9 +40,8 @@ constexpr double kStandsMS = 0.01;
 void Registration::rise_with_ground(const Prior& end, const MethodTraits& traits, Prediction& prediction) {
   const bool asks_none = traits.method != Method::kAdaptive && traits.height == Constraint::kFree &&
                          traits.registers() && end.height_source != HeightSource::kNone;
-  const bool stands = end.velocity_valid && end.v_base_m_s.norm() < kStandsMS;
   const bool rode = state_.ground_since_ns != 0;
-  const bool rides = asks_none && end.ground_moves && (rode || stands);
+  const bool rides = asks_none && end.ground_moves && (rode || wheels_stand(end));
   if (rides || rode) {
     const Eigen::Vector3d up(0.0, 0.0, end.height_m - state_.scan_height_m);
     prediction.T_map_base.pretranslate(up);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/so3.hpp"
+
 namespace isobar {
 
 namespace {
@@ -22,12 +24,6 @@ double normal_distribution(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0
 // Length that makes rotations comparable with translations: root mean square distance of the points.
 double lever_m(const NormalEquations& equations) {
   return std::max(std::sqrt(equations.squared_lever_sum / equations.weight_sum), kShortestLeverM);
-}
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return m;
 }
 
 // Probability that more than half of a direction's information is true. `ratio`: information over that of noise.
@@ -49,8 +45,8 @@ Matrix6d noise_information(const NormalEquations& equations, const SolverWeights
   const double sum = equations.weight_sum;
   const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
   Matrix6d spread;
-  spread << equations.squared_lever_sum * I - equations.lever_square_sum, cross_matrix(equations.lever_sum),
-      cross_matrix(equations.lever_sum).transpose(), sum * I;
+  spread << equations.squared_lever_sum * I - equations.lever_square_sum, skew(equations.lever_sum),
+      skew(equations.lever_sum).transpose(), sum * I;
   Matrix6d noise = weights.normal_variance * (spread - equations.hessian);
   noise.topLeftCorner<3, 3>() +=
       weights.point_variance_m2 * (sum * I - equations.hessian.bottomRightCorner<3, 3>());
@@ -61,9 +57,10 @@ ScanInformation scan_information(const NormalEquations& equations, const Basis& 
                                  const SolverWeights& weights) {
   if (!(equations.weight_sum > 0.0)) return no_information(basis);
   const Eigen::Index k = basis.cols();
+  const double lever = lever_m(equations);
   // Basis scaled to metres at the lever's end.
   Vector6d unit = Vector6d::Ones();
-  unit.head<3>().setConstant(1.0 / lever_m(equations));
+  unit.head<3>().setConstant(1.0 / lever);
   const Basis scaled = unit.asDiagonal() * basis;
   const MatrixK H = scaled.transpose() * equations.hessian * scaled;
   MatrixK N = scaled.transpose() * noise_information(equations, weights) * scaled;
@@ -72,7 +69,7 @@ ScanInformation scan_information(const NormalEquations& equations, const Basis& 
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixK> eigen(H, N);
   const Eigen::SelfAdjointEigenSolver<MatrixK> per_pair(H / equations.weight_sum, Eigen::EigenvaluesOnly);
   ScanInformation out = no_information(basis);
-  out.lever_m = lever_m(equations);
+  out.lever_m = lever;
   if (eigen.info() != Eigen::Success) return out;
   const MatrixK& V = eigen.eigenvectors();  // V^T N V = I, so N V is the inverse of V^T
   VectorK kept(k);
