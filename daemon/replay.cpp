@@ -125,6 +125,20 @@ void warn_of_unusable_sensors(const recording::Manifest& manifest, const LockSte
   warn_of_no_pose(summary);
 }
 
+/// Warns of scans that lacked a source of their pose, and of those whose pose was lost.
+void warn_of_scans_without(const recording::Manifest& manifest, const OutputSink& sink,
+                           ReplaySummary& summary) {
+  if (sink.without_height() > 0 && manifest.barometer) {
+    summary.warnings.emplace_back("no height from pressure for " + std::to_string(sink.without_height()) +
+                                  " scans: 3-DOF ran as 4-DOF there");
+  }
+  if (sink.without_imu() > 0 && manifest.imu) {
+    summary.warnings.emplace_back("the IMU was silent for " + std::to_string(sink.without_imu()) +
+                                  " scans: they were registered as 6-DOF");
+  }
+  if (const std::string lost = sink.lost_text(); !lost.empty()) summary.warnings.push_back(lost);
+}
+
 /// Warns of packets of a second lidar, and of a rate of scans that no lidar has.
 void warn_of_two_lidars(const LockStep& pipeline, std::uint16_t port, ReplaySummary& summary) {
   const SenderStatus& senders = pipeline.lidar_sender();
@@ -206,15 +220,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   summary.recorded_s = last_ns > first_ns ? seconds_between(first_ns, last_ns) : 0.0;
   summary.counts = collect_counts(reader, pipeline);
   run_counts::append(summary.counts, map_counts);
-  if (sink.without_height() > 0 && reader.manifest().barometer) {
-    summary.warnings.emplace_back("no height from pressure for " + std::to_string(sink.without_height()) +
-                                  " scans: 3-DOF ran as 4-DOF there");
-  }
-  if (sink.without_imu() > 0 && reader.manifest().imu) {
-    summary.warnings.emplace_back("the IMU was silent for " + std::to_string(sink.without_imu()) +
-                                  " scans: they were registered as 6-DOF");
-  }
-  if (const std::string lost = sink.lost_text(); !lost.empty()) summary.warnings.push_back(lost);
+  warn_of_scans_without(reader.manifest(), sink, summary);
   warn_of_two_lidars(pipeline, used.lidar.port, summary);
   warn_of_unusable_sensors(reader.manifest(), pipeline, summary);
   output.write_counters(summary.counts);

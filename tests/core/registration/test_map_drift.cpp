@@ -49,8 +49,11 @@ TEST_CASE("a robot that stands gains no error, and one that circles in a room ga
 TEST_CASE("on new ground the error does not depend on the length of the steps") {
   MapDrift fine;
   MapDrift coarse;
-  drive(fine, {}, {100.0, 0.0, 0.0}, 2000);
-  drive(coarse, {}, {100.0, 0.0, 0.0}, 200);
+  // No step ends on the border of a cell, where rounding decides which of the two cells it opens.
+  const Vector3d start{0.01, 0.01, 0.01};
+  const Vector3d end = start + Vector3d{100.0, 0.0, 0.0};
+  drive(fine, start, end, 2000);
+  drive(coarse, start, end, 200);
   CHECK((fine.covariance() - coarse.covariance()).norm() < 0.02 * fine.covariance().norm());
 }
 
