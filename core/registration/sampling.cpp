@@ -35,6 +35,7 @@ void Sampler::start(RegisteredScan& out) {
   sample_filter_.start();
   sample_grid_ = VoxelGrid(sample_voxel_m_);
   ends_.fill({});
+  rings_ = 0;
 }
 
 void Sampler::add(std::span<const ScanPoint> points, RegisteredScan& out) {
@@ -46,16 +47,25 @@ void Sampler::add(std::span<const ScanPoint> points, RegisteredScan& out) {
 }
 
 void Sampler::add_part(std::span<const ScanPoint> points, RegisteredScan& out) {
+  // A copy, because kept points go to out.points, in which the part may lie.
+  std::copy(points.begin(), points.end(), window_.begin() + kRings);
   // Near the sensor one laser hits a voxel many times in a row: this rejects most points before the hash
   // table. Branch-free: the outcome is unpredictable and && would mispredict.
   std::size_t arrivals = 0;
-  for (const ScanPoint& point : points) {
-    RingEnd& end = ends_[point.ring];
-    arrivals_[arrivals] = {end.voxel, end.point, point};
-    arrivals += std::size_t{end.arrives()};
-    end = {end.voxel, map_grid_.voxel_of(point), point};
+  const auto part_end = static_cast<std::uint32_t>(kRings + points.size());
+  for (std::uint32_t at = kRings; at < part_end; ++at) {
+    RingEnd& end = ends_[window_[at].ring];
+    arrivals_[arrivals] = {end.voxel, end.at, at};
+    arrivals += end.arrives;
+    const std::uint64_t voxel = map_grid_.voxel_of(window_[at]);
+    end = {voxel, at, std::uint32_t{voxel != end.voxel} & std::uint32_t{voxel != VoxelGrid::kNowhere}};
+    rings_ = std::max(rings_, std::size_t{window_[at].ring} + 1);
   }
   for (const Arrival& arrival : std::span(arrivals_).first(arrivals)) keep(arrival, out);
+  for (std::uint32_t ring = 0; ring < rings_; ++ring) {
+    window_[ring] = window_[ends_[ring].at];
+    ends_[ring].at = ring;
+  }
 }
 
 bool Sampler::beside(const ScanPoint& a, const ScanPoint& b) const {
@@ -67,28 +77,33 @@ bool Sampler::beside(const ScanPoint& a, const ScanPoint& b) const {
 
 void Sampler::keep(const Arrival& arrival, RegisteredScan& out) {
   if (!map_filter_.first(arrival.voxel)) return;
-  const ScanPoint kept = beside(arrival.point, arrival.next) ? arrival.next : arrival.point;
-  deciders_[out.point_count] = arrival.point;
-  out.points[out.point_count++] = kept;
+  const ScanPoint& decider = window_[arrival.at];
+  const ScanPoint& next = window_[arrival.next];
+  deciders_[out.point_count] = decider;
+  out.points[out.point_count++] = beside(decider, next) ? next : decider;
 }
 
 // One point for each voxel of the coarser grid, in an order without pattern: in the order of firing it would be the lowest
 // laser's or the left edge's, while the map holds them all.
 void Sampler::choose_candidates(const RegisteredScan& out) {
   const std::size_t count = out.point_count;
+  if (count == 0) return;
+  const std::size_t step = kStep % count;  // prime and larger than any count: every index once
   std::size_t index = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    index += kStep;  // prime and larger than any count: every index once
-    if (sample_filter_.first(sample_grid_.voxel_of(deciders_[index % count]))) {
-      const ScanPoint& point = out.points[index % count];
+    index += step;
+    if (index >= count) index -= count;
+    if (sample_filter_.first(sample_grid_.voxel_of(deciders_[index]))) {
+      const ScanPoint& point = out.points[index];
       candidates_.emplace_back(point.x_m, point.y_m, point.z_m);
     }
   }
 }
 
 void Sampler::finish(RegisteredScan& out) {
-  for (const RingEnd& end : ends_) {
-    if (end.arrives()) keep({end.voxel, end.point, end.point}, out);
+  for (std::size_t ring = 0; ring < rings_; ++ring) {
+    const RingEnd& end = ends_[ring];
+    if (end.arrives != 0) keep({end.voxel, end.at, end.at}, out);
   }
   choose_candidates(out);
   sample_.clear();

@@ -43,19 +43,19 @@ class Sampler {
 
  private:
   static constexpr std::size_t kPart = 512;
-  /// A return whose voxel differs from that of the return before it on its ring, and the return after it.
+  static constexpr std::size_t kRings = 256;
+  /// A return whose voxel differs from that of the return before it on its ring, and the return after it: places in
+  /// window_.
   struct Arrival {
     std::uint64_t voxel;
-    ScanPoint point;
-    ScanPoint next;
+    std::uint32_t at;
+    std::uint32_t next;
   };
-  /// The last return of a ring.
+  /// The last return of a ring. `arrives`: its voxel differs from that of the return before it, 0 or 1.
   struct RingEnd {
-    std::uint64_t voxel_before = VoxelGrid::kNowhere;
     std::uint64_t voxel = VoxelGrid::kNowhere;
-    ScanPoint point{};
-
-    [[nodiscard]] bool arrives() const { return (voxel != voxel_before) & (voxel != VoxelGrid::kNowhere); }
+    std::uint32_t at = 0;
+    std::uint32_t arrives = 0;
   };
 
   [[nodiscard]] bool beside(const ScanPoint& a, const ScanPoint& b) const;
@@ -72,7 +72,10 @@ class Sampler {
   VoxelFilter map_filter_;
   VoxelFilter sample_filter_;
   std::vector<ScanPoint> deciders_;  // the return whose voxel decided, for each kept point
-  std::array<RingEnd, 256> ends_{};  // by ring
+  std::array<ScanPoint, kRings + kPart>
+      window_{};  // the last return of each ring before this part, and the part
+  std::array<RingEnd, kRings> ends_{};
+  std::size_t rings_ = 0;  // that the scan has
   std::array<Arrival, kPart> arrivals_{};
   std::vector<Eigen::Vector3f> sample_;
   std::vector<Eigen::Vector3f> candidates_;
