@@ -52,7 +52,8 @@ void MapHeight::restart() {
   x_.setZero();
   P_.setZero();
   P_(kBias, kBias) = squared(config_.start_bias_sigma_m);
-  zero_known_ = faulty_ = unseen_start_ = false;
+  with_start_ = P_;
+  slope_begun_ = zero_known_ = faulty_ = unseen_start_ = false;
   mean_innovation_m_ = 0.0;
   drift_.restart();
   base_sum_m_ = way_m_ = 0.0;
@@ -86,7 +87,7 @@ void MapHeight::watch_ride(const Prior& prior, bool stands) {
   if (unseen_start_) {
     if (any_) risen_m_ += prior.height_m - last_.height_m;
     unseen_start_ = prior.ground_moves;
-    if (!unseen_start_) P_(kMap, kMap) += prior.height_variance_m2;
+    if (!unseen_start_) widen(kMap, prior.height_variance_m2);
     unconfirmed_m2_ = prior.height_variance_m2;
     return;
   }
@@ -120,8 +121,8 @@ void MapHeight::end_ride() {
   ride_.end();
   take_rise();
   unconfirmed_m2_ += ride_.variance_m2();
-  P_(kMap, kMap) += ride_.variance_m2();
-  P_(kBias, kBias) += squared(kOtherFloorM);
+  widen(kMap, ride_.variance_m2());
+  widen(kBias, squared(kOtherFloorM));
 }
 
 double MapHeight::take_risen_m() {
@@ -130,31 +131,42 @@ double MapHeight::take_risen_m() {
   return risen_m;
 }
 
-void MapHeight::predict(double dt_s, double moved_m, double tilt_variance_rad2) {
+void MapHeight::widen(State state, double variance) {
+  P_(state, state) += variance;
+  with_start_(state, state) += variance;
+}
+
+void MapHeight::predict(double dt_s, double moved_m, const MapTilt& tilt) {
+  if (!slope_begun_) with_start_(kSlope, kSlope) = tilt.square_rad2;
+  slope_begun_ = true;
   const double keep_bias = std::exp(-dt_s / config_.bias_time_s);
   const double keep_turbulence = std::exp(-dt_s / config_.turbulence_time_s);
   const bool base = last_.height_source == HeightSource::kDifferential;
   const double keep_slope = std::exp(-moved_m / kSlopeWayM);
   const Vector keep(1.0, base ? keep_bias : 1.0, keep_turbulence, keep_slope);
   x_[kMap] += moved_m * x_[kSlope];
-  P_.row(kMap) += moved_m * P_.row(kSlope);
-  P_.col(kMap) += moved_m * P_.col(kSlope);
   x_ = keep.cwiseProduct(x_);
-  P_ = (keep.asDiagonal() * P_ * keep.asDiagonal()).eval();
-  P_(kSlope, kSlope) += tilt_variance_rad2 * (1.0 - keep_slope * keep_slope);
-  P_(kMap, kMap) += squared(config_.map_walk_m_sqrt_m) * moved_m;
-  P_(kBias, kBias) += base ? squared(config_.bias_sigma_m) * (1.0 - keep_bias * keep_bias)
-                           : squared(config_.weather_walk_m_sqrt_s) * dt_s;
-  P_(kTurbulence, kTurbulence) +=
-      squared(config_.turbulence_sigma_m) * (1.0 - keep_turbulence * keep_turbulence);
+  predict(keep, moved_m, tilt.variance_rad2, P_);
+  predict(keep, moved_m, tilt.square_rad2, with_start_);
+  widen(kMap, squared(config_.map_walk_m_sqrt_m) * moved_m);
+  widen(kBias, base ? squared(config_.bias_sigma_m) * (1.0 - keep_bias * keep_bias)
+                    : squared(config_.weather_walk_m_sqrt_s) * dt_s);
+  widen(kTurbulence, squared(config_.turbulence_sigma_m) * (1.0 - keep_turbulence * keep_turbulence));
+}
+
+void MapHeight::predict(const Vector& keep, double moved_m, double tilt_rad2, Matrix& P) const {
+  P.row(kMap) += moved_m * P.row(kSlope);
+  P.col(kMap) += moved_m * P.col(kSlope);
+  P = (keep.asDiagonal() * P * keep.asDiagonal()).eval();
+  P(kSlope, kSlope) += tilt_rad2 * (1.0 - squared(keep[kSlope]));
 }
 
 double MapHeight::update(double z_m, double moved_m, double z_variance_m2, bool registered,
-                         double tilt_variance_rad2) {
+                         const MapTilt& tilt) {
   const double dt_s = updated_ns_ == 0 ? 0.0 : std::max(0.0, seconds_between(updated_ns_, last_.stamp_ns));
   updated_ns_ = last_.stamp_ns;
-  predict(std::min(dt_s, 60.0), moved_m, tilt_variance_rad2);
-  if (!registered) P_(kMap, kMap) += z_variance_m2;
+  predict(std::min(dt_s, 60.0), moved_m, tilt);
+  if (!registered) widen(kMap, z_variance_m2);
   if (registered) unconfirmed_m2_ = 0.0;
   way_m_ += moved_m;
   if (riding()) drift_.restart();
@@ -194,7 +206,7 @@ void MapHeight::measure(double z_m, double dt_s) {
     if (outside_s_ < kGateS) return;
     // No door: another zone, weather, a drift. The altimeter's error, not the map's.
     x_[kBias] += innovation_m_;
-    P_(kBias, kBias) += squared(config_.bias_sigma_m);
+    widen(kBias, squared(config_.bias_sigma_m));
     outside_s_ = 0.0;
     faulty_ = std::abs(x_[kBias]) > kFaultM;
     return;
@@ -206,8 +218,10 @@ void MapHeight::measure(double z_m, double dt_s) {
   if (altimeter_faulty() || std::abs(mean_innovation_m_) > kDriftM) K[kMap] = K[kSlope] = 0.0;
   x_ += K * innovation_m_;
   const Matrix keep = Matrix::Identity() - K * h.transpose();
-  P_ = (keep * P_ * keep.transpose() + noise_m2 * K * K.transpose()).eval();
-  P_ = (0.5 * (P_ + P_.transpose())).eval();
+  for (Matrix* P : {&P_, &with_start_}) {
+    *P = (keep * *P * keep.transpose() + noise_m2 * K * K.transpose()).eval();
+    *P = (0.5 * (*P + P->transpose())).eval();
+  }
   faulty_ = std::abs(x_[kBias]) > kFaultM;
 }
 

@@ -37,6 +37,12 @@ struct MapHeightConfig {
   double weather_walk_m_sqrt_s = 0.02;  ///< bias without a base station [m/sqrt(s)]
 };
 
+/// Tilt of the map, per axis.
+struct MapTilt {
+  double variance_rad2 = 0.0;  ///< of what is not known of it
+  double square_rad2 = 0.0;    ///< second moment, with what is known: the map keeps it
+};
+
 /// Owner of the height. Fed with the priors up to each scan, and with each scan's pose.
 class MapHeight {
  public:
@@ -55,7 +61,7 @@ class MapHeight {
   /// The pose of a scan. `moved_m`: way since the last one. `z_variance_m2`: of z against the map; of dead reckoning
   /// where the scan was not registered.
   /// @return the correction of z that moves the robot, and with it the ground it is about to map [m]
-  double update(double z_m, double moved_m, double z_variance_m2, bool registered, double tilt_variance_rad2);
+  double update(double z_m, double moved_m, double z_variance_m2, bool registered, const MapTilt& tilt);
 
   /// Begins at a pose in the map; the altimeter reads `z_m` there.
   void restart();
@@ -67,7 +73,7 @@ class MapHeight {
   /// What is known of the altimeter.
   [[nodiscard]] AltimeterState altimeter() const;
   /// Variance of the map's height at the robot [m^2].
-  [[nodiscard]] double variance_m2() const { return P_(kMap, kMap); }
+  [[nodiscard]] double variance_m2() const { return with_start_(kMap, kMap); }
   /// The altimeter departs from the map by more than zones and weather explain: a drift or a fault of a barometer.
   [[nodiscard]] bool altimeter_faulty() const { return faulty_ || drift_.suspect() != DriftSuspect::kNone; }
 
@@ -78,7 +84,9 @@ class MapHeight {
 
   void take(const Prior& prior);
   void take_reading(const Prior& prior);
-  void predict(double dt_s, double moved_m, double tilt_variance_rad2);
+  void predict(double dt_s, double moved_m, const MapTilt& tilt);
+  void predict(const Vector& keep, double moved_m, double tilt_rad2, Matrix& P) const;
+  void widen(State state, double variance);
   void measure(double z_m, double dt_s);
   void watch_drift(double residual_m);
   void watch_ride(const Prior& prior, bool stands);
@@ -90,8 +98,12 @@ class MapHeight {
   DriftWatch drift_;
   Vector x_ = Vector::Zero();
   Matrix P_ = Matrix::Zero();
+  // Covariance of the same filter, whose gains do not know it, with the slope that the map has from the start: in P_ it
+  // would make the map follow a barometer that drifts in the first minute.
+  Matrix with_start_ = Matrix::Zero();
   Prior last_;  // the last prior taken
   bool any_ = false;
+  bool slope_begun_ = false;
   bool zero_known_ = false;  // altimeter readings are relative to the first one
   double zero_m_ = 0.0;
   double sum_m_ = 0.0;  // altimeter readings since the last update

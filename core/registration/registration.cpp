@@ -150,7 +150,7 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
   pose.covariance = as_pose_covariance(result.twist_covariance);
 
   pose.for_map = !riding && state_.held.for_map(end.standing_still);
-  if (traits.method == Method::kAdaptive) learn(end, prediction, registered, pose);
+  learn(end, prediction, traits, registered, pose);
   own_covariance(end, traits, registered, pose);
   if (traits.method != Method::kAdaptive) describe_ground(end, pose);
   if (registered) watch(end, pose);

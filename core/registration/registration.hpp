@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -24,6 +25,7 @@
 #include "core/registration/map_height.hpp"
 #include "core/registration/method.hpp"
 #include "core/registration/motion_model.hpp"
+#include "core/registration/mount_doubt.hpp"
 #include "core/registration/place_search.hpp"
 #include "core/registration/registration_config.hpp"
 #include "core/registration/scan_matcher.hpp"
@@ -52,6 +54,8 @@ struct RegistrationState {
       : motion(config),
         tilt(config.mount_error_deg * kRadPerDeg),
         mounts(configured),
+        yaw_mounts(configured),
+        mount_doubt(config.mount_error_deg * kRadPerDeg / std::sqrt(2.0)),
         q_base_lidar(configured) {}
 
   PriorHistory history;
@@ -63,6 +67,8 @@ struct RegistrationState {
   bool posed = false;  ///< `last` is a pose of this frame
   TiltOffset tilt;
   MountEstimator mounts;
+  MountEstimator yaw_mounts;  ///< of methods that fix roll and pitch: yaw only
+  MountDoubt mount_doubt;
   Eigen::Quaterniond q_base_lidar;  ///< as found so far
   HeldPose held;
   double wheel_turn_rad = 0.0;  ///< Prior::wheel_turn_rad of the last registered scan
@@ -156,8 +162,9 @@ class Registration {
                                   const MethodTraits& traits);
   [[nodiscard]] bool acceptable(const MatchResult& match, const Prediction& prediction) const;
   [[nodiscard]] Prediction predict(const Prior& end, const MethodTraits& traits);
-  void learn(const Prior& end, const Prediction& prediction, bool registered, PoseEstimate& pose);
-  void learn_mount(const Prior& end, const PoseEstimate& pose);
+  void learn(const Prior& end, const Prediction& prediction, const MethodTraits& traits, bool registered,
+             PoseEstimate& pose);
+  void learn_mount(const Prior& end, const MethodTraits& traits, const PoseEstimate& pose);
   void use_mount();
   void describe_mount(PoseEstimate& pose) const;
   void own_tilt(const Prior& end, PoseEstimate& pose);
@@ -171,9 +178,12 @@ class Registration {
   void watch_halt(const Prior& end, const PoseEstimate& pose);
   [[nodiscard]] UnseenStep step_to(const Prior& end, const Eigen::Isometry3d& T_map_base) const;
   [[nodiscard]] double height_variance() const;
-  [[nodiscard]] double mount_sigma_rad() const;
-  [[nodiscard]] Matrix6d mount_covariance(const Eigen::Vector3d& p_map) const;
   void fix_variances(const Prior& prior, const MethodTraits& traits, Matrix6d& covariance) const;
+  // registration_mount_error.cpp
+  [[nodiscard]] static double unsettled_gravity_rad(const Prior& prior);
+  [[nodiscard]] double offset_sigma_rad() const;
+  [[nodiscard]] Matrix6d mount_covariance(const Prior& end, const MethodTraits& traits,
+                                          const Eigen::Isometry3d& T_map_base) const;
   /// The pose of a registered scan: the scan's, or that of a robot that stands.
   Eigen::Isometry3d registered_pose(const Prior& end, const MethodTraits& traits, const MatchResult& result);
   [[nodiscard]] PoseMode mode_after(bool registered, const MethodTraits& traits);

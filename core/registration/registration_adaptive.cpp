@@ -87,17 +87,18 @@ Prediction Registration::predict(const Prior& end, const MethodTraits& traits) {
 }
 
 // What a scan says of gravity's offset, the mount and the height, and what they say of its pose.
-void Registration::learn(const Prior& end, const Prediction& prediction, bool registered,
-                         PoseEstimate& pose) {
-  if (registered) {
-    own_tilt(end, pose);
-    learn_mount(end, pose);
-  }
+void Registration::learn(const Prior& end, const Prediction& prediction, const MethodTraits& traits,
+                         bool registered, PoseEstimate& pose) {
+  const bool adaptive = traits.method == Method::kAdaptive;
+  if (registered && adaptive) own_tilt(end, pose);
+  if (registered) learn_mount(end, traits, pose);
+  if (!adaptive) return;
   own_height(prediction, registered, pose);
   describe_mount(pose);
 }
 
-void Registration::learn_mount(const Prior& end, const PoseEstimate& pose) {
+// The other methods use no mount; the error that this costs them is in their covariance.
+void Registration::learn_mount(const Prior& end, const MethodTraits& traits, const PoseEstimate& pose) {
   ScanMotionEvidence evidence;
   evidence.stamp_ns = pose.stamp_ns;
   evidence.session = pose.session;
@@ -105,7 +106,10 @@ void Registration::learn_mount(const Prior& end, const PoseEstimate& pose) {
   evidence.q_base_lidar = state_.q_base_lidar;
   if (end.velocity_valid) evidence.wheel_turn_rad = end.wheel_turn_rad - state_.wheel_turn_rad;
   state_.wheel_turn_rad = end.wheel_turn_rad;
-  state_.mounts.add(evidence, state_.history);
+  const bool tilt_shown = traits.tilt != Constraint::kFixed;
+  MountEstimator& mounts = tilt_shown ? state_.mounts : state_.yaw_mounts;
+  mounts.add(evidence, state_.history);
+  state_.mount_doubt.learn(mounts.estimate(), tilt_shown);
 }
 
 void Registration::describe_mount(PoseEstimate& pose) const {
@@ -156,7 +160,7 @@ void Registration::own_height(const Prediction& prediction, bool registered, Pos
       (pose.T_map_base.translation() - state_.last.T_map_base.translation()).head<2>().norm();
   const double step_m =
       height.update(pose.T_map_base.translation().z(), moved_m, squared(prediction.deviation(5)), registered,
-                    state_.tilt.tilt_variance_rad2());
+                    {state_.tilt.tilt_variance_rad2(), state_.tilt.tilt_rad2()});
   const Eigen::Vector3d up(0.0, 0.0, step_m);
   pose.T_map_base.pretranslate(up);
   pose.T_map_odom.pretranslate(up);

@@ -8,10 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry.hpp"
 #include "core/registration/halt.hpp"
 #include "core/registration/registration.hpp"
-#include "core/so3.hpp"
 #include "core/squared.hpp"
 #include "core/stamp.hpp"
 
@@ -23,13 +21,24 @@ namespace {
 constexpr double kLeastVariance = 1e-8;
 // What the air of zones, doors and weather adds to the altimeter's own variance, and does not average out [m].
 constexpr double kZoneM = 0.05;
-// Largest error of gravity at the start, 1 sigma.
-constexpr double kUnsettledGravityRad = 0.4 * kRadPerDeg;
 // Dead reckoning with which ground was laid that no scan of the map before has shown.
 constexpr double kLaidWayM = 3.0;
 constexpr double kLaidS = 3.0;
 // Longest step from which a velocity is taken [s].
 constexpr double kLongestGapS = 0.5;
+
+// Share of the ICP's standard deviations by which scans of one place scatter. It counts neighbouring pairs as one, which
+// keeps the prior's say, and doubts far points by RegistrationConfig::attitude_error_deg; both are errors of the map.
+constexpr double kScatterOfPosition = 0.5;
+constexpr double kScatterOfTilt = 0.6;
+
+// Error of a scan against known ground.
+Matrix6d scan_error(const Matrix6d& covariance) {
+  Eigen::Matrix<double, 6, 1> share = Eigen::Matrix<double, 6, 1>::Ones();
+  share.head<3>().setConstant(kScatterOfPosition);
+  share.segment<2>(3).setConstant(kScatterOfTilt);
+  return share.asDiagonal() * covariance * share.asDiagonal();
+}
 
 // Rows of a pose's covariance that the ICP moves: 1, else 0.
 Eigen::Matrix<double, 6, 1> free_rows(const Basis& basis) {
@@ -60,30 +69,12 @@ Eigen::Matrix3d held_by_wheels(const Localisability& localisability) {
   return held;
 }
 
-// The map is turned about the start by the lidar's yaw mount, of second moment `mount_rad2`; the pose itself by what of
-// it has been corrected since, `corrected_rad`.
-Matrix6d turned_about_start(const Eigen::Vector3d& p_map, double mount_rad2, double corrected_rad) {
-  Eigen::Matrix<double, 6, 1> turn = Eigen::Matrix<double, 6, 1>::Zero();
-  turn.head<2>() << -p_map.y(), p_map.x();
-  Matrix6d covariance = mount_rad2 * turn * turn.transpose();
-  covariance.col(5) += squared(corrected_rad) * turn;
-  covariance.row(5) += squared(corrected_rad) * turn.transpose();
-  covariance(5, 5) += squared(corrected_rad);
-  return covariance;
-}
-
 }  // namespace
-
-// Error of one mount, of lidar or IMU, 1 sigma: RegistrationConfig::mount_error_deg is that of the two against each other,
-// of hands that build robots; most are built better.
-double Registration::mount_sigma_rad() const { return 0.6 * config_.mount_error_deg * kRadPerDeg; }
 
 void Registration::restart_drift(const Prior& prior) {
   // Of a map that begins level with gravity and keeps that: gravity has not settled at the first scan.
-  const double gravity_rad =
-      std::min(std::sqrt(std::max(prior.roll_pitch_variance_rad2, 0.0)), kUnsettledGravityRad);
   const bool free_tilt = traits_.tilt == Constraint::kFree;
-  state_.drift.restart(free_tilt ? std::hypot(config_.mount_error_deg * kRadPerDeg, gravity_rad) : 0.0);
+  state_.drift.restart(free_tilt ? offset_sigma_rad() : 0.0, unsettled_gravity_rad(prior));
   state_.unseen.restart();
   state_.posed = false;
 }
@@ -94,11 +85,12 @@ void Registration::own_covariance(const Prior& end, const MethodTraits& traits, 
   const bool adaptive = traits.method == Method::kAdaptive;
   Matrix6d covariance = Matrix6d::Zero();
   if (registered) {
-    covariance = masked(pose.covariance, rows);
-    lay_scan(traits, covariance, pose);
+    covariance = masked(scan_error(pose.covariance), rows);
+    lay_scan(traits, masked(pose.covariance, rows), pose);
   } else {
     state_.unseen.move(end, step_to(end, pose.T_map_base));
-    state_.drift.carry(pose.T_map_base.translation());
+    const Eigen::Vector3d p_map = pose.T_map_base.translation();
+    end.ground_moves ? state_.drift.lift(p_map) : state_.drift.carry(p_map);
   }
   watch_halt(end, pose);
   covariance += masked(state_.drift.covariance(), rows);
@@ -106,11 +98,11 @@ void Registration::own_covariance(const Prior& end, const MethodTraits& traits, 
   if (adaptive) {
     // The owner of height knows its error, on known ground as well as when that was mapped.
     leave_out_z(covariance);
-    covariance(2, 2) = std::max(registered ? pose.covariance(2, 2) : 0.0, kLeastVariance) + height_variance();
+    covariance(2, 2) = (registered ? scan_error(pose.covariance)(2, 2) : kLeastVariance) + height_variance();
   }
   Matrix6d unseen = state_.unseen.covariance();
   if (adaptive) leave_out_z(unseen);
-  covariance += unseen + mount_covariance(pose.T_map_base.translation());
+  covariance += unseen + mount_covariance(end, traits, pose.T_map_base);
   // The start is exact by definition, and a matrix of zeros is none.
   covariance.diagonal().array() += kLeastVariance;
   pose.covariance = covariance;
@@ -120,7 +112,9 @@ void Registration::own_covariance(const Prior& end, const MethodTraits& traits, 
 
 double Registration::height_variance() const {
   const double now_m2 = state_.height.variance_m2();
-  return state_.drift.on_known_ground() ? std::min(now_m2, state_.drift.height_variance_m2()) : now_m2;
+  if (!state_.drift.on_known_ground()) return now_m2;
+  const double first_m2 = std::min(now_m2, state_.drift.height_variance_m2());
+  return first_m2 + state_.drift.left_of_arrival() * (now_m2 - first_m2);
 }
 
 void Registration::lay_scan(const MethodTraits& traits, const Matrix6d& scan_covariance,
@@ -128,11 +122,12 @@ void Registration::lay_scan(const MethodTraits& traits, const Matrix6d& scan_cov
   if (state_.unseen.way_m() > kLaidWayM || state_.unseen.time_s() > kLaidS) {
     state_.drift.add_unseen(state_.unseen.covariance());
   }
-  if (traits.method == Method::kAdaptive) state_.drift.know_tilt(state_.tilt.tilt_variance_rad2());
+  if (traits.method == Method::kAdaptive) state_.drift.know_tilt(state_.tilt.tilt_rad2());
   LaidScan laid;
   laid.T_map_base = pose.T_map_base;
   laid.covariance = scan_covariance;
-  laid.offset_rad = traits.tilt == Constraint::kFixed ? config_.mount_error_deg * kRadPerDeg : 0.0;
+  laid.levelled = traits.tilt == Constraint::kFixed;
+  laid.offset_rad = offset_sigma_rad();
   laid.on_wheels = held_by_wheels(pose.localisability);
   laid.height_variance_m2 = state_.height.variance_m2();
   state_.drift.lay(laid);
@@ -157,7 +152,7 @@ void Registration::watch_halt(const Prior& end, const PoseEstimate& pose) {
 UnseenStep Registration::step_to(const Prior& end, const Eigen::Isometry3d& T_map_base) const {
   UnseenStep step;
   step.R_map_base = T_map_base.linear();
-  step.tilt_rad = mount_sigma_rad();
+  step.tilt_rad = std::sqrt(state_.mount_doubt.variance_rad2());
   if (!state_.posed) return step;
   step.step_m = T_map_base.translation() - state_.last.T_map_base.translation();
   step.dt_s = std::max(0.0, seconds_between(state_.last.stamp_ns, end.stamp_ns));
@@ -166,20 +161,8 @@ UnseenStep Registration::step_to(const Prior& end, const Eigen::Isometry3d& T_ma
   return step;
 }
 
-Matrix6d Registration::mount_covariance(const Eigen::Vector3d& p_map) const {
-  const Eigen::Quaterniond corrected =
-      state_.q_base_lidar * Eigen::Quaterniond(T_base_lidar_.linear()).conjugate();
-  const double corrected_rad = log_so3(corrected).z();
-  const MountState& mount = state_.last.mount;
-  const double left_rad =
-      mount.found && mount.yaw_found ? std::min(mount.sigma_rad[2], mount_sigma_rad()) : mount_sigma_rad();
-  return turned_about_start(p_map, squared(corrected_rad) + squared(left_rad), corrected_rad);
-}
-
-// Roll and pitch are those of base_link, which the mount of the IMU or of the lidar defines; z fixed by the altimeter
-// errs as the air does.
+// z fixed by the altimeter errs as the air does.
 void Registration::fix_variances(const Prior& prior, const MethodTraits& traits, Matrix6d& covariance) const {
-  covariance.diagonal().segment<2>(3).array() += squared(mount_sigma_rad());
   if (traits.tilt == Constraint::kFixed) {
     covariance.diagonal().segment<2>(3).array() += std::max(prior.roll_pitch_variance_rad2, kLeastVariance);
   }

@@ -43,6 +43,8 @@ class TiltOffset {
   [[nodiscard]] double offset_sigma_rad() const;
   /// Variance of t per axis.
   [[nodiscard]] double tilt_variance_rad2() const { return 0.5 * (P_(2, 2) + P_(3, 3)); }
+  /// Second moment of t per axis: the map keeps what is known of its tilt.
+  [[nodiscard]] double tilt_rad2() const { return 0.5 * (P_(2, 2) + P_(3, 3) + x_.tail<2>().squaredNorm()); }
 
  private:
   using Vector = Eigen::Vector4d;

@@ -29,9 +29,11 @@ class VisitedGround {
 
   [[nodiscard]] static Cell cell_of(const Eigen::Vector3d& p_map);
   void clear() { count_ = 0; }
-  /// `cell` is not known yet.
-  void add(const Cell& cell, const MapError& error);
-  [[nodiscard]] std::optional<MapError> find(const Cell& cell) const;
+  /// `cell` is not known yet; the robot is there after `way_m`.
+  void add(const Cell& cell, const MapError& error, double way_m);
+  /// Error at the first visit of `cell`; where it is not known, of the neighbour that was visited first, if that was before
+  /// `way_m`: from next door a lidar has seen the cell.
+  [[nodiscard]] std::optional<MapError> find(const Cell& cell, double way_m) const;
 
  private:
   struct Visit {
@@ -39,6 +41,7 @@ class VisitedGround {
     Eigen::Matrix<float, 6, 6> random;
     Eigen::Matrix<float, 6, GrowingError::kConstants> constants;
     float height_variance_m2 = 0.0F;
+    double way_m = 0.0;
   };
   std::vector<Visit> cells_;  // ring
   std::size_t count_ = 0;     // visits so far

@@ -18,6 +18,7 @@ struct Drive {
   double speed_m_s = 0.5;
   double stays =
       0.1;  // share of a correction that stays, because scans are laid onto ground mapped before it
+  double tilt_rad = 0.0;  // of the map, 1 sigma
   HeightSource source = HeightSource::kDifferential;
   std::function<double(double)> z = [](double) { return 0.0; };
   std::function<double(double)> altimeter = [](double) { return 0.0; };
@@ -45,7 +46,8 @@ struct Drive {
         history.add(prior);
       }
       height.advance_to(prior.stamp_ns, history);
-      corrected_m += stays * height.update(z(t) + corrected_m, speed_m_s * kScanS, 1e-6, true, 0.0);
+      corrected_m += stays * height.update(z(t) + corrected_m, speed_m_s * kScanS, 1e-6, true,
+                                           {tilt_rad * tilt_rad, tilt_rad * tilt_rad});
     }
   }
 };
@@ -97,6 +99,16 @@ TEST_CASE("the variance of the height grows with the way, and not while the robo
   drive.speed_m_s = 0.0;
   drive.go(100.0);
   CHECK(drive.height.variance_m2() <= after_50_m);
+}
+
+TEST_CASE("a map that may be tilted is unsure of the height ahead from the first metres") {
+  Drive level;
+  level.go(10.0);
+  Drive tilted;
+  tilted.tilt_rad = 0.01;
+  tilted.go(10.0);
+  CHECK(std::sqrt(level.height.variance_m2()) < 0.025);
+  CHECK(std::sqrt(tilted.height.variance_m2()) > 0.03);
 }
 
 TEST_CASE("without a base station the weather is the altimeter's") {

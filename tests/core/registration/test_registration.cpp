@@ -95,9 +95,19 @@ TEST_CASE("in a corridor without features the wheels bridge its axis, and the po
   CHECK(run.position_error().x() == doctest::Approx(0.224).epsilon(0.25).scale(0.0));
   CHECK(std::abs(run.position_error().y()) < 0.02);
   CHECK(run.rotation_error_deg() < 0.3);
-  // The covariance agrees: large along the corridor, small across.
-  CHECK(run.pose().covariance(0, 0) > 4.0 * run.pose().covariance(1, 1));
   CHECK(std::sqrt(run.pose().covariance(0, 0)) > 0.224 / 3.0);
+}
+
+TEST_CASE("in a corridor without features the covariance is large along it and small across") {
+  // Wheels that run straight: a drift of their yaw would look like a lidar that is turned.
+  const MakePrior straight = [](std::int64_t stamp_ns) {
+    Prior prior = drifting(along_x)(stamp_ns);
+    prior.T_odom_base.linear().setIdentity();
+    return prior;
+  };
+  RegistrationRun run(bare_corridor(), along_x, straight, Method::k3Dof);
+  run.steps(80);
+  CHECK(run.pose().covariance(0, 0) > 4.0 * run.pose().covariance(1, 1));
 }
 
 TEST_CASE("method odometry ignores the scan") {
