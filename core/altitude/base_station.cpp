@@ -25,6 +25,8 @@ constexpr double kNewLevelS = 5.0;
 constexpr double kLevelSamples = 30.0;
 // A jump that lasts longer is a fault, not a gust.
 constexpr double kJumpFaultS = 1.0;
+// Possible new levels in a row, each beyond the one before in the same direction: a drift that is too fast for the filter.
+constexpr double kDriftLevels = 3.0;
 // Upper bound of the filter's lag: at 1 Hz the walk alone would give 8 s, behind which a common ramp of 1 Pa/s is
 // 8 Pa.
 constexpr double kLongestLagS = 1.5;
@@ -68,6 +70,7 @@ bool BaseStation::ready(std::int64_t now_ns) const {
 BarometerFault BaseStation::fault(std::int64_t now_ns) const {
   const BarometerFault own = monitor_.fault(now_ns);
   if (own != BarometerFault::kOk && own != BarometerFault::kSpiking) return own;
+  if (jumping_ && std::abs(level_steps_) >= kDriftLevels) return BarometerFault::kDrifting;
   if (jumping_ && seconds_between(jumping_ns_, now_ns) > kJumpFaultS) return BarometerFault::kWrong;
   return own;
 }
@@ -148,9 +151,12 @@ bool BaseStation::jumps(const PressureSample& sample, double gap_s, double noise
     jumping_ns_ = candidate_ns_ = sample.stamp_ns;
     candidate_pa_ = sample.pressure_pa;
     candidate_count_ = 1.0;
+    level_steps_ = 0.0;
     return true;
   }
   if (std::abs(sample.pressure_pa - candidate_pa_) > still_pa) {
+    const double direction = std::copysign(1.0, sample.pressure_pa - candidate_pa_);
+    level_steps_ = direction * level_steps_ > 0.0 ? level_steps_ + direction : direction;
     candidate_pa_ = sample.pressure_pa;
     candidate_ns_ = sample.stamp_ns;
     candidate_count_ = 1.0;

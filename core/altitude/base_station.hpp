@@ -82,6 +82,7 @@ class BaseStation {
   std::int64_t candidate_ns_ = 0;
   double sample_log_ = 0.0;
   double sample_variance_ = 0.0;
+  double level_steps_ = 0.0;  // possible new levels in a row that rise; negative: that fall
   bool jumping_ = false;
   bool used_last_ = false;
 };

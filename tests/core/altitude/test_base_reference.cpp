@@ -2,6 +2,7 @@
 // Effect on the height of base stations that join, leave and fail.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -228,6 +229,26 @@ TEST_CASE("replayed and stale base samples are refused") {
   PressureSample third{at(99.5), 1e5 + 1.0, 20.0};
   third.station = 2;
   CHECK(altimeter.add_base(third) == PressureStatus::kBadValue);
+}
+
+TEST_CASE(
+    "a station that drifts faster than its filter follows is said to drift, and one that steps is not") {
+  for (const double pa_s : {3.5, 5.0, -5.0}) {
+    CAPTURE(pa_s);
+    Scene scene;
+    scene.stations[0].extra_pa = [=](double t) { return pa_s * std::clamp(t - 40.0, 0.0, 60.0); };
+    double said_s = INFINITY;
+    for (const Row& row : run(scene)) {
+      if (row.fault[0] != BarometerFault::kDrifting) continue;
+      said_s = row.t;
+      break;
+    }
+    CHECK(said_s > 40.0);
+    CHECK(said_s < 50.0);
+  }
+  Scene step;
+  step.stations[0].extra_pa = [](double t) { return t < 40.0 ? 0.0 : t < 80.0 ? 30.0 : -20.0; };
+  for (const Row& row : run(step)) CHECK(row.fault[0] != BarometerFault::kDrifting);
 }
 
 }  // namespace isobar::test::test_base_reference
