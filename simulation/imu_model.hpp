@@ -24,8 +24,9 @@ struct ImuErrors {
   Eigen::Matrix3d accel_scale = Eigen::Matrix3d::Identity();  ///< scale and misalignment
   double vibration_m_s2 = 0.0;                                ///< rms per axis at 0.6 m/s on a flat floor
   double vibration_rad_s = 0.0;                               ///< rms per axis at 0.6 m/s on a flat floor
-  bool has_attitude = false;                                  ///< the unit outputs its own attitude estimate
-  double attitude_sigma_rad = 0.0;                            ///< rms error of that estimate, per axis
+  double cabin_vibration_m_s2 = 0.0;  ///< vertical rms in an elevator at 1 m/s and above
+  bool has_attitude = false;          ///< the unit outputs its own attitude estimate
+  double attitude_sigma_rad = 0.0;    ///< rms error of that estimate, per axis
 
   /// Random errors with the data-sheet figures of the paper's MTi-10 or VN-100; sources in imu_model.cpp.
   /// `tracked`: the robot has tracks, which vibrate.
@@ -46,13 +47,17 @@ class ImuModel {
  private:
   [[nodiscard]] Eigen::Vector3d white(double sigma);
   void wander(Eigen::Vector3d& bias, double sigma);
+  [[nodiscard]] double vibrate_cabin(double speed_m_s);
 
   const Trajectory& trajectory_;
   Eigen::Isometry3d T_base_imu_;
   ImuErrors errors_;
   Random random_;
+  Random cabin_random_;
   Eigen::Vector3d gyro_wander_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel_wander_ = Eigen::Vector3d::Zero();
+  double cabin_m_ = 0.0;  // displacement of the vibrating cabin, and its speed
+  double cabin_m_s_ = 0.0;
   Eigen::Vector3d attitude_wander_ = Eigen::Vector3d::Zero();
 };
 

@@ -28,8 +28,11 @@ constexpr double kLargestStepM = 0.02;
 constexpr double kSlopeWayM = 25.0;
 // Share of a step that stays: the next scan is laid onto ground that was mapped before the step.
 constexpr double kStays = 0.05;
-// Bias of the altimeter after a ride: another floor, another zone.
-constexpr double kOtherFloorM = 0.2;
+// Largest gain of the altimeter on a ride that is no fault: another zone (4 Pa), and air of 17 K.
+constexpr double kRideGainM = 0.35;
+constexpr double kRideGainShare = 0.06;
+// Longest time for which the acceleration contradicts the end of a ride.
+constexpr double kStopDoubtS = 10.0;
 
 }  // namespace
 
@@ -56,7 +59,7 @@ void MapHeight::restart() {
   slope_begun_ = zero_known_ = faulty_ = unseen_start_ = false;
   mean_innovation_m_ = 0.0;
   drift_.restart();
-  base_sum_m_ = way_m_ = 0.0;
+  base_sum_m_ = way_m_ = floor_bias_m_ = 0.0;
   sum_m_ = count_ = outside_s_ = unconfirmed_m2_ = risen_m_ = taken_m_ = 0.0;
   ride_.end();
 }
@@ -74,7 +77,7 @@ void MapHeight::take(const Prior& prior) {
   // A robot that drives is on stairs, not in an elevator.
   const bool stands = wheels_stand(prior);
   if (dt_s > kGapS) {
-    ride_.forget();
+    ride_.forget(dt_s);
   } else {
     ride_.add_acceleration(prior.up_accel_m_s2, dt_s, stands);
   }
@@ -96,9 +99,13 @@ void MapHeight::watch_ride(const Prior& prior, bool stands) {
     unseen_start_ = !ride_.remembers_start();
     if (unseen_start_) return;
     ride_.begin();
-    taken_m_ = 0.0;
+    taken_m_ = waited_s_ = 0.0;
   }
-  if (!prior.ground_moves && ride_.riding()) end_ride();
+  if (!prior.ground_moves && ride_.riding()) {
+    waited_s_ += any_ ? seconds_between(last_.stamp_ns, prior.stamp_ns) : 0.0;
+    // A cabin that creeps to its floor, or a stop that only the air has seen.
+    if (ride_.may_have_stopped() || !stands || waited_s_ > kStopDoubtS) end_ride();
+  }
   if (ride_.riding()) take_rise();
 }
 
@@ -117,12 +124,19 @@ void MapHeight::take_reading(const Prior& prior) {
   noise_m2_ = prior.altimeter_variance_m2;
 }
 
+// The altimeter at a floor of unknown ventilation says nothing of the ride's error that RideMeter has not used: what the
+// height errs by, the bias errs by.
 void MapHeight::end_ride() {
   ride_.end();
   take_rise();
-  unconfirmed_m2_ += ride_.variance_m2();
-  widen(kMap, ride_.variance_m2());
-  widen(kBias, squared(kOtherFloorM));
+  const double variance_m2 = ride_.variance_m2();
+  unconfirmed_m2_ += variance_m2;
+  const double gain_m = ride_.altimeter_gain_m();
+  const double explained_m = kRideGainM + kRideGainShare * std::abs(ride_.risen_m());
+  x_[kBias] += gain_m;
+  floor_bias_m_ += std::clamp(gain_m, -explained_m, explained_m);
+  const Vector common(1.0, 1.0, 0.0, 0.0);
+  for (Matrix* P : {&P_, &with_start_}) *P += variance_m2 * common * common.transpose();
 }
 
 double MapHeight::take_risen_m() {
@@ -145,7 +159,9 @@ void MapHeight::predict(double dt_s, double moved_m, const MapTilt& tilt) {
   const double keep_slope = std::exp(-moved_m / kSlopeWayM);
   const Vector keep(1.0, base ? keep_bias : 1.0, keep_turbulence, keep_slope);
   x_[kMap] += moved_m * x_[kSlope];
+  x_[kBias] -= floor_bias_m_;
   x_ = keep.cwiseProduct(x_);
+  x_[kBias] += floor_bias_m_;
   predict(keep, moved_m, tilt.variance_rad2, P_);
   predict(keep, moved_m, tilt.square_rad2, with_start_);
   widen(kMap, squared(config_.map_walk_m_sqrt_m) * moved_m);
@@ -208,7 +224,7 @@ void MapHeight::measure(double z_m, double dt_s) {
     x_[kBias] += innovation_m_;
     widen(kBias, squared(config_.bias_sigma_m));
     outside_s_ = 0.0;
-    faulty_ = std::abs(x_[kBias]) > kFaultM;
+    faulty_ = std::abs(x_[kBias] - floor_bias_m_) > kFaultM;
     return;
   }
   outside_s_ = 0.0;
@@ -222,7 +238,7 @@ void MapHeight::measure(double z_m, double dt_s) {
     *P = (keep * *P * keep.transpose() + noise_m2 * K * K.transpose()).eval();
     *P = (0.5 * (*P + P->transpose())).eval();
   }
-  faulty_ = std::abs(x_[kBias]) > kFaultM;
+  faulty_ = std::abs(x_[kBias] - floor_bias_m_) > kFaultM;
 }
 
 }  // namespace isobar

@@ -6,7 +6,7 @@
 //     d   error of the map's height where the robot is [m]: a random walk with the way, because every scan of new
 //         ground is laid onto the one before. On a way of 100 m floors and ceilings keep it to 2 to 3 cm.
 //     b   bias of the altimeter [m], first-order Gauss-Markov: ventilated zones (1 to 4 Pa), warm-up, weather that the
-//         base station does not share. Without a base station a random walk with the weather.
+//         base station does not share; about what the altimeter gained more than the last rides. Without a base station a random walk with the weather.
 //     s   slope of the map's floors [rad], dd/dway = s: constant over a straight drive, while mounts are unknown.
 //     n   turbulence, doors [m]: first-order Gauss-Markov over seconds.
 //
@@ -115,6 +115,8 @@ class MapHeight {
   double taken_m_ = 0.0;     // of RideMeter::risen_m()
   double risen_m_ = 0.0;     // not taken yet
   double unconfirmed_m2_ = 0.0;
+  double floor_bias_m_ = 0.0;  // of the altimeter on this floor, learnt on rides: the bias returns to it
+  double waited_s_ = 0.0;      // in a ride: since the air saw its end
   double innovation_m_ = 0.0;
   double mean_innovation_m_ = 0.0;
   double outside_s_ = 0.0;  // how long the readings have been outside the gate

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Height gained on moving ground (an elevator), from the vertical acceleration between two stops and the altimeter.
 //
-//     state (z, v, b_a, p, k):  dz/dt = v,  dv/dt = a_up - b_a,  p a random walk,  b_a and k constant
-//     altimeter = z + p + k v,  v = 0 at both stops
+//     state (z, v, b_a, p, k, s):  dz/dt = v,  dv/dt = a_up - b_a,  p a random walk,  b_a, k and s constant
+//     altimeter = (1 + s) z + p + k v,  v = 0 at both stops
 //
-// The bias b_a is the mean vertical acceleration of the rest before the ride: with the velocity known at both ends it
-// is the larger part of what the integral errs by. k v is the piston effect of the cabin in its shaft, p what the ventilation
-// of another floor adds. Integrated acceleration errs by 0.4 to 2.5 cm on rides of 8 m in 11 s, where the
-// altimeter is off by 0.2 to 0.9 m.
+// With the velocity known at both ends the bias b_a is the larger part of what the integral errs by; it comes from the
+// rest before the ride, and from those before that. k v is the piston effect of the cabin in its shaft, p what the
+// ventilation of another floor adds, s the error of the air's temperature, which stays from ride to ride. Integrated
+// acceleration errs by 0.4 to 2.5 cm on rides of 8 m in 11 s, where the altimeter is off by 0.2 to 0.9 m.
+//
+// A ride is recognised when it is under way. Its start is looked for in the memory: the end of the last quiet.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+
+#include "core/registration/rest_acceleration.hpp"
 
 namespace isobar {
 
@@ -31,18 +35,25 @@ class RideMeter {
   void begin();
   /// The robot stands again.
   void end();
-  /// After a gap in the acceleration: the memory is void.
-  void forget();
+  /// A gap in the acceleration, of `gap_s`: the memory is void.
+  void forget(double gap_s);
 
-  /// The memory is long enough to hold the start of a ride that is recognised now.
+  /// The memory holds the start of a ride that is recognised now, and a rest before it.
   [[nodiscard]] bool remembers_start() const;
   [[nodiscard]] bool riding() const { return riding_; }
+  /// In a ride: the cabin may have stopped. False while the acceleration contradicts it.
+  [[nodiscard]] bool may_have_stopped() const;
   /// Height gained since the start of the ride, and its variance; of the last ride where none is under way.
-  [[nodiscard]] double risen_m() const { return x_[kRisen]; }
-  [[nodiscard]] double variance_m2() const { return P_(kRisen, kRisen); }
+  [[nodiscard]] double risen_m() const;
+  [[nodiscard]] double variance_m2() const;
+  /// What the altimeter gained more than risen_m(): another zone, the temperature of the air.
+  [[nodiscard]] double altimeter_gain_m() const { return x_[kPressure] + x_[kScale] * x_[kRisen]; }
+  /// Relative error of the altimeter's heights, learnt on rides, and its standard deviation.
+  [[nodiscard]] double air_scale() const { return x_[kScale]; }
+  [[nodiscard]] double air_scale_sd() const;
 
  private:
-  enum State { kRisen, kSpeed, kAccelBias, kPressure, kPiston, kStates };
+  enum State { kRisen, kSpeed, kAccelBias, kPressure, kPiston, kScale, kStates };
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Matrix = Eigen::Matrix<double, kStates, kStates>;
 
@@ -53,20 +64,26 @@ class RideMeter {
     double samples = 0.0;
     double altimeter_m = 0.0;
     double altimeter_weight = 0.0;  // 1 / variance; 0: no reading
-    bool stands = true;
+    bool stands = true;             // wheels at rest, in no ride
   };
   static constexpr std::size_t kBins = 200;  // 10 s
 
   [[nodiscard]] const Bin& back(std::size_t age) const { return bins_[(newest_ + kBins - age) % kBins]; }
-  [[nodiscard]] std::size_t bins_of_ride() const;
-  void learn_rest(std::size_t ride_bins);
+  [[nodiscard]] std::size_t rest_bins() const;
+  [[nodiscard]] std::size_t bins_of_ride(std::size_t rest) const;
+  [[nodiscard]] double gained_m_s(std::size_t age, std::size_t bins, double bias_m_s2) const;
+  void keep(const Bin& bin);
+  void take_rest(const Bin& bin);
+  void learn_zero(std::size_t ride_bins, std::size_t rest);
   void predict(const Bin& bin);
   void learn_noise(const Bin& bin);
   void update(const Vector& h, double measured, double variance);
   void use(const Bin& bin);
+  void use_open();
 
   std::array<Bin, kBins> bins_;
   Bin open_;
+  RestAcceleration rest_;  // of the bins that are older than any ride that is recognised now
   std::size_t newest_ = 0;
   std::size_t count_ = 0;
   double density_ = 0.0;  // of the acceleration's noise [m^2/s^3]

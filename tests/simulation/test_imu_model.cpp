@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "core/geometry.hpp"
 #include "simulation/route.hpp"
 
@@ -104,6 +106,35 @@ TEST_CASE("white noise has the density of the data sheet") {
   // 1200 values: five standard deviations of their variance are 20 %.
   CHECK(gyro == doctest::Approx(0.5 * 25e-8).epsilon(0.2));
   CHECK(accel == doctest::Approx(0.5 * 64e-8).epsilon(0.2));
+}
+
+TEST_CASE(
+    "a robot in an elevator is shaken by the cabin, not by its tracks, and the cabin's vibration is no "
+    "climb") {
+  Route route({0.0, 0.0}, 0.0, 0.0);
+  route.wait(2.0);
+  route.ride(60.0, 1.0, 0.8);
+  route.wait(2.0);
+  const Trajectory trajectory(route.samples());
+  ImuErrors errors;
+  errors.vibration_m_s2 = 0.5;
+  errors.cabin_vibration_m_s2 = 0.03;
+  ImuModel imu(trajectory, Eigen::Isometry3d::Identity(), errors, Random(3));
+  constexpr double kDt = 1.0 / ImuModel::kRateHz;
+  double square = 0.0;
+  double climb_m_s = 0.0;
+  double climb_m = 0.0;
+  for (double t = 0.0; t < trajectory.duration_s(); t += kDt) {
+    const double error = imu.sample(t).accel_m_s2.z() - 9.80665 - trajectory.at(t).a_world.z();
+    square += error * error * kDt;
+    climb_m_s += error * kDt;
+    climb_m += climb_m_s * kDt;
+  }
+  // 60 s at full speed of about 66 s.
+  CHECK(std::abs(std::sqrt(square / 60.0) - 0.03) < 0.003);
+  CHECK(std::abs(climb_m_s) < 0.001);
+  // White noise of that size would be 0.5 m.
+  CHECK(std::abs(climb_m) < 0.01);
 }
 
 }  // namespace isobar::test::test_imu_model

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "core/registration/map_height.hpp"
 
@@ -48,6 +50,46 @@ struct Drive {
       height.advance_to(prior.stamp_ns, history);
       corrected_m += stays * height.update(z(t) + corrected_m, speed_m_s * kScanS, 1e-6, true,
                                            {tilt_rad * tilt_rad, tilt_rad * tilt_rad});
+    }
+  }
+};
+
+// A robot that stands in an elevator: 4 s of rest, 10 m in 12 s, and rest. The air sees the ground move from `seen_s` to
+// `ended_s` after the start of the ride, and `zone_m` more upstairs.
+struct Elevator {
+  double seen_s = 0.8;
+  double ended_s = 13.2;
+  double zone_m = 0.0;
+
+  MapHeight height{};
+  double risen_m = 0.0;
+
+  void run(double until_s) {
+    constexpr double kDtS = 0.005;
+    constexpr double kAccelBias = 0.04;
+    PriorHistory history;
+    height.restart();
+    Prior prior;
+    double before_m_s = 0.0;
+    double true_m = 0.0;
+    std::int64_t stamp_ns = kStartNs;
+    for (double t = -4.0; t < until_s; t += kDtS) {
+      const double ramp_s = std::clamp(std::min(t, 12.0 - t), 0.0, 2.0);
+      const double speed_m_s = 0.5 * (1.0 - std::cos(0.5 * std::numbers::pi * ramp_s));
+      true_m += speed_m_s * kDtS;
+      prior.stamp_ns = stamp_ns += 5'000'000;
+      prior.height_source = HeightSource::kDifferential;
+      prior.velocity_valid = true;
+      prior.up_accel_m_s2 = kAccelBias + (speed_m_s - before_m_s) / kDtS;
+      prior.ground_moves = t >= seen_s && t < ended_s;
+      prior.altimeter_m = true_m + zone_m * std::clamp(true_m / 10.0, 0.0, 1.0);
+      prior.altimeter_variance_m2 = 0.0009;
+      ++prior.altimeter_count;
+      before_m_s = speed_m_s;
+      history.add(prior);
+      height.advance_to(prior.stamp_ns, history);
+      risen_m += height.take_risen_m();
+      if (prior.altimeter_count % 20 == 0) height.update(risen_m, 0.0, 1e-6, !height.riding(), {});
     }
   }
 };
@@ -117,6 +159,35 @@ TEST_CASE("without a base station the weather is the altimeter's") {
   drive.altimeter = [](double t) { return 0.003 * t; };
   drive.go(300.0);
   CHECK(std::abs(drive.corrected_m) < 0.1);
+}
+
+TEST_CASE(
+    "what the altimeter gains more on a ride than the cabin is its bias, and moves the height no further") {
+  Elevator elevator{.zone_m = 0.3};
+  elevator.run(30.0);
+  CHECK_FALSE(elevator.height.riding());
+  CHECK(std::abs(elevator.risen_m - 10.0) < 0.04);
+  CHECK(std::abs(elevator.height.bias_m() - 0.3) < 0.05);
+  CHECK_FALSE(elevator.height.altimeter_faulty());
+}
+
+TEST_CASE("air of the wrong temperature on a high ride is the altimeter's bias and no fault") {
+  Elevator elevator{.zone_m = 0.9};  // 9 %, or 6 % and another zone
+  elevator.run(60.0);
+  CHECK(std::abs(elevator.risen_m - 10.0) < 0.06);
+  CHECK(elevator.height.bias_m() > 0.8);
+  CHECK_FALSE(elevator.height.altimeter_faulty());
+}
+
+TEST_CASE("a ride does not end while the acceleration has not stopped the cabin") {
+  // At 1 m/s, without acceleration, as the air alone may see it.
+  Elevator elevator{.ended_s = 6.0};
+  elevator.run(8.0);
+  CHECK(elevator.height.riding());
+  Elevator arrived{.ended_s = 6.0};
+  arrived.run(16.0);
+  CHECK_FALSE(arrived.height.riding());
+  CHECK(std::abs(arrived.risen_m - 10.0) < 0.05);
 }
 
 }  // namespace isobar::test::test_map_height
