@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::int64_t kStartNs = 1'000'000'000;
 constexpr double kScanS = 0.1;
+const MapHeightConfig kConfig;
 
 // A robot that drives at `speed_m_s`; its scans hold it at `z`, and its altimeter reads `altimeter`, functions of time.
 struct Drive {
@@ -25,7 +26,7 @@ struct Drive {
   std::function<double(double)> z = [](double) { return 0.0; };
   std::function<double(double)> altimeter = [](double) { return 0.0; };
 
-  MapHeight height{};
+  MapHeight height{kConfig};
   PriorHistory history{};
   std::uint32_t readings = 0;
   double t = 0.0;
@@ -61,7 +62,7 @@ struct Elevator {
   double ended_s = 13.2;
   double zone_m = 0.0;
 
-  MapHeight height{};
+  MapHeight height{kConfig};
   double risen_m = 0.0;
 
   void run(double until_s) {
