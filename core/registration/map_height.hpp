@@ -6,7 +6,8 @@
 //     d   error of the map's height where the robot is [m]: a random walk with the way, because every scan of new
 //         ground is laid onto the one before. On a way of 100 m floors and ceilings keep it to 2 to 3 cm.
 //     b   bias of the altimeter [m], first-order Gauss-Markov: ventilated zones (1 to 4 Pa), warm-up, weather that the
-//         base station does not share; about what the altimeter gained more than the last rides. Without a base station a random walk with the weather.
+//         base station does not share; about what the altimeter gained more than the last rides. Without a base
+//         station a random walk with the weather.
 //     s   slope of the map's floors [rad], dd/dway = s: constant over a straight drive, while mounts are unknown.
 //     n   turbulence, doors [m]: first-order Gauss-Markov over seconds.
 //
