@@ -26,6 +26,8 @@ constexpr double kCorrectionWayM = 5.0;
 constexpr double kLargestStepM = 0.02;
 // Length of a straight drive, over which a tilted map has one slope.
 constexpr double kSlopeWayM = 25.0;
+// Standard deviation of a drift in multiples of the one seen: a sound barometer hardly drifts, a failing one at any rate.
+constexpr double kDriftDoubt = 5.0;
 // Share of a step that stays: the next scan is laid onto ground that was mapped before the step.
 constexpr double kStays = 0.05;
 // Largest gain of the altimeter on a ride that is no fault: another zone (4 Pa), and air of 17 K.
@@ -55,6 +57,7 @@ void MapHeight::restart() {
   x_.setZero();
   P_.setZero();
   P_(kBias, kBias) = squared(config_.start_bias_sigma_m);
+  P_(kRate, kRate) = squared(config_.drift_sigma_m_s);
   with_start_ = P_;
   slope_begun_ = zero_known_ = faulty_ = unseen_start_ = false;
   mean_innovation_m_ = 0.0;
@@ -135,7 +138,8 @@ void MapHeight::end_ride() {
   const double explained_m = kRideGainM + kRideGainShare * std::abs(ride_.risen_m());
   x_[kBias] += gain_m;
   floor_bias_m_ += std::clamp(gain_m, -explained_m, explained_m);
-  const Vector common(1.0, 1.0, 0.0, 0.0);
+  Vector common = Vector::Zero();
+  common[kMap] = common[kBias] = 1.0;
   for (Matrix* P : {&P_, &with_start_}) *P += variance_m2 * common * common.transpose();
 }
 
@@ -150,31 +154,35 @@ void MapHeight::widen(State state, double variance) {
   with_start_(state, state) += variance;
 }
 
+// State and covariances over a step of time and way: x <- F x, P <- F P F^T + Q.
 void MapHeight::predict(double dt_s, double moved_m, const MapTilt& tilt) {
   if (!slope_begun_) with_start_(kSlope, kSlope) = tilt.square_rad2;
   slope_begun_ = true;
-  const double keep_bias = std::exp(-dt_s / config_.bias_time_s);
-  const double keep_turbulence = std::exp(-dt_s / config_.turbulence_time_s);
   const bool base = last_.height_source == HeightSource::kDifferential;
+  const double keep_bias = base ? std::exp(-dt_s / config_.bias_time_s) : 1.0;
+  const double keep_rate = std::exp(-dt_s / config_.drift_time_s);
+  const double keep_turbulence = std::exp(-dt_s / config_.turbulence_time_s);
   const double keep_slope = std::exp(-moved_m / kSlopeWayM);
-  const Vector keep(1.0, base ? keep_bias : 1.0, keep_turbulence, keep_slope);
-  x_[kMap] += moved_m * x_[kSlope];
+  Matrix F = Matrix::Identity();
+  F.diagonal() << 1.0, keep_bias, keep_turbulence, keep_slope, keep_rate;
+  F(kMap, kSlope) = moved_m;
+  F(kBias, kRate) = dt_s;
   x_[kBias] -= floor_bias_m_;
-  x_ = keep.cwiseProduct(x_);
+  x_ = (F * x_).eval();
   x_[kBias] += floor_bias_m_;
-  predict(keep, moved_m, tilt.variance_rad2, P_);
-  predict(keep, moved_m, tilt.square_rad2, with_start_);
+  predict(F, tilt.variance_rad2, P_);
+  predict(F, tilt.square_rad2, with_start_);
   widen(kMap, squared(config_.map_walk_m_sqrt_m) * moved_m);
-  widen(kBias, base ? squared(config_.bias_sigma_m) * (1.0 - keep_bias * keep_bias)
+  widen(kBias, base ? squared(config_.bias_sigma_m) * (1.0 - squared(keep_bias))
                     : squared(config_.weather_walk_m_sqrt_s) * dt_s);
-  widen(kTurbulence, squared(config_.turbulence_sigma_m) * (1.0 - keep_turbulence * keep_turbulence));
+  widen(kTurbulence, squared(config_.turbulence_sigma_m) * (1.0 - squared(keep_turbulence)));
+  widen(kRate,
+        (squared(config_.drift_sigma_m_s) + squared(kDriftDoubt * x_[kRate])) * (1.0 - squared(keep_rate)));
 }
 
-void MapHeight::predict(const Vector& keep, double moved_m, double tilt_rad2, Matrix& P) const {
-  P.row(kMap) += moved_m * P.row(kSlope);
-  P.col(kMap) += moved_m * P.col(kSlope);
-  P = (keep.asDiagonal() * P * keep.asDiagonal()).eval();
-  P(kSlope, kSlope) += tilt_rad2 * (1.0 - squared(keep[kSlope]));
+void MapHeight::predict(const Matrix& F, double tilt_rad2, Matrix& P) {
+  P = (F * P * F.transpose()).eval();
+  P(kSlope, kSlope) += tilt_rad2 * (1.0 - squared(F(kSlope, kSlope)));
 }
 
 double MapHeight::update(double z_m, double moved_m, double z_variance_m2, bool registered,
@@ -212,10 +220,11 @@ void MapHeight::measure(double z_m, double dt_s) {
   }
   // What the map's height is known to err by is not the altimeter's.
   watch_drift(reading_m - zero_m_ - (z_m - x_[kMap]) - shift_m_);
-  const Vector h(-1.0, 1.0, 1.0, 0.0);
-  const Vector Ph = P_ * h;
+  Vector h = Vector::Zero();
+  h[kMap] = -1.0;
+  h[kBias] = h[kTurbulence] = 1.0;
   const double noise_m2 = noise_m2_ / count_;
-  const double variance = h.dot(Ph) + noise_m2;
+  const double variance = h.dot(P_ * h) + noise_m2;
   innovation_m_ = reading_m - zero_m_ - z_m - h.dot(x_);
   if (std::abs(innovation_m_) > kGateSigmas * std::sqrt(variance)) {
     outside_s_ += dt_s;
@@ -224,11 +233,25 @@ void MapHeight::measure(double z_m, double dt_s) {
     x_[kBias] += innovation_m_;
     widen(kBias, squared(config_.bias_sigma_m));
     outside_s_ = 0.0;
-    faulty_ = std::abs(x_[kBias] - floor_bias_m_) > kFaultM;
+    judge_fault();
     return;
   }
   outside_s_ = 0.0;
-  Vector K = Ph / variance;
+  use_innovation(h, variance, noise_m2, dt_s);
+  judge_fault();
+}
+
+// What a drift has been taken for - an error or a slope of the map - is withdrawn when it is seen to be one.
+void MapHeight::judge_fault() {
+  faulty_ = std::abs(x_[kBias] - floor_bias_m_) > kFaultM;
+  if (!altimeter_faulty()) return;
+  widen(kMap, squared(x_[kMap]));
+  widen(kSlope, squared(x_[kSlope]));
+  x_[kMap] = x_[kSlope] = 0.0;
+}
+
+void MapHeight::use_innovation(const Vector& h, double variance, double noise_m2, double dt_s) {
+  Vector K = P_ * h / variance;
   // Schmidt-Kalman: zero gain on the map. Innovations of one sign are a drift of the altimeter, which b follows late.
   mean_innovation_m_ += (innovation_m_ - mean_innovation_m_) * std::min(1.0, dt_s / kDriftMemoryS);
   if (altimeter_faulty() || std::abs(mean_innovation_m_) > kDriftM) K[kMap] = K[kSlope] = 0.0;
@@ -238,7 +261,6 @@ void MapHeight::measure(double z_m, double dt_s) {
     *P = (keep * *P * keep.transpose() + noise_m2 * K * K.transpose()).eval();
     *P = (0.5 * (*P + P->transpose())).eval();
   }
-  faulty_ = std::abs(x_[kBias] - floor_bias_m_) > kFaultM;
 }
 
 }  // namespace isobar

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The one owner of height in the adaptive method: error of the map's height, bias of the altimeter, rides.
 //
-//     altimeter - z = b + n - d + noise
+//     altimeter - z = b + n - d + noise,   db/dt = r
 //
 //     d   error of the map's height where the robot is [m]: a random walk with the way, because every scan of new
 //         ground is laid onto the one before. On a way of 100 m floors and ceilings keep it to 2 to 3 cm.
 //     b   bias of the altimeter [m], first-order Gauss-Markov: ventilated zones (1 to 4 Pa), warm-up, weather that the
 //         base station does not share; about what the altimeter gained more than the last rides. Without a base
 //         station a random walk with the weather.
+//     r   drift of b [m/s], first-order Gauss-Markov: barometers that warm up or fail, fronts. Without it a slow drift is
+//         shared with d, and moves the map.
 //     s   slope of the map's floors [rad], dd/dway = s: constant over a straight drive, while mounts are unknown.
 //     n   turbulence, doors [m]: first-order Gauss-Markov over seconds.
 //
@@ -33,6 +35,8 @@ struct MapHeightConfig {
   double bias_sigma_m = 0.15;           ///< altimeter bias: zones [m] …
   double bias_time_s = 450.0;           ///< … and its correlation time [s]
   double start_bias_sigma_m = 0.02;     ///< bias at the start, where it is zero by definition [m]
+  double drift_sigma_m_s = 0.0005;      ///< drift of the bias, 0.006 Pa/s [m/s]: fronts, warm-up ...
+  double drift_time_s = 200.0;          ///< ... and its correlation time [s]
   double turbulence_sigma_m = 0.05;     ///< turbulence [m] …
   double turbulence_time_s = 8.0;       ///< … and its correlation time [s]
   double weather_walk_m_sqrt_s = 0.02;  ///< bias without a base station [m/sqrt(s)]
@@ -79,16 +83,18 @@ class MapHeight {
   [[nodiscard]] bool altimeter_faulty() const { return faulty_ || drift_.suspect() != DriftSuspect::kNone; }
 
  private:
-  enum State { kMap, kBias, kTurbulence, kSlope, kStates };
+  enum State { kMap, kBias, kTurbulence, kSlope, kRate, kStates };
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Matrix = Eigen::Matrix<double, kStates, kStates>;
 
   void take(const Prior& prior);
   void take_reading(const Prior& prior);
   void predict(double dt_s, double moved_m, const MapTilt& tilt);
-  void predict(const Vector& keep, double moved_m, double tilt_rad2, Matrix& P) const;
+  static void predict(const Matrix& F, double tilt_rad2, Matrix& P);
   void widen(State state, double variance);
   void measure(double z_m, double dt_s);
+  void use_innovation(const Vector& h, double variance, double noise_m2, double dt_s);
+  void judge_fault();
   void watch_drift(double residual_m);
   void watch_ride(const Prior& prior, bool stands);
   void take_rise();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <random>
 
 #include "core/registration/map_height.hpp"
 
@@ -21,7 +22,8 @@ struct Drive {
   double speed_m_s = 0.5;
   double stays =
       0.1;  // share of a correction that stays, because scans are laid onto ground mapped before it
-  double tilt_rad = 0.0;  // of the map, 1 sigma
+  double tilt_rad = 0.0;      // of the map, 1 sigma
+  double turbulence_m = 0.0;  // of the altimeter, 1 sigma, over 3 s
   HeightSource source = HeightSource::kDifferential;
   std::function<double(double)> z = [](double) { return 0.0; };
   std::function<double(double)> altimeter = [](double) { return 0.0; };
@@ -31,8 +33,18 @@ struct Drive {
   std::uint32_t readings = 0;
   double t = 0.0;
   double corrected_m = 0.0;
+  double unrest_m = 0.0;
+  std::mt19937 random{1};
 
   Drive() { height.restart(); }
+
+  double air(double at) {
+    constexpr double kTurbulenceS = 3.0;
+    const double keep = std::exp(-0.25 * kScanS / kTurbulenceS);
+    std::normal_distribution<double> normal(0.0, 1.0);
+    unrest_m = keep * unrest_m + turbulence_m * std::sqrt(1.0 - keep * keep) * normal(random);
+    return altimeter(at) + unrest_m;
+  }
 
   void go(double seconds) {
     for (const double end = t + seconds; t < end; t += kScanS) {
@@ -43,7 +55,7 @@ struct Drive {
         prior.height_source = source;
         prior.velocity_valid = true;
         prior.v_base_m_s.x() = speed_m_s;
-        prior.altimeter_m = altimeter(at);
+        prior.altimeter_m = air(at);
         prior.altimeter_variance_m2 = 0.0009;
         prior.altimeter_count = ++readings;
         history.add(prior);
@@ -109,6 +121,50 @@ TEST_CASE("a barometer that drifts moves the altimeter's bias and not the height
     CHECK(drive.height.bias_m() == doctest::Approx(rate_m_s * 70.0).epsilon(0.15));
     CHECK(drive.height.altimeter_faulty());
   }
+}
+
+TEST_CASE("a slow drift of a barometer moves the bias and not the height") {
+  for (const double rate_m_s : {0.00085, 0.0021, 0.00425, 0.0085}) {  // 0.01, 0.025, 0.05 and 0.1 Pa/s
+    for (const double sign : {1.0, -1.0}) {
+      CAPTURE(sign * rate_m_s);
+      Drive drive;
+      drive.turbulence_m = 0.03;
+      drive.go(60.0);
+      const double before_m = drive.corrected_m;
+      drive.altimeter = [&](double t) { return sign * rate_m_s * std::max(0.0, t - 60.0); };
+      drive.go(270.0);
+      CHECK(std::abs(drive.corrected_m - before_m) < 0.1);
+      CHECK(std::abs(drive.height.bias_m() - sign * rate_m_s * 270.0) < 0.2);
+    }
+  }
+}
+
+TEST_CASE(
+    "a robot that stands for 50 minutes beside a barometer of 0.01 Pa/s keeps its height and says the "
+    "drift") {
+  Drive drive;
+  drive.speed_m_s = 0.0;
+  drive.turbulence_m = 0.02;
+  drive.go(60.0);
+  drive.altimeter = [](double t) { return 0.00085 * std::max(0.0, t - 60.0); };
+  drive.go(400.0);
+  CHECK(drive.height.altimeter().drifts != DriftSuspect::kNone);
+  drive.go(2600.0);
+  CHECK(drive.height.altimeter_faulty());
+  CHECK(std::abs(drive.corrected_m) < 0.01);
+  CHECK(std::abs(drive.height.bias_m() - 0.00085 * 3000.0) < 0.15);
+}
+
+TEST_CASE("what a drift was taken for is withdrawn when the drift is said") {
+  Drive drive;
+  drive.stays = 0.5;
+  drive.go(20.0);
+  drive.altimeter = [](double t) { return 0.03 * std::max(0.0, t - 20.0); };
+  while (!drive.height.altimeter_faulty() && drive.t < 100.0) drive.go(0.1);
+  REQUIRE(drive.height.altimeter_faulty());
+  const double said_m = drive.corrected_m;
+  drive.go(20.0);
+  CHECK(std::abs(drive.corrected_m - said_m) < 0.002);
 }
 
 TEST_CASE("doors and zones move the altimeter's bias and not the height, and are no fault") {
