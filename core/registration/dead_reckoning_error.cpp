@@ -24,7 +24,7 @@ constexpr double kFreeCorrelationS = 3.0;
 // Time for which the last velocity is the best guess of the present one [s].
 constexpr double kVelocityMemoryS = 2.0;
 
-enum Constant { kScale, kRate, kTilt };
+enum Constant { kScaleConstant, kRateConstant, kTiltConstant };
 
 }  // namespace
 
@@ -48,16 +48,16 @@ void DeadReckoningError::move(const Prior& prior, const UnseenStep& step) {
 void DeadReckoningError::turn(const Prior& prior, double dt_s) {
   const double bias_rad_s = std::max({std::sqrt(std::max(prior.yaw_bias_variance_rad2_s2, 0.0)),
                                       kLeastBiasRadS, prior.attitude_valid ? 0.0 : kSilentRateRadS});
-  error_.constants(5, kRate) += bias_rad_s * dt_s;
+  error_.constants(5, kRateConstant) += bias_rad_s * dt_s;
   const double noise = std::max(prior.yaw_rate_variance_rad2_s2 - prior.yaw_bias_variance_rad2_s2, 0.0);
   error_.random(5, 5) += noise * kRateMeanS * dt_s;
 }
 
 void DeadReckoningError::roll(const UnseenStep& step) {
   const double way_m = step.step_m.norm();
-  error_.constants.col(kScale).head<3>() += kWheelScaleError * step.step_m;
+  error_.constants.col(kScaleConstant).head<3>() += kWheelScaleError * step.step_m;
   const Eigen::Vector3d pitch_rad = step.tilt_rad * step.R_map_base.col(1);
-  error_.constants.col(kTilt).head<3>() += pitch_rad.cross(step.step_m);
+  error_.constants.col(kTiltConstant).head<3>() += pitch_rad.cross(step.step_m);
   error_.random.diagonal().head<3>().array() += squared(kSlipMSqrtM) * way_m;
   error_.random(5, 5) += squared(kSlipRadSqrtM) * way_m;
 }
