@@ -105,10 +105,8 @@ void MapDrift::carry(const Eigen::Vector3d& p_map) {
 }
 
 void MapDrift::lift(const Eigen::Vector3d& p_map) {
-  Eigen::Vector3d step_m = p_map - p_map_;
-  step_m.z() = 0.0;
-  if (started_) here_.pose.move(step_m);
-  p_map_ = p_map;
+  p_map_.z() = p_map.z();
+  carry(p_map);
 }
 
 // In units of the offset. Scans that are levelled by gravity have a floor that is inclined to the map's by it.

@@ -32,12 +32,17 @@ constexpr double kLongestGapS = 0.5;
 constexpr double kScatterOfPosition = 0.5;
 constexpr double kScatterOfTilt = 0.6;
 
+// Covariance of errors whose components count by `shares`.
+Matrix6d scaled(const Matrix6d& covariance, const Eigen::Matrix<double, 6, 1>& shares) {
+  return shares.asDiagonal() * covariance * shares.asDiagonal();
+}
+
 // Error of a scan against known ground.
 Matrix6d scan_error(const Matrix6d& covariance) {
   Eigen::Matrix<double, 6, 1> share = Eigen::Matrix<double, 6, 1>::Ones();
   share.head<3>().setConstant(kScatterOfPosition);
   share.segment<2>(3).setConstant(kScatterOfTilt);
-  return share.asDiagonal() * covariance * share.asDiagonal();
+  return scaled(covariance, share);
 }
 
 // Rows of a pose's covariance that the ICP moves: 1, else 0.
@@ -46,10 +51,6 @@ Eigen::Matrix<double, 6, 1> free_rows(const Basis& basis) {
   Eigen::Matrix<double, 6, 1> rows;
   rows << of_twist.tail<3>(), of_twist.head<3>();
   return rows;
-}
-
-Matrix6d masked(const Matrix6d& covariance, const Eigen::Matrix<double, 6, 1>& rows) {
-  return rows.asDiagonal() * covariance * rows.asDiagonal();
 }
 
 void leave_out_z(Matrix6d& covariance) {
@@ -85,15 +86,19 @@ void Registration::own_covariance(const Prior& end, const MethodTraits& traits, 
   const bool adaptive = traits.method == Method::kAdaptive;
   Matrix6d covariance = Matrix6d::Zero();
   if (registered) {
-    covariance = masked(scan_error(pose.covariance), rows);
-    lay_scan(traits, masked(pose.covariance, rows), pose);
+    covariance = scaled(scan_error(pose.covariance), rows);
+    lay_scan(traits, scaled(pose.covariance, rows), pose);
   } else {
     state_.unseen.move(end, step_to(end, pose.T_map_base));
     const Eigen::Vector3d p_map = pose.T_map_base.translation();
-    end.ground_moves ? state_.drift.lift(p_map) : state_.drift.carry(p_map);
+    if (end.ground_moves) {
+      state_.drift.lift(p_map);
+    } else {
+      state_.drift.carry(p_map);
+    }
   }
   watch_halt(end, pose);
-  covariance += masked(state_.drift.covariance(), rows);
+  covariance += scaled(state_.drift.covariance(), rows);
   covariance(5, 5) += state_.halt.variance_rad2();
   if (adaptive) {
     // The owner of height knows its error, on known ground as well as when that was mapped.
