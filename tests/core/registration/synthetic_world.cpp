@@ -15,9 +15,12 @@ constexpr int kRings = 16;
 
 void World::add_box(const Eigen::Vector3d& lowest, const Eigen::Vector3d& highest, unsigned open_faces) {
   for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3;
+    const int v = (axis + 2) % 3;
     for (int side = 0; side < 2; ++side) {
       if ((open_faces >> static_cast<unsigned>(2 * axis + side) & 1U) == 0U) {
-        faces_.push_back({axis, side == 0 ? lowest[axis] : highest[axis], lowest, highest});
+        faces_[static_cast<std::size_t>(axis)].push_back(
+            {side == 0 ? lowest[axis] : highest[axis], lowest[u], highest[u], lowest[v], highest[v]});
       }
     }
   }
@@ -25,18 +28,24 @@ void World::add_box(const Eigen::Vector3d& lowest, const Eigen::Vector3d& highes
 
 double World::range(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
   double nearest = std::numeric_limits<double>::infinity();
-  for (const Face& face : faces_) {
-    const double t = (face.place - origin[face.axis]) / direction[face.axis];
-    if (!(t > 1e-6 && t < nearest)) {
-      continue;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3;
+    const int v = (axis + 2) % 3;
+    const double from = origin[axis];
+    const double from_u = origin[u];
+    const double from_v = origin[v];
+    const double along = direction[axis];
+    const double along_u = direction[u];
+    const double along_v = direction[v];
+    for (const Face& face : faces_[static_cast<std::size_t>(axis)]) {
+      const double t = (face.place - from) / along;
+      if (!(t > 1e-6 && t < nearest)) continue;
+      const double at_u = from_u + t * along_u;
+      const double at_v = from_v + t * along_v;
+      const bool inside = at_u >= face.lowest_u && at_u <= face.highest_u && at_v >= face.lowest_v &&
+                          at_v <= face.highest_v;
+      if (inside) nearest = t;
     }
-    const Eigen::Vector3d p = origin + t * direction;
-    bool inside = true;
-    for (int axis = 0; axis < 3; ++axis) {
-      inside =
-          inside && (axis == face.axis || (p[axis] >= face.lowest[axis] && p[axis] <= face.highest[axis]));
-    }
-    nearest = inside ? t : nearest;
   }
   return nearest;
 }
@@ -56,6 +65,27 @@ World bare_corridor() {
   return world;
 }
 
+namespace {
+
+/// Directions of one revolution in axes of the lidar, by column and ring.
+const std::vector<Eigen::Vector3d>& beam_directions() {
+  static const std::vector<Eigen::Vector3d> directions = [] {
+    std::vector<Eigen::Vector3d> all;
+    for (int column = 0; column < kColumns; ++column) {
+      const double azimuth = 2.0 * std::numbers::pi * column / kColumns;
+      for (int ring = 0; ring < kRings; ++ring) {
+        const double elevation = (2.0 * ring - 15.0) * std::numbers::pi / 180.0;
+        all.emplace_back(std::cos(elevation) * std::cos(azimuth), -std::cos(elevation) * std::sin(azimuth),
+                         std::sin(elevation));
+      }
+    }
+    return all;
+  }();
+  return directions;
+}
+
+}  // namespace
+
 void scan_world(const World& world, const Motion& motion, const Eigen::Isometry3d& T_base_lidar,
                 std::int64_t stamp_ns, double noise_m, std::mt19937& random, Scan& scan) {
   std::normal_distribution<double> noise(0.0, 1.0);
@@ -63,15 +93,15 @@ void scan_world(const World& world, const Motion& motion, const Eigen::Isometry3
   scan.end_stamp_ns = stamp_ns + kRevolutionNs;
   scan.packets_lost = 0;
   scan.point_count = 0;
+  auto beam = beam_directions().begin();
   for (int column = 0; column < kColumns; ++column) {
     const std::int64_t time_4us = kRevolutionNs / kPointTimeUnitNs * column / kColumns;
     const Eigen::Isometry3d T_world_lidar = motion(stamp_ns + time_4us * kPointTimeUnitNs) * T_base_lidar;
-    const double azimuth = 2.0 * std::numbers::pi * column / kColumns;
+    const Eigen::Vector3d origin = T_world_lidar.translation();
+    const Eigen::Matrix3d R_world_lidar = T_world_lidar.linear();
     for (int ring = 0; ring < kRings; ++ring) {
-      const double elevation = (2.0 * ring - 15.0) * std::numbers::pi / 180.0;
-      const Eigen::Vector3d direction(std::cos(elevation) * std::cos(azimuth),
-                                      -std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
-      const double range = world.range(T_world_lidar.translation(), T_world_lidar.linear() * direction);
+      const Eigen::Vector3d& direction = *beam++;
+      const double range = world.range(origin, R_world_lidar * direction);
       if (!(range < 100.0)) {
         continue;
       }
