@@ -2,11 +2,13 @@
 // Policy around the vertical filter: which measurement is used when.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "core/altitude/differential_altimeter.hpp"
 #include "core/prior/disturbance_judge.hpp"
+#include "core/prior/filter_forks.hpp"
+#include "core/prior/moving_ground.hpp"
+#include "core/prior/pressure_step.hpp"
 #include "core/prior/prior_config.hpp"
 #include "core/prior/slew.hpp"
 #include "core/prior/vertical_filter.hpp"
@@ -25,10 +27,9 @@ enum class PressureUse : std::uint8_t {
 /// Wheels and attitude measure the climb well over seconds, pressure measures the height well over minutes;
 /// each enters with its own noise. Two events break the model and are detected:
 ///
-/// - *Moving ground* (elevator): the wheels stand, the robot rises. Two forks (copies) of the filter, split
-///   off one to three seconds ago, are predicted from the acceleration alone. Where the older fork's vertical
-///   speed departs from the wheels', that fork replaces the filter (it has had no update by the wheels since
-///   before the ride), and the wheels are left out until both agree again.
+/// - *Moving ground* (elevator): the wheels stand, the robot rises (MovingGround). A fork of the filter that
+///   has had no update by the wheels since before the ride replaces it, and the wheels are left out until both
+///   agree again.
 /// - *Disturbed pressure* (door, gust, ventilation zone, fault): DisturbanceJudge classifies it from
 ///   acceleration and wheels.
 ///     pulse    rejected
@@ -73,18 +74,13 @@ class HeightFilter {
   /// Estimated offset of the barometric height: barometers, local pressure, weather and steps together.
   [[nodiscard]] double pressure_bias_m() const { return filter_.pressure_bias_m(); }
   [[nodiscard]] double pressure_bias_variance_m2() const { return filter_.pressure_bias_variance_m2(); }
-  [[nodiscard]] bool ground_moves() const { return ground_moves_; }
+  [[nodiscard]] bool ground_moves() const { return ground_.moves(); }
   /// State of the innovation monitor.
   [[nodiscard]] const DisturbanceJudge& disturbance() const { return judge_; }
   /// The error of the pressure exceeds any weather or ventilation: a sensor fault, gated or subtracted.
   [[nodiscard]] bool pressure_faulty() const { return faulty_; }
 
  private:
-  struct Fork {
-    VerticalFilter filter;
-    double age_s = 0.0;
-  };
-
   void handle_event(const AltimeterReading& reading);
   PressureUse use_pressure(const AltimeterReading& reading, double lever_m, double delay_s);
   [[nodiscard]] DisturbanceJudge::Evidence evidence_of(const AltimeterReading& reading, double lever_m,
@@ -92,31 +88,20 @@ class HeightFilter {
   void roll_back();
   void compare_fork(const AltimeterReading& reading, double lever_m, double delay_s, double innovation_m);
   void open_step(const AltimeterReading& reading, const DisturbanceJudge::Evidence& evidence);
-  void close_step();
-  [[nodiscard]] double without_fault_m(const AltimeterReading& reading) const;
   void follow(const VerticalFilter::Innovation& innovation);
-  void watch_ground(double climb_m_s, double forward_m_s, double dt_s, double speed_variance);
   void restart_forks();
-  [[nodiscard]] const Fork& older_fork() const {
-    return forks_[0].age_s >= forks_[1].age_s ? forks_[0] : forks_[1];
-  }
-  [[nodiscard]] Fork& older_fork() { return forks_[0].age_s >= forks_[1].age_s ? forks_[0] : forks_[1]; }
 
   HeightConfig config_;
   VerticalFilter filter_;
-  std::array<Fork, 2> forks_;
-  double accel_m_s2_ = 0.0;  // vertical, low-passed
-  double agreeing_s_ = 0.0;  // in a ride: how long wheels and filter have agreed again
-  double disagreeing_s_ = 0.0;
-  double fork_misfit_m_ = 0.0;  // |innovation| of the last used pressure: older fork minus filter
+  FilterForks forks_;
+  MovingGround ground_;
   DisturbanceJudge judge_;
-  double fault_share_ = 0.0;  // open step of the pressure / reference pressure
+  PressureStep step_;
   Slew slew_;
   double since_climb_s_ = 1e9;  // since the last update by the wheels
   double alone_s_ = 0.0;        // time without a base station
   bool faulty_ = false;
   bool rolled_back_ = false;  // in this disturbance
-  bool ground_moves_ = false;
   bool weather_moves_ = true;
   bool started_ = false;
 };
