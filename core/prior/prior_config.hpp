@@ -171,6 +171,8 @@ struct PriorLimits {
 };
 
 struct PriorConfig {
+  /// False: no IMU; priors come from PriorEstimator::advance(), from wheels and barometers.
+  bool has_imu = true;
   /// Pose of the IMU in base_link.
   Eigen::Isometry3d T_base_imu = Eigen::Isometry3d::Identity();
   /// Position of the barometer's pressure port in base_link [m].

@@ -55,7 +55,7 @@ HeightDatum PriorEstimator::height_datum() const {
   HeightDatum datum;
   if (!s.height.started()) return s.resumed;
   datum.known = s.reading_source != HeightSource::kNone;
-  datum.stamp_ns = s.imu_gate.stamp_ns();
+  datum.stamp_ns = s.now_ns();
   datum.climb_m_s = s.height.vz_m_s();
   datum.ground_moves = s.height.ground_moves();
   datum.height_m = s.height.z_m() - s.above_base(s.p_base_imu);
@@ -143,11 +143,11 @@ void PriorEstimator::add_pressure(const PressureSample& measured) {
     s.altimeter_shift_m += reading.weather_shift_m;
   }
   s.watch_drift();
-  if (!s.attitude.started() || !s.height.started()) return;
+  if (!s.levelled() || !s.height.started()) return;
   // The filter extrapolates with its present speed: what the acceleration has changed since is added here.
-  const double delay_s = seconds_between(reading.stamp_ns, s.imu_gate.stamp_ns());
+  const double delay_s = seconds_between(reading.stamp_ns, s.now_ns());
   if (delay_s > 0.0) reading.height_m += reading.climb_since_m - s.height.vz_m_s() * delay_s;
-  const PressureUse use = s.height.update_pressure(reading, lever_m, s.imu_gate.stamp_ns());
+  const PressureUse use = s.height.update_pressure(reading, lever_m, s.now_ns());
   if (use == PressureUse::kGated) ++s.counters.pressure_gated;
   if (use == PressureUse::kStep) ++s.counters.pressure_steps;
 }

@@ -62,7 +62,7 @@ struct BarometerHealth {
   double height_bias_sd_m = 0.0;            ///< of the offset's part that is still estimated
 };
 
-/// Takes samples in order of arrival and returns one Prior per accepted IMU sample; how it works is drawn in
+/// Takes samples in order of arrival and returns one Prior per accepted IMU sample, or per advance(); how it works is drawn in
 /// prior_state.hpp. No clock, no allocation after construction, deterministic: the same samples in the same
 /// order give the same bits. Not thread-safe.
 ///
@@ -86,6 +86,12 @@ class PriorEstimator {
 
   /// True, and `out` filled, if the sample was accepted.
   bool add_imu(const ImuSample& sample, Prior& out);
+  /// Without an IMU (PriorConfig::has_imu): the prior at `stamp_ns` on the robot clock, from wheels and barometers;
+  /// PriorPace says when. True, and `out` filled, if the stamp is newer than the last one.
+  ///
+  /// attitude_valid is false. While the wheels are valid, T_odom_base is their way on a plane; else it stands.
+  /// height_m is that of the air alone.
+  bool advance(std::int64_t stamp_ns, Prior& out);
   /// Raw samples: PriorConfig's calibrations are applied here and nowhere else.
   void add_pressure(const PressureSample& measured);
   void add_base_pressure(const PressureSample& measured);

@@ -57,19 +57,19 @@ void PriorEstimator::State::align(const Eigen::Vector3d& gyro, const Eigen::Vect
   if (status != GravityAlignment::Status::kAligned) return;
   attitude.start(alignment.force_sum(), yaw_before_rad, kStartSigmaRad);
   alignment.restart();
-  if (aligned_ns == 0) aligned_ns = imu_gate.stamp_ns();
+  if (aligned_ns == 0) aligned_ns = now_ns();
   start_height();
 }
 
 void PriorEstimator::State::start_height() {
   if (height.started()) return;
-  const std::int64_t now_ns = imu_gate.stamp_ns();
+  const std::int64_t start_ns = now_ns();
   // A continued height waits for the pressures that it continues with.
   const bool incomplete = reading_source == HeightSource::kNone || altimeter.waits_for_base();
-  if (resumed.known && incomplete && seconds_between(aligned_ns, now_ns) < wait_for_pressure_s(now_ns))
+  if (resumed.known && incomplete && seconds_between(aligned_ns, start_ns) < wait_for_pressure_s(start_ns))
     return;
-  height_start_ns = now_ns;
-  const double vz_sigma_m_s = wheels.valid(now_ns) ? kStartClimbOnWheelsMS : kStartClimbHangingMS;
+  height_start_ns = start_ns;
+  const double vz_sigma_m_s = wheels.valid(start_ns) ? kStartClimbOnWheelsMS : kStartClimbHangingMS;
   if (resumed.known) {
     continue_height(vz_sigma_m_s);
   } else {
@@ -78,10 +78,10 @@ void PriorEstimator::State::start_height() {
 }
 
 // After a night the robot may be on another floor, which only the base station tells; its network may come late.
-double PriorEstimator::State::wait_for_pressure_s(std::int64_t now_ns) const {
+double PriorEstimator::State::wait_for_pressure_s(std::int64_t start_ns) const {
   const bool had_base = std::any_of(resumed.station_known.begin(), resumed.station_known.end(),
                                     [](bool known) { return known; });
-  const bool short_pause = is_short_pause(seconds_between(resumed.stamp_ns, now_ns));
+  const bool short_pause = is_short_pause(seconds_between(resumed.stamp_ns, start_ns));
   return had_base && !short_pause ? kWaitForBaseS : kWaitForPressureS;
 }
 
@@ -93,7 +93,7 @@ void PriorEstimator::State::continue_height(double vz_sigma_m_s) {
   from.variance_m2 = resumed.variance_m2 + squared(kStandSigmaM);
   from.vz_sigma_m_s = vz_sigma_m_s;
   from.offset_m = resumed.offset_m;
-  const double pause_s = seconds_between(resumed.stamp_ns, imu_gate.stamp_ns());
+  const double pause_s = seconds_between(resumed.stamp_ns, now_ns());
   const bool short_pause = is_short_pause(pause_s);
   if (short_pause) keep_climbing(pause_s, from);
   if (reading_source == HeightSource::kDifferential && !resumed.step_open) {
@@ -115,9 +115,11 @@ void PriorEstimator::State::keep_climbing(double pause_s, VerticalFilter::Contin
   from.vz_m_s = resumed.climb_m_s;
   from.vz_sigma_m_s = std::max(from.vz_sigma_m_s, kUnseenClimbMS);
   // A robot that drives is not in an elevator; of one that stands nobody has seen whether a ride has begun.
-  const bool stands =
-      wheels.valid(imu_gate.stamp_ns()) && std::hypot(wheels.last().vx_m_s, wheels.last().vy_m_s) < kStandMS;
-  from.may_ride = resumed.ground_moves || stands;
+  from.may_ride = resumed.ground_moves || wheels_stand();
+}
+
+bool PriorEstimator::State::wheels_stand() const {
+  return wheels.valid(now_ns()) && std::hypot(wheels.last().vx_m_s, wheels.last().vy_m_s) < kStandMS;
 }
 
 // `risen_m`: height of the pressure above the predicted one. More than stairs explain is a ride that has begun or
@@ -137,7 +139,7 @@ void PriorEstimator::State::bridge_gap(const Eigen::Vector3d& gyro, double dt_s)
   // Trapezoid: the rate before the gap for its beginning, the rate after it for its end.
   const double edge_s = std::min(0.5 * dt_s, kConstantRateS);
   Eigen::Vector3d turn = (gyro_before + gyro - 2.0 * attitude.gyro_bias_rad_s()) * edge_s;
-  if (wheels.valid(imu_gate.stamp_ns())) turn.z() += wheels.last().wz_rad_s * (dt_s - 2.0 * edge_s);
+  if (wheels.valid(now_ns())) turn.z() += wheels.last().wz_rad_s * (dt_s - 2.0 * edge_s);
   attitude.bridge(turn, dt_s, std::min(kUnseenRateRadS * dt_s, kUnseenTurnRad));
   standstill.restart();
   noise.restart();
@@ -231,7 +233,7 @@ void PriorEstimator::State::use_climb(double dt_s, bool on_wheels, bool pressure
 
 void PriorEstimator::State::step(const Eigen::Vector3d& gyro, const Eigen::Vector3d& force, double dt_s,
                                  bool gap) {
-  const std::int64_t stamp_ns = imu_gate.stamp_ns();
+  const std::int64_t stamp_ns = now_ns();
   const bool on_wheels = wheels.valid(stamp_ns);
   start_height();
   if (gap) {

@@ -30,24 +30,31 @@ Prior PriorEstimator::State::prior_at(const ImuSample& sample) const {
   out.T_odom_base.translation() = p_odom_base;
   fill_attitude(sample, out);
   fill_height(sample.stamp_ns, out);
-  out.velocity_valid = wheels.valid(sample.stamp_ns) && attitude.started();
   out.velocity_variance_m2_s2 = squared(config.attitude.free_velocity_sigma_m_s);
-  if (out.velocity_valid) {
-    out.v_base_m_s = {wheels.last().vx_m_s, wheels.last().vy_m_s, 0.0};
-    out.velocity_variance_m2_s2 = squared(config.attitude.wheel_sigma_m_s) +
-                                  squared(config.attitude.wheel_sigma_share) * out.v_base_m_s.squaredNorm();
-  }
+  if (attitude.started()) fill_wheels(sample.stamp_ns, out);
+  out.wheel_turn_rad = wheels.turn_rad(sample.stamp_ns);
   out.up_accel_m_s2 = up_accel_m_s2;
+  fill_altimeter(out);
+  out.may_stand = attitude.started() && standstill.may_stand() && !height.ground_moves();
+  out.standing_still = out.velocity_valid && standstill.standing() && !height.ground_moves();
+  return out;
+}
+
+void PriorEstimator::State::fill_wheels(std::int64_t stamp_ns, Prior& out) const {
+  out.velocity_valid = wheels.valid(stamp_ns);
+  if (!out.velocity_valid) return;
+  out.v_base_m_s = {wheels.last().vx_m_s, wheels.last().vy_m_s, 0.0};
+  out.velocity_variance_m2_s2 = squared(config.attitude.wheel_sigma_m_s) +
+                                squared(config.attitude.wheel_sigma_share) * out.v_base_m_s.squaredNorm();
+}
+
+void PriorEstimator::State::fill_altimeter(Prior& out) const {
   out.ground_moves = height.ground_moves();
   out.altimeter_m = altimeter_m;
   out.altimeter_variance_m2 = altimeter_variance_m2;
   out.altimeter_count = altimeter_count;
   out.altimeter_shift_m = altimeter_shift_m;
   out.base_air_m = base_air_m;
-  out.wheel_turn_rad = wheels.turn_rad(sample.stamp_ns);
-  out.may_stand = attitude.started() && standstill.may_stand() && !height.ground_moves();
-  out.standing_still = out.velocity_valid && standstill.standing() && !height.ground_moves();
-  return out;
 }
 
 void PriorEstimator::State::fill_attitude(const ImuSample& sample, Prior& out) const {
@@ -82,7 +89,7 @@ void PriorEstimator::State::fill_height(std::int64_t stamp_ns, Prior& out) const
 
 bool PriorEstimator::State::disturbed_for(double seconds) const {
   const DisturbanceJudge& judge = height.disturbance();
-  return judge.unfelt() && seconds_between(judge.gated_since_ns(), imu_gate.stamp_ns()) > seconds;
+  return judge.unfelt() && seconds_between(judge.gated_since_ns(), now_ns()) > seconds;
 }
 
 BarometerFault PriorEstimator::State::robot_fault() const {
@@ -102,11 +109,11 @@ BarometerFault PriorEstimator::State::base_fault(std::size_t station) const {
 
 // A robot that stands does not climb: what the altimeter does then is its own.
 void PriorEstimator::State::watch_drift() {
-  if (!wheels.valid(imu_gate.stamp_ns()) || !standstill.standing() || height.ground_moves()) {
+  if (!wheels.valid(now_ns()) || !standstill.standing() || height.ground_moves()) {
     drift.restart();
     return;
   }
-  drift.add({.stamp_ns = imu_gate.stamp_ns(),
+  drift.add({.stamp_ns = now_ns(),
              .residual_m = altimeter_m - altimeter_shift_m,
              .base_m = base_air_m,
              .base = reading_source == HeightSource::kDifferential});

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// State of the prior stage. Internal to the three files that implement PriorEstimator:
+// State of the prior stage. Internal to the four files that implement PriorEstimator:
 //
 //     prior_estimator.cpp   samples in: checked, counted, handed to the parts below
 //     prior_motion.cpp      one IMU sample: alignment at first, then one step of all filters
+//     prior_without_imu.cpp one step of wheels and height, of a robot without an IMU
 //     prior_output.cpp      Prior and BarometerHealth out
 //
 //     ImuSample ──▶ ImuGate ──▶ GravityAlignment ──▶ AttitudeFilter ◀── StandstillDetector, DeviceAttitude
@@ -16,6 +17,7 @@
 #include <limits>
 
 #include "core/altitude/drift_watch.hpp"
+#include "core/prior/air_ride.hpp"
 #include "core/prior/attitude_filter.hpp"
 #include "core/prior/climb_meter.hpp"
 #include "core/prior/dead_reckoning.hpp"
@@ -66,6 +68,7 @@ struct PriorEstimator::State {
   SensorCompensation base_compensation;
   DifferentialAltimeter altimeter;
   HeightFilter height;
+  AirRide air_ride;  // without an IMU
   DriftWatch drift;  // of the altimeter, while the robot stands
 
   Eigen::Vector3d p_odom_base = Eigen::Vector3d::Zero();
@@ -83,15 +86,19 @@ struct PriorEstimator::State {
   double altimeter_shift_m = 0.0;  // sum of the steps that base stations made
   double up_accel_m_s2 = 0.0;      // of the last IMU sample, biases included
   std::int64_t height_start_ns = 0;
-  HeightDatum resumed;          // of an earlier run; !known: none
-  std::int64_t aligned_ns = 0;  // first alignment; 0: not yet
+  HeightDatum resumed;           // of an earlier run; !known: none
+  std::int64_t aligned_ns = 0;   // first alignment; 0: not yet
+  std::int64_t advanced_ns = 0;  // without an IMU: time of the estimate
+  double plane_yaw_rad = 0.0;    // without an IMU: yaw by the wheels
+  double wheel_turn_rad = 0.0;   // without an IMU: WheelOdometer::turn_rad() already in it
 
   // prior_motion.cpp. `gyro` [rad/s] and `force` [m/s^2] in base axes.
   void align(const Eigen::Vector3d& gyro, const Eigen::Vector3d& force, double dt_s);
   void start_height();
-  [[nodiscard]] double wait_for_pressure_s(std::int64_t now_ns) const;
+  [[nodiscard]] double wait_for_pressure_s(std::int64_t start_ns) const;
   void continue_height(double vz_sigma_m_s);
   void keep_climbing(double pause_s, VerticalFilter::Continuation& from) const;
+  [[nodiscard]] bool wheels_stand() const;
   static void use_unseen_climb(double risen_m, VerticalFilter::Continuation& from);
   void step(const Eigen::Vector3d& gyro, const Eigen::Vector3d& force, double dt_s, bool gap);
   void bridge_gap(const Eigen::Vector3d& gyro, double dt_s);
@@ -102,9 +109,16 @@ struct PriorEstimator::State {
   void use_wheels(std::int64_t stamp_ns, double dt_s, bool on_wheels);
   void use_climb(double dt_s, bool on_wheels, bool pressure_lost);
 
+  // prior_without_imu.cpp
+  void set_clock_back();
+  void roll_on_plane(std::int64_t stamp_ns);
+  [[nodiscard]] Prior prior_of_wheels() const;
+
   // prior_output.cpp
   [[nodiscard]] Prior prior_at(const ImuSample& sample) const;
   void fill_attitude(const ImuSample& sample, Prior& out) const;
+  void fill_wheels(std::int64_t stamp_ns, Prior& out) const;
+  void fill_altimeter(Prior& out) const;
   void fill_height(std::int64_t stamp_ns, Prior& out) const;
   void watch_barometers();
   void watch_drift();
@@ -116,11 +130,16 @@ struct PriorEstimator::State {
   /// True for stamps that are implausible or too far ahead of the IMU.
   [[nodiscard]] bool bad_stamp(std::int64_t stamp_ns) const {
     if (!plausible_stamp(stamp_ns)) return true;
-    return imu_gate.started() && seconds_between(imu_gate.stamp_ns(), stamp_ns) > config.limits.max_ahead_s;
+    return started() && seconds_between(now_ns(), stamp_ns) > config.limits.max_ahead_s;
   }
+  /// Time of the estimate: of the last IMU sample; without an IMU, of the last advance(). 0: none yet.
+  [[nodiscard]] std::int64_t now_ns() const { return config.has_imu ? imu_gate.stamp_ns() : advanced_ns; }
+  [[nodiscard]] bool started() const { return config.has_imu ? imu_gate.started() : advanced_ns != 0; }
+  /// Levers have an attitude: gravity's, or that of a level robot where there is no IMU to tell.
+  [[nodiscard]] bool levelled() const { return attitude.started() || !config.has_imu; }
   /// Height of the pressure port by dead reckoning [m], to compare base stations with; NaN where unknown.
   [[nodiscard]] double witness_m() const {
-    const bool known = attitude.started() && wheels.valid(imu_gate.stamp_ns()) && !height.ground_moves();
+    const bool known = attitude.started() && wheels.valid(now_ns()) && !height.ground_moves();
     return known ? p_odom_base.z() + above_base(config.p_base_port)
                  : std::numeric_limits<double>::quiet_NaN();
   }

@@ -46,8 +46,9 @@ void DeadReckoningError::move(const Prior& prior, const UnseenStep& step) {
 }
 
 void DeadReckoningError::turn(const Prior& prior, double dt_s) {
-  const double bias_rad_s = std::max({std::sqrt(std::max(prior.yaw_bias_variance_rad2_s2, 0.0)),
-                                      kLeastBiasRadS, prior.attitude_valid ? 0.0 : kSilentRateRadS});
+  const double bias_rad_s =
+      std::max({std::sqrt(std::max(prior.yaw_bias_variance_rad2_s2, 0.0)), kLeastBiasRadS,
+                prior.attitude_valid || prior.velocity_valid ? 0.0 : kSilentRateRadS});
   error_.constants(5, kRateConstant) += bias_rad_s * dt_s;
   const double noise = std::max(prior.yaw_rate_variance_rad2_s2 - prior.yaw_bias_variance_rad2_s2, 0.0);
   error_.random(5, 5) += noise * kRateMeanS * dt_s;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/pose_carrying.hpp"
+#include "core/so3.hpp"
 #include "core/stamp.hpp"
 
 namespace isobar {
@@ -35,6 +36,10 @@ Eigen::Isometry3d Deskewer::T_end_base(std::int64_t stamp_ns, const PriorHistory
   // PoseAnchor with base_link at the scan's end in place of the map frame.
   const PoseAnchor end(Eigen::Isometry3d::Identity(), motion.end.T_odom_base);
   Eigen::Isometry3d T = end.carried_to(prior.T_odom_base);
+  if (!motion.turn_known) {
+    T.linear() =
+        exp_so3(motion.w_base_rad_s * seconds_between(motion.end.stamp_ns, stamp_ns)).toRotationMatrix();
+  }
   if (!motion.from_wheels) {
     T.translation() = motion.v_base_m_s * seconds_between(motion.end.stamp_ns, stamp_ns);
   }

@@ -13,12 +13,14 @@
 
 namespace isobar {
 
-/// Motion of the robot during a scan. The rotation is always the prior's.
+/// Motion of the robot during a scan: dead reckoning's, or where it knows none a constant twist.
 struct ScanMotion {
   Prior end;                ///< prior at the scan's end
   bool from_wheels = true;  ///< true: translation from dead reckoning; false: from v_base_m_s
+  bool turn_known = true;   ///< true: rotation from dead reckoning; false: from w_base_rad_s
   Eigen::Vector3d v_base_m_s =
       Eigen::Vector3d::Zero();  ///< constant velocity, axes of base_link at the scan's end
+  Eigen::Vector3d w_base_rad_s = Eigen::Vector3d::Zero();  ///< constant angular rate, axes of base_link
 };
 
 /// Samples the motion at fixed steps of time, so that each point costs one matrix product. Allocates in its

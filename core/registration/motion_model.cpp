@@ -73,6 +73,7 @@ void MotionModel::start(const Prior& prior, const Eigen::Vector3d& offset_rad) {
   started_ = true;
   last_ = prior;
   v_map_m_s_.setZero();
+  w_base_rad_s_.setZero();
   registered_ = 0;
   confirmed_ns_ = prior.stamp_ns;
   unconfirmed_m_ = 0.0;
@@ -95,6 +96,7 @@ void MotionModel::relocate(const Prior& now, const Eigen::Isometry3d& T_map_base
   last_ = now;
   T_map_base_ = T_map_base;
   v_map_m_s_.setZero();
+  w_base_rad_s_.setZero();
   confirmed_ns_ = now.stamp_ns;
   unconfirmed_m_ = 0.0;
 }
@@ -117,13 +119,20 @@ Eigen::Vector3d MotionModel::step_at_velocity_map(const Prior& now) const {
   return velocity_at(last_.stamp_ns) * tau * (1.0 - std::exp(-travel_s(now) / tau));
 }
 
+Eigen::Vector3d MotionModel::turn_rate_at(std::int64_t stamp_ns) const {
+  return w_base_rad_s_ * std::exp(-since_confirmed_s(stamp_ns) / config_.velocity_memory_s);
+}
+
+// By the gyro, or by wheels without one.
+bool MotionModel::turn_known(const Prior& now) const {
+  return (now.attitude_valid && last_.attitude_valid) || (now.velocity_valid && last_.velocity_valid);
+}
+
 Prediction MotionModel::predict(const Prior& now, const MethodTraits& method,
                                 const GravityOffset& offset) const {
-  // The turn between two priors is known only where both have a valid attitude; else it is predicted as zero,
-  // and the registration estimates it.
   const bool followed = now.attitude_valid && last_.attitude_valid;
   const bool on_wheels = now.velocity_valid && last_.velocity_valid;
-  const Eigen::Isometry3d& T_odom_before = followed ? last_.T_odom_base : now.T_odom_base;
+  const Eigen::Isometry3d& T_odom_before = turn_known(now) ? last_.T_odom_base : now.T_odom_base;
   const PoseAnchor anchor(T_map_base_, T_odom_before);
   const Eigen::Matrix3d R_map_odom =
       method.tilt == Constraint::kFixed ? nearest_rotation_about_z(anchor.R_map_odom()) : anchor.R_map_odom();
@@ -137,6 +146,7 @@ Prediction MotionModel::predict(const Prior& now, const MethodTraits& method,
   if (method.follows_altimeter()) {
     prediction.T_map_base.translation().z() = now.height_m;
   }
+  if (!turn_known(now)) turn_on(now, prediction);
   const double dt_s = std::max(travel_s(now), seconds_between(confirmed_ns_, now.stamp_ns));
   const double turn_rad =
       rotation_angle_rad(Eigen::Quaterniond(T_odom_before.linear().transpose() * now.T_odom_base.linear()));
@@ -145,6 +155,7 @@ Prediction MotionModel::predict(const Prior& now, const MethodTraits& method,
   const double translation_m = on_wheels ? wheel_error_m(now, step_map_m.norm(), dt_s) : free_error_m(dt_s);
   prediction.deviation.head<3>().setConstant(
       std::min(rotation_error_rad(turn_rad, rate_rad_s, dt_s), kLargestDeviationRad));
+  if (on_wheels && !followed) prediction.deviation(2) = wheel_turn_error_rad(now, turn_rad, dt_s);
   prediction.deviation.tail<3>().setConstant(std::min(translation_m, kLargestDeviationM));
   if (!on_wheels) {
     prediction.deviation.segment<2>(3).setConstant(std::max(prediction.deviation(3), start_error_m(now)));
@@ -160,6 +171,18 @@ Prediction MotionModel::predict(const Prior& now, const MethodTraits& method,
   prediction.T_map_odom = prediction.T_map_base * now.T_odom_base.inverse();
   prediction.holders = holders_of(method, followed, on_wheels);
   return prediction;
+}
+
+// Neither gyro nor wheels: the turn of the last registrations goes on.
+void MotionModel::turn_on(const Prior& now, Prediction& prediction) const {
+  const Eigen::Vector3d turn_rad = turn_rate_at(last_.stamp_ns) * travel_s(now);
+  const Eigen::Quaterniond q_map_base(prediction.T_map_base.linear());
+  prediction.T_map_base.linear() = (q_map_base * exp_so3(turn_rad)).normalized().toRotationMatrix();
+}
+
+double MotionModel::wheel_turn_error_rad(const Prior& now, double turn_rad, double dt_s) const {
+  const double rate_rad_s = non_negative_root(now.yaw_rate_variance_rad2_s2);
+  return std::min(rotation_error_rad(turn_rad, rate_rad_s, dt_s), kLargestDeviationRad);
 }
 
 double MotionModel::wheel_error_m(const Prior& now, double step_m, double dt_s) const {
@@ -192,8 +215,11 @@ void MotionModel::correct(const Prior& now, const Eigen::Isometry3d& T_map_base)
                                      ? Eigen::Vector3d(1.0, 1.0, kVerticalVelocityGain)
                                      : Eigen::Vector3d(kVelocityGain, kVelocityGain, kVerticalVelocityGain);
     v_map_m_s_ += gain.cwiseProduct(measured - v_map_m_s_);
+    w_base_rad_s_ =
+        log_so3(Eigen::Quaterniond(T_map_base_.linear().transpose() * T_map_base.linear())) / dt_s;
   } else {
     v_map_m_s_.setZero();
+    w_base_rad_s_.setZero();
   }
   const bool stood = (T_map_base.translation() - T_map_base_.translation()).norm() < kStoodM;
   registered_ = stood ? std::max(registered_ + 1, kScansToVelocity) : registered_ + 1;
@@ -218,6 +244,8 @@ ScanMotion MotionModel::scan_motion(const Prior& end, const Prediction& predicti
   ScanMotion motion;
   motion.end = end;
   motion.from_wheels = end.velocity_valid;
+  motion.turn_known = end.attitude_valid || end.velocity_valid;
+  motion.w_base_rad_s = turn_rate_at(end.stamp_ns);
   motion.v_base_m_s = prediction.T_map_base.linear().transpose() * velocity_at(end.stamp_ns);
   return motion;
 }

@@ -34,8 +34,8 @@ struct GravityOffset {
 /// Standard deviation of gravity's roll and pitch in the prior of a scan [rad]: `known_rad` once its offset is known.
 [[nodiscard]] double gravity_sigma_rad(double known_rad, double offset_sigma_rad);
 
-/// Propagates the last registered pose: with wheels by the increments of dead reckoning, without wheels by
-/// the decaying velocity of the registrations.
+/// Propagates the last registered pose by the increments of dead reckoning; without wheels by the decaying velocity of
+/// the registrations, and without gyro and wheels by their decaying turn rate.
 class MotionModel {
  public:
   explicit MotionModel(const RegistrationConfig& config) : config_(config) {}
@@ -70,9 +70,13 @@ class MotionModel {
 
  private:
   [[nodiscard]] Eigen::Vector3d step_at_velocity_map(const Prior& now) const;
+  [[nodiscard]] bool turn_known(const Prior& now) const;
+  void turn_on(const Prior& now, Prediction& prediction) const;
   [[nodiscard]] double travel_s(const Prior& now) const;
   [[nodiscard]] double since_confirmed_s(std::int64_t stamp_ns) const;
   [[nodiscard]] Eigen::Vector3d velocity_at(std::int64_t stamp_ns) const;
+  [[nodiscard]] Eigen::Vector3d turn_rate_at(std::int64_t stamp_ns) const;
+  [[nodiscard]] double wheel_turn_error_rad(const Prior& now, double turn_rad, double dt_s) const;
   [[nodiscard]] double wheel_error_m(const Prior& now, double step_m, double dt_s) const;
   [[nodiscard]] double free_error_m(double dt_s) const;
   [[nodiscard]] double start_error_m(const Prior& now) const;
@@ -83,6 +87,7 @@ class MotionModel {
   Prior last_;                                                    // prior at the last scan
   Eigen::Isometry3d T_map_base_ = Eigen::Isometry3d::Identity();  // pose at the last scan
   Eigen::Vector3d v_map_m_s_ = Eigen::Vector3d::Zero();           // filtered, of the last registrations
+  Eigen::Vector3d w_base_rad_s_ = Eigen::Vector3d::Zero();        // turn rate of the last step
   std::int64_t confirmed_ns_ = 0;                                 // last scan that was registered
   int registered_ = 0;                                            // scans since the start
   double unconfirmed_m_ = 0.0;                                    // distance predicted since then

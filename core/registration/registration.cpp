@@ -99,7 +99,8 @@ Prior Registration::prior_without_imu(std::int64_t stamp_ns) const {
 // False while the map waits for gravity, or a known place for the height.
 bool Registration::start_motion(const Scan& scan, const Prior& prior, RegisteredScan& out) {
   if (state_.motion.started()) return true;
-  if (!prior.attitude_valid && ++state_.scans_without_gravity < kMaxScansWithoutGravity) return false;
+  const bool waits_for_gravity = config_.has_imu && !prior.attitude_valid;
+  if (waits_for_gravity && ++state_.scans_without_gravity < kMaxScansWithoutGravity) return false;
   if (state_.place) return start_at_place(prior);
   if (traits_.method != Method::kAdaptive) {
     state_.motion.start(prior);
@@ -162,13 +163,13 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
   continue_from(end, prediction, registered, pose);
 }
 
-// The start of the next prediction. A scan with neither IMU nor registration does not become it: the scan before it
-// stays the start.
+// The start of the next prediction. A scan with neither registration nor IMU nor wheels does not become it: the scan
+// before it stays the start.
 void Registration::continue_from(const Prior& end, const Prediction& prediction, bool registered,
                                  const PoseEstimate& pose) {
   if (registered) {
     state_.motion.correct(end, pose.T_map_base);
-  } else if (end.attitude_valid) {
+  } else if (end.attitude_valid || end.velocity_valid) {
     state_.motion.keep_prediction(end, prediction);
   }
   state_.last = pose;

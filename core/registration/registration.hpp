@@ -140,6 +140,7 @@ class Registration {
   // registration_lost.cpp
   [[nodiscard]] bool lost() const { return state_.lost.reason != LostReason::kNone; }
   void rise_with_ground(const Prior& end, const MethodTraits& traits, Prediction& prediction);
+  [[nodiscard]] double height_before_ride(std::int64_t stamp_ns) const;
   void describe_ground(const Prior& end, PoseEstimate& pose) const;
   void watch(const Prior& end, PoseEstimate& pose);
   void begin_lost(const Prior& end, LostReason reason, PoseEstimate& pose);

@@ -8,6 +8,8 @@ namespace isobar {
 
 /// Preparation, matching and solving of a scan, and the weight of the prior.
 struct RegistrationConfig {
+  /// False: no IMU, as PriorConfig::has_imu; no scan waits for gravity.
+  bool has_imu = true;
   // Preparation of the scan.
   /// Returns nearer than this come from the robot itself [m] (from the sensor).
   double min_range_m = 0.5;

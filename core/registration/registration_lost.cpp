@@ -42,6 +42,7 @@ void Registration::rise_with_ground(const Prior& end, const MethodTraits& traits
                          traits.registers() && end.height_source != HeightSource::kNone;
   const bool rode = state_.ground_since_ns != 0;
   const bool rides = asks_none && end.ground_moves && (rode || wheels_stand(end));
+  if (rides && !rode && !config_.has_imu) state_.scan_height_m = height_before_ride(end.stamp_ns);
   if (rides || rode) {
     const Eigen::Vector3d up(0.0, 0.0, end.height_m - state_.scan_height_m);
     prediction.T_map_base.pretranslate(up);
@@ -50,6 +51,21 @@ void Registration::rise_with_ground(const Prior& end, const MethodTraits& traits
   if (rode && !rides) state_.risen_variance_m2 += 2.0 * end.height_variance_m2;
   if (rode != rides) state_.ground_since_ns = rides ? end.stamp_ns : 0;
   state_.scan_height_m = end.height_m;
+}
+
+// Air alone shows a ride late (AirRide): the height at rest is that of some seconds ago.
+double Registration::height_before_ride(std::int64_t stamp_ns) const {
+  constexpr std::int64_t kLateNs = 4'000'000'000;
+  constexpr std::int64_t kMeanNs = 1'000'000'000;
+  double sum_m = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < state_.history.size(); ++i) {
+    const Prior& prior = state_.history[i];
+    if (prior.stamp_ns < stamp_ns - kLateNs - kMeanNs || prior.stamp_ns > stamp_ns - kLateNs) continue;
+    sum_m += prior.height_m;
+    count += 1.0;
+  }
+  return count > 0.0 ? sum_m / count : state_.scan_height_m;
 }
 
 void Registration::describe_ground(const Prior& end, PoseEstimate& pose) const {

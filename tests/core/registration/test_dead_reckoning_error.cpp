@@ -56,9 +56,15 @@ TEST_CASE("without wheels the position is lost with time; at first it is that of
   CHECK(sd(driven(blind, 10.0, fast), 0) > 2.0 * sd(driven(blind, 10.0), 0));
 }
 
-TEST_CASE("without an IMU yaw is soon unknown, and a yaw that is unknown is no larger than a turn") {
+TEST_CASE(
+    "without IMU and wheels yaw is soon unknown, and a yaw that is unknown is no larger than a turn; wheels "
+    "alone know it as their rate says") {
   Prior blind = wheels_at(1.0);
   blind.attitude_valid = false;
+  blind.yaw_bias_variance_rad2_s2 = 0.05 * 0.05;
+  CHECK(sd(driven(blind, 1.0), 5) > 0.04);
+  CHECK(sd(driven(blind, 1.0), 5) < 0.06);
+  blind.velocity_valid = false;
   CHECK(sd(driven(blind, 1.0), 5) > 0.3);
   CHECK(sd(driven(blind, 100.0), 5) <= 3.01);
 }

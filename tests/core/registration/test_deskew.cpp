@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "core/registration/deskew.hpp"
+#include "core/so3.hpp"
 #include "tests/core/registration/synthetic_world.hpp"
 
 namespace isobar::test::test_deskew {
@@ -85,6 +86,32 @@ TEST_CASE("a scan taken in motion becomes the cloud of the static room") {
   CHECK(out->point_count == scan->point_count);
   // Knots are at most 128 us off: 0.1 mrad at 0.8 rad/s, 1 mm at 7 m, plus 0.1 mm of translation.
   CHECK(largest_distance_to_room(*out, twisting(scan->end_stamp_ns)) < 0.0015);
+}
+
+TEST_CASE("without gyro and wheels a scan is deskewed by the turn rate and the velocity of its motion") {
+  std::mt19937 random(1);
+  auto scan = std::make_unique<Scan>();
+  scan_world(empty_room(), twisting, lidar_mount(), kStart, 0.0, random, *scan);
+  PriorHistory history;  // of a robot that knows the time only
+  for (int i = 0; i <= 10; ++i) {
+    Prior prior;
+    prior.stamp_ns = kStart + i * 20'000'000;
+    history.add(prior);
+  }
+  const Eigen::Isometry3d T_end = twisting(scan->end_stamp_ns);
+  const Eigen::Isometry3d T_before = twisting(scan->end_stamp_ns - 1'000'000);
+  ScanMotion motion;
+  REQUIRE(history.at(scan->end_stamp_ns, motion.end));
+  motion.from_wheels = motion.turn_known = false;
+  motion.v_base_m_s = T_end.linear().transpose() * (T_end.translation() - T_before.translation()) * 1e3;
+  motion.w_base_rad_s = log_so3(Eigen::Quaterniond(T_before.linear().transpose() * T_end.linear())) * 1e3;
+  auto out = std::make_unique<RegisteredScan>();
+  Deskewer deskewer(lidar_mount(), 0.3, 100.0);
+  deskew(*scan, history, motion, deskewer, *out);
+  CHECK(largest_distance_to_room(*out, T_end) < 0.02);
+  motion.turn_known = true;  // that it stands
+  deskew(*scan, history, motion, deskewer, *out);
+  CHECK(largest_distance_to_room(*out, T_end) > 0.1);
 }
 
 TEST_CASE("without wheels a scan is deskewed by constant velocity and the prior's rotation") {
