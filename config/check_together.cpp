@@ -44,6 +44,8 @@ void check_sensors(const Config& config, const Requirements& rules) {
   rules.require(config.lidar.port != config.input.port || config.role == Role::kBaseStation, "input.port",
                 "must differ from lidar.port");
   const BarometerSettings& barometer = config.barometer;
+  rules.require(barometer.present() || config.role == Role::kRobot, "barometer.source",
+                "must not be \"none\": a base station measures air pressure");
   if (barometer.source == "dps310") {
     rules.require(dps310::busy_time_s(barometer.dps310) < 1.0, "barometer.dps310.pressure_rate_hz",
                   busy_text(barometer.dps310));

@@ -43,15 +43,20 @@ struct LidarSettings {
   double mask_end_deg = 0.0;
 };
 
+/// Source of a sensor that this robot does not have.
+inline constexpr const char* kNoSensor = "none";
+
 /// [imu]
 struct ImuSettings {
+  std::string source = "input";  ///< "input": datagrams, or DDS; "none": no IMU
   Mount mount;
+  [[nodiscard]] bool present() const { return source != kNoSensor; }
 };
 
 /// [barometer]
 struct BarometerSettings {
-  /// Source of the samples: "input", datagrams; "dps310", "setra278", "iio": a sensor of this machine, which
-  /// isobard reads itself; datagrams of the barometer are then refused.
+  /// Source of the samples: "input", datagrams; "none": no barometer; "dps310", "setra278", "iio": a sensor of
+  /// this machine, which isobard reads itself; datagrams of the barometer are then refused.
   std::string source = "input";
   Mount mount;  ///< position of the pressure port in base_link; the rotation is not used
   /// Calibration file to load into PriorConfig::compensation; empty after loading.
@@ -61,6 +66,7 @@ struct BarometerSettings {
   dps310::Settings dps310;
   iio::SetraSettings setra278;
   iio::Settings iio;
+  [[nodiscard]] bool present() const { return source != kNoSensor; }
 };
 
 /// [base_barometer]

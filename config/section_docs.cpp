@@ -14,7 +14,7 @@ struct Doc {
 
 constexpr auto kDocs = std::to_array<Doc>({
     {"lidar", "The lidar, as a live run receives it by UDP. A replay takes it from the recording."},
-    {"imu", "Mount of the IMU. A replay takes it from the recording."},
+    {"imu", "The IMU. A replay takes its samples and mount from the recording."},
     {"barometer", "The robot's barometer. A replay takes its samples and mount from the recording."},
     {"barometer.dps310", "A DPS310 on an I2C bus of this machine; used if barometer.source is \"dps310\"."},
     {"barometer.setra278",

@@ -102,10 +102,12 @@ void add_compensation_file(std::string& file, SectionBuilder& section) {
 
 void add_barometer(BarometerSettings& barometer, std::vector<Setting>& settings) {
   SectionBuilder s("barometer", UsedBy::kEveryRole, settings);
-  s.choice("source", &barometer.source, {"input", "dps310", "setra278", "iio"},
-           "Source of the barometer's samples. input: datagrams. dps310, setra278, iio: a sensor of this "
-           "machine, which isobard reads itself, set up in the section of that name; datagrams of the "
-           "barometer are then refused.")
+  s.choice(
+       "source", &barometer.source, {"input", kNoSensor, "dps310", "setra278", "iio"},
+       "Source of the barometer's samples. input: datagrams. none: this robot has no barometer; its height "
+       "is the lidar's. dps310, setra278, iio: a sensor of this "
+       "machine, which isobard reads itself, set up in the section of that name; datagrams of the "
+       "barometer are then refused.")
       .basic();
   s.used_by(UsedBy::kRobot);
   add_position(s, barometer.mount,
@@ -128,6 +130,12 @@ void add_barometer(BarometerSettings& barometer, std::vector<Setting>& settings)
 void add_sensor_settings(Config& config, std::vector<Setting>& settings) {
   add_lidar(config.lidar, settings);
   SectionBuilder imu("imu", UsedBy::kRobot, settings);
+  imu.choice(
+         "source", &config.imu.source, {"input", kNoSensor},
+         "Source of the IMU's samples. input: datagrams, or DDS with dds.receive_sensors. none: this robot "
+         "has no IMU; scans are registered as 6-DOF from the wheels or the last motion, and roll, pitch and "
+         "height drift with the way.")
+      .basic();
   add_position(imu, config.imu.mount, "Origin of the IMU in base_link. 0: at the origin of base_link.");
   add_rotation(imu, config.imu.mount);
   add_barometer(config.barometer, settings);

@@ -11,7 +11,7 @@ namespace {
 
 std::unique_ptr<BarometerDevice> make_device(const BarometerSettings& settings) {
   const auto stuck_time_ns = static_cast<std::int64_t>(settings.stuck_time_s * 1e9);
-  if (settings.source == "input") return nullptr;
+  if (settings.source == "input" || !settings.present()) return nullptr;
   if (settings.source == "dps310") {
     const std::uint8_t address = settings.dps310.address == "0x76" ? 0x76 : 0x77;
     return std::make_unique<dps310::Sensor>(

@@ -32,10 +32,6 @@ std::string input_of(const Config& config, datagram::Kind kind) {
   return "UDP port " + std::to_string(config.input.port) + (by_dds ? " or over DDS" : "");
 }
 
-std::string silence_text(const char* what, std::int64_t last_ns, std::int64_t now_ns) {
-  return fmt::format("no {} for {:.0f} s", what, seconds_between(last_ns, now_ns));
-}
-
 std::string lost_text(const RegistrationStatus& registration) {
   return fmt::format("lost since {:.1f} s: {}; dead reckoning, not mapped",
                      seconds_between(registration.lost_since_ns, registration.pose.stamp_ns),
@@ -127,7 +123,11 @@ void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, He
   for (std::size_t kind = 0; kind < datagram::kKinds; ++kind) {
     const double rate_hz = per_second(now.prior.samples[kind], last_.prior.samples[kind], elapsed_s);
     const auto which = static_cast<datagram::Kind>(kind);
-    if (which == datagram::Kind::kPressure && now.barometer.present) {
+    if (which == datagram::Kind::kImu && !config_.imu.present()) {
+      add_absent(report, kNames[kind], "imu.source", now.prior.samples[kind]);
+    } else if (which == datagram::Kind::kPressure && !config_.barometer.present()) {
+      add_absent(report, kNames[kind], "barometer.source", now.samples.refused_pressure);
+    } else if (which == datagram::Kind::kPressure && now.barometer.present) {
       add_barometer_device(report, config_.barometer, now.barometer, last_.barometer, now.now_ns, rate_hz);
     } else if (which == datagram::Kind::kBasePressure) {
       fill_base_stations(now, report);
@@ -206,33 +206,6 @@ void HealthMonitor::fill_faults(const StatusSnapshot& now, HealthReport& report)
   const HealthLevel level = !judged ? HealthLevel::kStale : well ? HealthLevel::kOk : HealthLevel::kWarning;
   add_entry(report, "base_stations", level, judged ? sentence : "not judged without an IMU",
             health.base_usable);
-}
-
-void HealthMonitor::fill_prior(const StatusSnapshot& now, HealthReport& report) const {
-  const PriorStatus& prior = now.prior;
-  const PriorCounters& used = prior.counters;
-  const PriorCounters& before = last_.prior.counters;
-  add_calibration(report, "barometer", used.pressure_outside_calibration, before.pressure_outside_calibration,
-                  used.pressure_without_temperature, before.pressure_without_temperature);
-  add_calibration(report, "base_station", used.base_outside_calibration, before.base_outside_calibration,
-                  used.base_without_temperature, before.base_without_temperature);
-  // Without IMU samples there are no priors: what the last one said is no longer known.
-  if (prior.stamp_ns == 0 || now.now_ns - prior.stamp_ns > kSensorSilenceNs) {
-    const std::string text =
-        prior.stamp_ns == 0 ? "waiting for the IMU" : silence_text("IMU sample", prior.stamp_ns, now.now_ns);
-    add_entry(report, "attitude", HealthLevel::kStale, text, 0.0);
-    add_entry(report, "height", HealthLevel::kStale, text, prior.height_m);
-    return;
-  }
-  add_entry(report, "attitude", prior.attitude_valid ? HealthLevel::kOk : HealthLevel::kStale,
-            prior.attitude_valid ? "gravity found" : "waiting for gravity from the IMU", 0.0);
-  const bool without_base = !config_.input.expect_base_station && !prior.base_stations[0].started() &&
-                            prior.height_source == HeightSource::kSingleBarometer;
-  const bool height_good = prior.height_source == HeightSource::kDifferential || without_base;
-  add_entry(report, "height", height_good ? HealthLevel::kOk : HealthLevel::kWarning,
-            fmt::format("source: {}, sd {:.3f} m{}", kHeightSourceNames.name(prior.height_source),
-                        std::sqrt(prior.height_variance_m2), without_base ? ", drifts with the weather" : ""),
-            prior.height_m);
 }
 
 void HealthMonitor::fill_registration(const StatusSnapshot& now, HealthReport& report) {

@@ -10,6 +10,7 @@
 #include "core/mounts/mount_text.hpp"
 #include "daemon/health.hpp"
 #include "daemon/health_entries.hpp"
+#include "daemon/health_entry.hpp"
 
 namespace isobar {
 namespace {

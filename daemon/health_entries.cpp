@@ -27,6 +27,10 @@ double per_second(std::uint64_t now, std::uint64_t before, double elapsed_s) {
   return elapsed_s > 0.0 ? static_cast<double>(now - before) / elapsed_s : 0.0;
 }
 
+std::string silence_text(const char* what, std::int64_t last_ns, std::int64_t now_ns) {
+  return fmt::format("no {} for {:.0f} s", what, seconds_between(last_ns, now_ns));
+}
+
 void add_count(HealthReport& report, const char* name, std::uint64_t now, std::uint64_t before,
                const char* sentence) {
   if (now == 0) return;
@@ -61,6 +65,16 @@ void add_stream(HealthReport& report, const std::string& name, std::int64_t last
               0.0);
   } else {
     add_entry(report, name, HealthLevel::kOk, fmt::format("{:.1f} per second", rate_hz), rate_hz);
+  }
+}
+
+void add_absent(HealthReport& report, const std::string& name, const char* key, std::uint64_t samples) {
+  const std::string why = std::string(key) + " is \"none\"";
+  if (samples > 0) {
+    add_entry(report, name, HealthLevel::kWarning, "samples come and are not used: " + why,
+              static_cast<double>(samples));
+  } else {
+    add_entry(report, name, HealthLevel::kOk, "none: " + why, 0.0);
   }
 }
 

@@ -37,6 +37,14 @@ void add_count(ipc::HealthReport& report, const char* name, std::uint64_t now, s
 void add_deadline(ipc::HealthReport& report, const char* name, const DeadlineStatus& now,
                   const DeadlineStatus& before, const char* what, std::int64_t now_ns);
 
+/// "no pose for 3 s"; stamps on the robot clock.
+[[nodiscard]] std::string silence_text(const char* what, std::int64_t last_ns, std::int64_t now_ns);
+
+/// Main entry of a sensor that the configuration says this robot does not have.
+/// @param key of the configuration, "imu.source"
+/// @param samples heard of it nevertheless, which are not used
+void add_absent(ipc::HealthReport& report, const std::string& name, const char* key, std::uint64_t samples);
+
 /// Main entry of a sensor: its rate, or the duration of its silence.
 /// @param last_ns stamp of its newest sample, robot clock; 0: none yet
 /// @param silence_ns time without a sample after which it is silent

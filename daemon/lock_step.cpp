@@ -19,7 +19,8 @@ LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileStorag
       registration_(settings.registration, settings.method, settings.T_base_lidar, sink),
       map_(settings.map, settings.T_base_lidar, storage),
       filling_(std::make_unique<Scan>()),
-      queue_(kLockStepQueue) {}
+      queue_(kLockStepQueue),
+      has_imu_(settings.prior.has_imu) {}
 
 void LockStep::continue_from(const RunStart& start, const std::filesystem::path& map_folder) {
   prior_estimator_.resume(start.datum);
@@ -30,6 +31,10 @@ void LockStep::continue_from(const RunStart& start, const std::filesystem::path&
 }
 
 void LockStep::handle(const recording::Event& event) {
+  if (!has_imu_) {
+    if (event.kind == recording::EventKind::kImu) return;  // not even as a clock
+    advance(event.stamp_ns);
+  }
   switch (event.kind) {
     case recording::EventKind::kLidarPacket:
       take_packet(event);
@@ -66,19 +71,23 @@ void LockStep::take_packet(const recording::Event& event) {
 
 void LockStep::take_imu(const ImuSample& sample) {
   Prior prior;
-  if (!prior_estimator_.add_imu(sample, prior)) return;
+  if (prior_estimator_.add_imu(sample, prior)) use_prior(prior);
+}
+
+void LockStep::advance(std::int64_t now_ns) {
+  Prior prior;
+  for (std::int64_t stamp_ns = 0; pace_.next(now_ns, stamp_ns);) {
+    if (prior_estimator_.advance(stamp_ns, prior)) use_prior(prior);
+  }
+}
+
+void LockStep::use_prior(const Prior& prior) {
   registration_.add_prior(prior);
   register_admissible();
   registration_.bridge_silence();
 }
 
 void LockStep::queue_scan() {
-  if (!has_imu_) {
-    // A prior that knows nothing but the time.
-    Prior at_end;
-    at_end.stamp_ns = filling_->end_stamp_ns;
-    registration_.add_prior(at_end);
-  }
   queue_.push(std::move(filling_), clock_ns_);
   if (spare_.empty()) {
     filling_ = std::make_unique<Scan>();

@@ -14,6 +14,7 @@
 #include "core/estimates.hpp"
 #include "core/map/local_map.hpp"
 #include "core/prior/prior_estimator.hpp"
+#include "core/prior/prior_pace.hpp"
 #include "daemon/lidar_sender.hpp"
 #include "daemon/registration_stage.hpp"
 #include "daemon/run_start.hpp"
@@ -34,8 +35,6 @@ class LockStep {
   /// Continues an earlier run, before the first event, with the tiles of the storage around its place and the
   /// scans of the journal in the folder of its map.
   void continue_from(const RunStart& start, const std::filesystem::path& map_folder);
-  /// No IMU will come: every scan is registered as 6-DOF, from the motion of the scans before. Before the first event.
-  void go_without_imu() { has_imu_ = false; }
   void handle(const recording::Event& event);
   /// Registers the waiting scans and stores the tiles in memory. Call once, at the end.
   void finish();
@@ -52,6 +51,8 @@ class LockStep {
  private:
   void take_packet(const recording::Event& event);
   void take_imu(const ImuSample& sample);
+  void advance(std::int64_t now_ns);
+  void use_prior(const Prior& prior);
   void queue_scan();
   void register_admissible();
 
@@ -67,7 +68,8 @@ class LockStep {
   std::vector<std::unique_ptr<Scan>> spare_;
   RegisteredScan registered_;
   std::uint64_t scans_ = 0;
-  bool has_imu_ = true;
+  bool has_imu_;
+  PriorPace pace_;  ///< without an IMU
 };
 
 }  // namespace isobar

@@ -27,6 +27,7 @@
 #include "daemon/lidar_thread.hpp"
 #include "daemon/logging.hpp"
 #include "daemon/map_thread.hpp"
+#include "daemon/missing_sensors.hpp"
 #include "daemon/options.hpp"
 #include "daemon/output_thread.hpp"
 #include "daemon/prior_thread.hpp"
@@ -62,7 +63,8 @@ class RobotGraph final : public Graph {
         prior_(stages_.prior, scheduling_.prior),
         barometer_(make_barometer_thread(config.barometer, scheduling_.barometer)),
         samples_(config.input.address, config.input.port,
-                 {.barometer = barometer_ == nullptr, .unsigned_base = config.dds.keys_directory.empty()},
+                 {.barometer = barometer_ == nullptr && config.barometer.present(),
+                  .unsigned_base = config.dds.keys_directory.empty()},
                  config.input.senders, scheduling_.inertial),
         lidar_(stages_.lidar, config.lidar, scheduling_.lidar),
         output_(files_.checkpoint_file().empty()
@@ -86,7 +88,14 @@ class RobotGraph final : public Graph {
     workers_.add(lidar_.worker());
   }
 
-  void start() override { workers_.start(); }
+  void start() override {
+    // Wheels are heard, not configured.
+    const PresentSensors present{.imu = config_.imu.present(),
+                                 .barometer = config_.barometer.present(),
+                                 .base_station = config_.input.expect_base_station};
+    for (const std::string& text : missing_sensor_texts(present)) spdlog::info("{}", text);
+    workers_.start();
+  }
   void stop() override {
     workers_.stop();
     files_.close(status(RobotClock::now_ns()));

@@ -12,15 +12,16 @@
 namespace isobar {
 namespace {
 
-/// Polling interval without an IMU. Only IMU samples wake this thread, since
+/// Polling interval of a silent IMU. Only IMU samples wake this thread, since
 /// only they produce priors; the slow sensors are polled, so that their queues
 /// (256 samples) do not overflow and the health report sees them.
-constexpr std::chrono::milliseconds kPollWithoutImu(100);
+constexpr std::chrono::milliseconds kPollOfSilentImu(100);
 
 }  // namespace
 
 PriorThread::PriorThread(const PriorConfig& config, ThreadSettings settings)
-    : estimator_(config),
+    : has_imu_(config.has_imu),
+      estimator_(config),
       imu_(ipc::topics::kImu),
       barometer_(ipc::topics::kBarometer),
       base_barometer_(ipc::topics::kBaseBarometer),
@@ -32,7 +33,12 @@ PriorThread::PriorThread(const PriorConfig& config, ThreadSettings settings)
 
 void PriorThread::loop() noexcept {
   drain_until_stopped(
-      waiter_, worker_.heartbeat(), [this] { drain(); }, [] { return kPollWithoutImu; });
+      waiter_, worker_.heartbeat(), [this] { drain(); }, [this] { return poll(); });
+}
+
+// Without an IMU this thread wakes itself.
+std::chrono::nanoseconds PriorThread::poll() const noexcept {
+  return has_imu_ ? std::chrono::nanoseconds(kPollOfSilentImu) : std::chrono::nanoseconds(PriorPace::kStepNs);
 }
 
 // Counted here, where samples from UDP and from DDS arrive on the same topics.
@@ -67,20 +73,8 @@ void PriorThread::drain() noexcept {
   while (const auto sample = take(wheel_, Kind::kWheel)) {
     if (wheel_path_.check(*sample)) estimator_.add_wheel(*sample);
   }
-  Prior prior;
-  constexpr auto kImuIndex = static_cast<std::size_t>(Kind::kImu);
-  std::int64_t before_ns = draft_status_.last_sample_ns[kImuIndex];
-  while (const auto sample = take(imu_, Kind::kImu)) {
-    if (!imu_path_.check(*sample)) continue;
-    if (before_ns != 0 && std::abs(sample->stamp_ns - before_ns) > StartOver::kSilenceNs) {
-      draft_status_.imu_resumed_ns = sample->stamp_ns;
-    }
-    before_ns = sample->stamp_ns;
-    if (!estimator_.add_imu(*sample, prior)) continue;
-    publisher_.send(prior);
-    deadline_.note(prior.stamp_ns, RobotClock::now_ns());
-    describe(prior);
-  }
+  drain_imu();
+  if (!has_imu_) advance(RobotClock::now_ns());
   draft_status_.imu_path = imu_path_.status();
   draft_status_.wheel_path = wheel_path_.status();
   draft_status_.counters = estimator_.counters();
@@ -92,6 +86,33 @@ void PriorThread::drain() noexcept {
   draft_status_.dropped_samples =
       std::accumulate(draft_status_.dropped.begin(), draft_status_.dropped.end(), std::uint64_t{0});
   status_.put(draft_status_);
+}
+
+void PriorThread::drain_imu() noexcept {
+  Prior prior;
+  constexpr auto kImuIndex = static_cast<std::size_t>(datagram::Kind::kImu);
+  std::int64_t before_ns = draft_status_.last_sample_ns[kImuIndex];
+  while (const auto sample = take(imu_, datagram::Kind::kImu)) {
+    if (!imu_path_.check(*sample)) continue;
+    if (before_ns != 0 && std::abs(sample->stamp_ns - before_ns) > StartOver::kSilenceNs) {
+      draft_status_.imu_resumed_ns = sample->stamp_ns;
+    }
+    before_ns = sample->stamp_ns;
+    if (has_imu_ && estimator_.add_imu(*sample, prior)) publish(prior);
+  }
+}
+
+void PriorThread::advance(std::int64_t now_ns) noexcept {
+  Prior prior;
+  for (std::int64_t stamp_ns = 0; pace_.next(now_ns, stamp_ns);) {
+    if (estimator_.advance(stamp_ns, prior)) publish(prior);
+  }
+}
+
+void PriorThread::publish(const Prior& prior) noexcept {
+  publisher_.send(prior);
+  deadline_.note(prior.stamp_ns, RobotClock::now_ns());
+  describe(prior);
 }
 
 void PriorThread::describe(const Prior& prior) noexcept {

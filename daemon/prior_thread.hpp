@@ -2,10 +2,12 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 
 #include "core/prior/prior_estimator.hpp"
+#include "core/prior/prior_pace.hpp"
 #include "core/time/cadence.hpp"
 #include "core/time/stream_pace.hpp"
 #include "daemon/deadline.hpp"
@@ -41,7 +43,7 @@ struct PriorStatus {
   DeadlineStatus punctuality;  ///< from an IMU sample to the publication of its prior
 };
 
-/// Fuses samples into one prior per IMU sample.
+/// Fuses samples into one prior per IMU sample; without an IMU into one at each step of PriorPace.
 class PriorThread {
  public:
   PriorThread(const PriorConfig& config, ThreadSettings settings);
@@ -65,12 +67,18 @@ class PriorThread {
     double deadline_ms;
   };
   void loop() noexcept;
+  [[nodiscard]] std::chrono::nanoseconds poll() const noexcept;
   void drain() noexcept;
+  void drain_imu() noexcept;
+  void advance(std::int64_t now_ns) noexcept;
+  void publish(const Prior& prior) noexcept;
   template <class Sample>
   ipc::Received<Sample> take(ipc::Subscriber<Sample>& from, datagram::Kind kind) noexcept;
   void describe(const Prior& prior) noexcept;
 
+  bool has_imu_;
   PriorEstimator estimator_;
+  PriorPace pace_;  ///< without an IMU
   std::array<PathChoice, 2> base_paths_{
       PathChoice(PathChoice::kBaseTakeoverNs),
       PathChoice(PathChoice::kBaseTakeoverNs)};  ///< by PressureSample::station

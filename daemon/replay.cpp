@@ -13,6 +13,7 @@
 #include "core/stamp.hpp"
 #include "daemon/counts.hpp"
 #include "daemon/lock_step.hpp"
+#include "daemon/missing_sensors.hpp"
 #include "daemon/stage_settings.hpp"
 #include "run/recording/recording_reader.hpp"
 
@@ -71,20 +72,13 @@ class OutputSink : public EstimateSink {
   std::uint64_t without_imu_ = 0;
 };
 
-void warn_of_missing_sensors(const recording::Manifest& manifest, ReplaySummary& summary) {
-  if (!manifest.imu) {
-    summary.warnings.emplace_back(
-        "no [imu]: lidar alone, every scan as 6-DOF from a constant velocity; gravity is unknown: the first "
-        "scan is "
-        "level; wheels and barometers are not used; no pose in the first 3 s");
-    return;
-  }
-  if (!manifest.barometer) summary.warnings.emplace_back("no [barometer]: 3-DOF runs as 4-DOF");
-  if (manifest.barometer && !manifest.base_barometer) {
-    summary.warnings.emplace_back(
-        "no [base_barometer]: the height is relative to the start and drifts with the weather");
-  }
-  if (!manifest.wheel) summary.warnings.emplace_back("no [wheel]: constant velocity between scans");
+void warn_of_missing_sensors(const recording::Manifest& manifest, const Config& config,
+                             ReplaySummary& summary) {
+  const auto texts = missing_sensor_texts({.imu = config.imu.present(),
+                                           .wheels = manifest.wheel.has_value(),
+                                           .barometer = config.barometer.present(),
+                                           .base_station = manifest.base_barometer.has_value()});
+  summary.warnings.insert(summary.warnings.end(), texts.begin(), texts.end());
 }
 
 std::vector<files::RunCount> collect_counts(const recording::RecordingReader& reader,
@@ -107,15 +101,14 @@ void warn_of_no_pose(ReplaySummary& summary) {
 }
 
 /// Warns of sensors in the manifest without a single usable sample. counters.csv has the reasons.
-void warn_of_unusable_sensors(const recording::Manifest& manifest, const LockStep& pipeline,
-                              ReplaySummary& summary) {
+void warn_of_unusable_sensors(const recording::Manifest& manifest, const Config& config,
+                              const LockStep& pipeline, ReplaySummary& summary) {
   const PriorCounters& used = pipeline.prior_estimator().counters();
   const auto warn = [&](bool named, std::uint64_t samples, const char* what) {
     if (named && samples == 0) summary.warnings.emplace_back(what);
   };
-  warn(manifest.imu.has_value(), used.imu_accepted,
+  warn(config.imu.present(), used.imu_accepted,
        "the [imu] gave no usable sample: gravity and motion are unknown");
-  if (!manifest.imu) return warn_of_no_pose(summary);
   warn(manifest.barometer.has_value(), used.pressure_accepted,
        "the [barometer] gave no usable sample: 3-DOF runs as 4-DOF");
   warn(manifest.base_barometer.has_value(), used.base_accepted,
@@ -126,13 +119,13 @@ void warn_of_unusable_sensors(const recording::Manifest& manifest, const LockSte
 }
 
 /// Warns of scans that lacked a source of their pose, and of those whose pose was lost.
-void warn_of_scans_without(const recording::Manifest& manifest, const OutputSink& sink,
+void warn_of_scans_without(const recording::Manifest& manifest, bool has_imu, const OutputSink& sink,
                            ReplaySummary& summary) {
   if (sink.without_height() > 0 && manifest.barometer) {
     summary.warnings.emplace_back("no height from pressure for " + std::to_string(sink.without_height()) +
                                   " scans: 3-DOF ran as 4-DOF there");
   }
-  if (sink.without_imu() > 0 && manifest.imu) {
+  if (sink.without_imu() > 0 && has_imu) {
     summary.warnings.emplace_back("the IMU was silent for " + std::to_string(sink.without_imu()) +
                                   " scans: they were registered as 6-DOF");
   }
@@ -189,7 +182,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   const Config used = with_sensors_of(reader.manifest(), config);
   ReplaySummary summary;
   summary.warnings = reader.warnings();
-  warn_of_missing_sensors(reader.manifest(), summary);
+  warn_of_missing_sensors(reader.manifest(), used, summary);
   if (reader.manifest().base_barometer) summary.base_clock = reader.base_clock().reason;
 
   files::RunOutput output(out);
@@ -198,7 +191,6 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   const auto store =
       FileTileStore::create(files::RunOutput::map_directory(out), map_header(used), map_limits(used));
   LockStep pipeline(stage_settings(used), sink, store.get());
-  if (!reader.manifest().imu) pipeline.go_without_imu();
   recording::Event event;
   std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
   std::int64_t last_ns = std::numeric_limits<std::int64_t>::min();
@@ -220,9 +212,9 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   summary.recorded_s = last_ns > first_ns ? seconds_between(first_ns, last_ns) : 0.0;
   summary.counts = collect_counts(reader, pipeline);
   run_counts::append(summary.counts, map_counts);
-  warn_of_scans_without(reader.manifest(), sink, summary);
+  warn_of_scans_without(reader.manifest(), used.imu.present(), sink, summary);
   warn_of_two_lidars(pipeline, used.lidar.port, summary);
-  warn_of_unusable_sensors(reader.manifest(), pipeline, summary);
+  warn_of_unusable_sensors(reader.manifest(), used, pipeline, summary);
   output.write_counters(summary.counts);
   if (used.method == Method::kAdaptive) {
     output.write_mounts(mounts_file_text(sink.last().mount, used.lidar.mount.rpy_deg));

@@ -18,6 +18,8 @@ recording::Manifest manifest_of(const Config& config) {
   manifest.barometer->mount = config.barometer.mount;
   manifest.base_barometer->robot_clock = true;
   manifest.reference.reset();
+  if (!config.imu.present()) manifest.imu.reset();
+  if (!config.barometer.present()) manifest.barometer.reset();
   if (config.role == Role::kBaseStation) {
     manifest.lidar.reset();
     manifest.imu.reset();

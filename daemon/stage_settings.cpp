@@ -25,9 +25,11 @@ StageSettings stage_settings(const Config& config) {
   settings.lidar.mask_start_deg = config.lidar.mask_start_deg;
   settings.lidar.mask_end_deg = config.lidar.mask_end_deg;
   settings.prior = config.prior;
+  settings.prior.has_imu = config.imu.present();
   settings.prior.T_base_imu = config.imu.mount.T_base_sensor();
   settings.prior.p_base_port = config.barometer.mount.xyz_m;
   settings.registration = config.registration;
+  settings.registration.has_imu = config.imu.present();
   settings.map = config.map;
   settings.method = config.method;
   settings.T_base_lidar = config.lidar.mount.T_base_sensor();
@@ -52,8 +54,16 @@ Config with_sensors_of(const recording::Manifest& manifest, Config config) {
   config.lidar.port = manifest.lidar->port;
   if (config.lidar.sender.empty()) config.lidar.sender = manifest.lidar->sender;
   config.lidar.mount = manifest.lidar->mount;
-  if (manifest.imu) config.imu.mount = manifest.imu->mount;
-  if (manifest.barometer) config.barometer.mount = manifest.barometer->mount;
+  if (manifest.imu) {
+    config.imu.mount = manifest.imu->mount;
+  } else {
+    config.imu.source = kNoSensor;
+  }
+  if (manifest.barometer) {
+    config.barometer.mount = manifest.barometer->mount;
+  } else {
+    config.barometer.source = kNoSensor;
+  }
   return config;
 }
 

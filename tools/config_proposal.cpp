@@ -45,8 +45,9 @@ std::string lidar_lines(const Survey& survey) {
   }
   out += "lidar.port = " + std::to_string(chosen != nullptr ? chosen->port : 2368) + "\n";
   out += comment("Origin [m] and roll, pitch, yaw [deg] of the sensors in base_link: measure them.");
-  return out +
-         "lidar.xyz_m = [0.0, 0.0, 0.0]\nlidar.rpy_deg = [0.0, 0.0, 0.0]\nimu.xyz_m = [0.0, 0.0, 0.0]\n";
+  out += "lidar.xyz_m = [0.0, 0.0, 0.0]\nlidar.rpy_deg = [0.0, 0.0, 0.0]\nimu.xyz_m = [0.0, 0.0, 0.0]\n";
+  return out + comment("input: its samples are expected as datagrams; none: this robot has no IMU.") +
+         "imu.source = \"input\"\n";
 }
 
 std::string barometer_lines(const Survey& survey) {
@@ -70,7 +71,7 @@ std::string barometer_lines(const Survey& survey) {
            "\n";
   }
   out += comment("No barometer was found (I2C buses: " + listed(survey.i2c_buses) +
-                 "); its samples are expected as datagrams.");
+                 "); its samples are expected as datagrams. Without a barometer: none.");
   return out + "barometer.source = \"input\"\n";
 }
 

@@ -128,6 +128,31 @@ TEST_CASE("a robot without a base station is well if it is configured so, and wa
   CHECK(std::string(entry(report, "height").message).ends_with("drifts with the weather"));
 }
 
+TEST_CASE("an IMU or a barometer that is configured away is none and not missed; one that is configured is") {
+  Config config;
+  config.imu.source = config.barometer.source = kNoSensor;
+  StatusSnapshot status = working(kStart, true);
+  status.prior.samples[0] = status.prior.samples[1] = 0;
+  status.prior.last_sample_ns[0] = status.prior.last_sample_ns[1] = 0;
+  status.prior.attitude_valid = false;
+  status.prior.height_source = HeightSource::kNone;
+  HealthMonitor without{config};
+  const HealthReport report = report_of(without, status);
+  CHECK(entry(report, "imu").level == HealthLevel::kOk);
+  CHECK(std::string(entry(report, "imu").message) == "none: imu.source is \"none\"");
+  CHECK(entry(report, "barometer").level == HealthLevel::kOk);
+  CHECK(entry(report, "attitude").level == HealthLevel::kOk);
+  CHECK(std::string(entry(report, "attitude").message).starts_with("no IMU"));
+  CHECK(entry(report, "height").level == HealthLevel::kOk);
+  status.prior.samples[0] = 5;
+  CHECK(entry(report_of(without, status), "imu").level == HealthLevel::kWarning);
+  status.prior.samples[0] = 0;
+  HealthMonitor with{Config{}};
+  CHECK(entry(report_of(with, status), "imu").level == HealthLevel::kStale);
+  CHECK(entry(report_of(with, status), "barometer").level == HealthLevel::kStale);
+  CHECK(entry(report_of(with, status), "attitude").level == HealthLevel::kStale);
+}
+
 TEST_CASE("a report with every fault at once fits") {
   HealthMonitor monitor{Config{}};
   const StatusSnapshot before = working(kStart, true);
