@@ -232,7 +232,7 @@ void HealthMonitor::fill_registration(const StatusSnapshot& now, HealthReport& r
     add_entry(report, "registration/ms", idle ? HealthLevel::kStale : HealthLevel::kOk,
               "CPU time of the last scan", registration.registration_ms);
   }
-  fill_adaptive(registration, report);
+  fill_adaptive(now, report);
   add_count(report, "registration/refused", registration.from_prior, last_.registration.from_prior,
             "scans that did not match the map; their poses are the prior's");
   add_count(report, "registration/dropped", registration.dropped_scans, last_.registration.dropped_scans,

@@ -64,7 +64,7 @@ class HealthMonitor {
   void fill_base_stations(const StatusSnapshot& now, ipc::HealthReport& report) const;
   static void fill_faults(const StatusSnapshot& now, ipc::HealthReport& report);
   void fill_prior(const StatusSnapshot& now, ipc::HealthReport& report) const;
-  void fill_adaptive(const RegistrationStatus& registration, ipc::HealthReport& report);
+  void fill_adaptive(const StatusSnapshot& now, ipc::HealthReport& report);
   void fill_registration(const StatusSnapshot& now, ipc::HealthReport& report);
   void fill_map(const StatusSnapshot& now, ipc::HealthReport& report) const;
   void fill_deadlines(const StatusSnapshot& now, ipc::HealthReport& report) const;

@@ -75,8 +75,9 @@ void print(const char* topic, const dds::AltitudeMessage& message) {
   std::printf("%s  t %.3f s  height %7.3f m (+-%.3f)  %s", topic, seconds(message.header), message.height,
               std::sqrt(std::max(0.0, message.variance)), shown(message.source));
   if (!std::isnan(message.bias)) {
-    std::printf("  bias %6.3f m (+-%.3f)  innovation %6.3f m%s", message.bias,
-                std::sqrt(message.bias_variance), message.innovation, message.faulty ? "  faulty" : "");
+    std::printf("  bias %6.3f m (+-%.3f)  innovation %6.3f m  airflow %.1f mm per (m/s)^2 (+-%.1f)%s",
+                message.bias, std::sqrt(message.bias_variance), message.innovation, 1e3 * message.airflow,
+                1e3 * std::sqrt(message.airflow_variance), message.faulty ? "  faulty" : "");
   }
   if (std::string_view(shown(message.drifting)) != "none")
     std::printf("  drifting: %s", shown(message.drifting));

@@ -16,6 +16,8 @@ constexpr double kDriftGapS = 3.0;
 constexpr std::array<double, 6> kLeastDriftM{0.5, 0.17, 0.13, 0.12, 0.11, 0.10};
 // Error of a map's height with the way: a slope.
 constexpr double kHeightErrorShare = 0.004;
+// Change of a drift in standard deviations of an airflow that is not known yet: a start or a stop is no drift.
+constexpr double kAirflowSigmas = 2.5;
 // Largest rms of the residuals about the line, and largest part of two tenths of the window, as shares of the change.
 constexpr double kLargestRms = 0.11;
 constexpr std::array<double, 6> kLargestFifth{0.42, 0.39, 0.42, 0.42, 0.42, 0.42};
@@ -91,13 +93,15 @@ void DriftWatch::add(const Reading& reading) {
   open_.residual_m += reading.residual_m;
   open_.base_m += reading.base_m;
   open_.way_m += reading.way_m;
+  open_.airflow_sd_m += reading.airflow_sd_m;
   ++open_count_;
   last_ns_ = reading.stamp_ns;
   base_ = reading.base;
 }
 
 void DriftWatch::close() {
-  bins_[next_] = {open_.residual_m / open_count_, open_.base_m / open_count_, open_.way_m};
+  bins_[next_] = {open_.residual_m / open_count_, open_.base_m / open_count_, open_.way_m,
+                  open_.airflow_sd_m / open_count_};
   next_ = (next_ + 1) % kBins;
   count_ = std::min(count_ + 1, kBins);
   open_ = {};
@@ -117,13 +121,18 @@ void DriftWatch::learn_unrest() {
 DriftWatch::Window DriftWatch::window(std::size_t bins_a_part) const {
   Window out;
   const std::size_t length = kParts * bins_a_part;
+  double least_m = back(0).airflow_sd_m;
+  double largest_m = least_m;
   for (std::size_t i = 0; i < length; ++i) {
     const Bin& bin = bins_[(next_ + kBins - length + i) % kBins];
     const std::size_t part = i / bins_a_part;
     out.residual_m[part] += bin.residual_m / static_cast<double>(bins_a_part);
     out.base_m[part] += bin.base_m / static_cast<double>(bins_a_part);
     out.way_m += bin.way_m;
+    least_m = std::min(least_m, bin.airflow_sd_m);
+    largest_m = std::max(largest_m, bin.airflow_sd_m);
   }
+  out.airflow_sd_m = largest_m - least_m;
   return out;
 }
 
@@ -156,7 +165,8 @@ void DriftWatch::judge() {
     const double window_s = kBinS * static_cast<double>(length);
     const double change_m = change_along_line(seen.residual_m);
     const double weather_m = base_ ? 0.0 : kLargestWeatherSigmas * kMetresPerPa * weather_sigma_pa(window_s);
-    const double allowed_m = std::max(kLeastDriftM[i], kUnrestSigmas[i] * std::sqrt(unrest_m2_)) +
+    const double allowed_m = std::max({kLeastDriftM[i], kUnrestSigmas[i] * std::sqrt(unrest_m2_),
+                                       kAirflowSigmas * seen.airflow_sd_m}) +
                              kHeightErrorShare * seen.way_m + weather_m;
     const double rate_m_s = change_m / (window_s * (1.0 - 1.0 / kParts));
     const double by_steps_m = std::copysign(1.0, change_m) * steps_m(length, rate_m_s);

@@ -27,7 +27,9 @@ class DriftWatch {
     double residual_m = 0.0;  ///< altimeter minus height by other means, without steps of the reference
     double base_m = 0.0;      ///< the base station's part of it (Prior::base_air_m)
     double way_m = 0.0;       ///< way since the reading before, on which the height itself may err
-    bool base = false;        ///< against a base station: the weather cancels
+    double airflow_sd_m =
+        0.0;            ///< of the robot's own wind, as far as it is not known: it changes with the speed
+    bool base = false;  ///< against a base station: the weather cancels
   };
 
   /// The next reading, in order of time. A gap begins a new watch.
@@ -49,11 +51,13 @@ class DriftWatch {
     double residual_m = 0.0;  // means
     double base_m = 0.0;
     double way_m = 0.0;  // sum
+    double airflow_sd_m = 0.0;
   };
   struct Window {
     std::array<double, kParts> residual_m{};
     std::array<double, kParts> base_m{};
     double way_m = 0.0;
+    double airflow_sd_m = 0.0;  // range of the bins' one: the unknown airflow that is no offset
   };
 
   void close();

@@ -30,16 +30,19 @@ constexpr double kSlopeWayM = 25.0;
 constexpr double kDriftDoubt = 5.0;
 // Share of a step that stays: the next scan is laid onto ground that was mapped before the step.
 constexpr double kStays = 0.05;
-// Largest gain of the altimeter on a ride that is no fault: another zone (4 Pa), and air of 17 K.
-constexpr double kRideGainM = 0.35;
-constexpr double kRideGainShare = 0.06;
-// Longest time for which the acceleration contradicts the end of a ride.
-constexpr double kStopDoubtS = 10.0;
 
 }  // namespace
 
+MapHeight::Vector MapHeight::bias_row() const {
+  Vector h = Vector::Zero();
+  h[kBias] = h[kTurbulence] = 1.0;
+  h[kAirflow] = speed_m2_s2_;
+  return h;
+}
+
 double MapHeight::bias_sd_m() const {
-  return std::sqrt(std::max(0.0, P_(kBias, kBias) + P_(kTurbulence, kTurbulence)));
+  const Vector h = bias_row();
+  return std::sqrt(std::max(0.0, h.dot(P_ * h)));
 }
 
 AltimeterState MapHeight::altimeter() const {
@@ -50,19 +53,33 @@ AltimeterState MapHeight::altimeter() const {
   out.drifts = drift_.suspect();
   out.drift_m_s = drift_.rate_m_s();
   out.faulty = altimeter_faulty();
+  out.airflow_s2_m = x_[kAirflow];
+  out.airflow_sd_s2_m = std::sqrt(P_(kAirflow, kAirflow));
   return out;
 }
 
+void MapHeight::restart_clock() {
+  const double airflow = x_[kAirflow];
+  const double variance = P_(kAirflow, kAirflow);
+  *this = MapHeight(config_);
+  x_[kAirflow] = airflow;
+  P_(kAirflow, kAirflow) = variance;
+}
+
 void MapHeight::restart() {
+  const double airflow = x_[kAirflow];
+  const double airflow_variance = P_(kAirflow, kAirflow);
   x_.setZero();
   P_.setZero();
+  x_[kAirflow] = airflow;
+  P_(kAirflow, kAirflow) = airflow_variance;
   P_(kBias, kBias) = squared(config_.start_bias_sigma_m);
   P_(kRate, kRate) = squared(config_.drift_sigma_m_s);
   with_start_ = P_;
   slope_begun_ = zero_known_ = faulty_ = unseen_start_ = false;
   mean_innovation_m_ = 0.0;
   drift_.restart();
-  base_sum_m_ = way_m_ = floor_bias_m_ = 0.0;
+  base_sum_m_ = speed_sum_ = way_m_ = floor_bias_m_ = 0.0;
   sum_m_ = count_ = outside_s_ = unconfirmed_m2_ = risen_m_ = taken_m_ = 0.0;
   ride_.end();
 }
@@ -89,64 +106,15 @@ void MapHeight::take(const Prior& prior) {
   any_ = true;
 }
 
-void MapHeight::watch_ride(const Prior& prior, bool stands) {
-  if (unseen_start_) {
-    if (any_) risen_m_ += prior.height_m - last_.height_m;
-    unseen_start_ = prior.ground_moves;
-    if (!unseen_start_) widen(kMap, prior.height_variance_m2);
-    unconfirmed_m2_ = prior.height_variance_m2;
-    return;
-  }
-  if (prior.ground_moves && stands && !ride_.riding()) {
-    // A run that goes on in a cabin, or a gap: the speed is not known.
-    unseen_start_ = !ride_.remembers_start();
-    if (unseen_start_) return;
-    ride_.begin();
-    taken_m_ = waited_s_ = 0.0;
-  }
-  if (!prior.ground_moves && ride_.riding()) {
-    waited_s_ += any_ ? seconds_between(last_.stamp_ns, prior.stamp_ns) : 0.0;
-    // A cabin that creeps to its floor, or a stop that only the air has seen.
-    if (ride_.may_have_stopped() || !stands || waited_s_ > kStopDoubtS) end_ride();
-  }
-  if (ride_.riding()) take_rise();
-}
-
-void MapHeight::take_rise() {
-  risen_m_ += ride_.risen_m() - taken_m_;
-  taken_m_ = ride_.risen_m();
-}
-
 void MapHeight::take_reading(const Prior& prior) {
   ride_.add_altimeter(prior.altimeter_m, prior.altimeter_variance_m2);
   x_[kBias] += prior.altimeter_shift_m - shift_m_;
   shift_m_ = prior.altimeter_shift_m;
   sum_m_ += prior.altimeter_m;
   base_sum_m_ += prior.base_air_m;
+  speed_sum_ += prior.v_base_m_s.squaredNorm();
   count_ += 1.0;
   noise_m2_ = prior.altimeter_variance_m2;
-}
-
-// The altimeter at a floor of unknown ventilation says nothing of the ride's error that RideMeter has not used: what the
-// height errs by, the bias errs by.
-void MapHeight::end_ride() {
-  ride_.end();
-  take_rise();
-  const double variance_m2 = ride_.variance_m2();
-  unconfirmed_m2_ += variance_m2;
-  const double gain_m = ride_.altimeter_gain_m();
-  const double explained_m = kRideGainM + kRideGainShare * std::abs(ride_.risen_m());
-  x_[kBias] += gain_m;
-  floor_bias_m_ += std::clamp(gain_m, -explained_m, explained_m);
-  Vector common = Vector::Zero();
-  common[kMap] = common[kBias] = 1.0;
-  for (Matrix* P : {&P_, &with_start_}) *P += variance_m2 * common * common.transpose();
-}
-
-double MapHeight::take_risen_m() {
-  const double risen_m = risen_m_;
-  risen_m_ = 0.0;
-  return risen_m;
 }
 
 void MapHeight::widen(State state, double variance) {
@@ -164,7 +132,7 @@ void MapHeight::predict(double dt_s, double moved_m, const MapTilt& tilt) {
   const double keep_turbulence = std::exp(-dt_s / config_.turbulence_time_s);
   const double keep_slope = std::exp(-moved_m / kSlopeWayM);
   Matrix F = Matrix::Identity();
-  F.diagonal() << 1.0, keep_bias, keep_turbulence, keep_slope, keep_rate;
+  F.diagonal() << 1.0, keep_bias, keep_turbulence, keep_slope, keep_rate, 1.0;
   F(kMap, kSlope) = moved_m;
   F(kBias, kRate) = dt_s;
   x_[kBias] -= floor_bias_m_;
@@ -176,6 +144,7 @@ void MapHeight::predict(double dt_s, double moved_m, const MapTilt& tilt) {
   widen(kBias, base ? squared(config_.bias_sigma_m) * (1.0 - squared(keep_bias))
                     : squared(config_.weather_walk_m_sqrt_s) * dt_s);
   widen(kTurbulence, squared(config_.turbulence_sigma_m) * (1.0 - squared(keep_turbulence)));
+  widen(kAirflow, squared(config_.airflow_walk_s2_m_sqrt_s) * dt_s);
   widen(kRate,
         (squared(config_.drift_sigma_m_s) + squared(kDriftDoubt * x_[kRate])) * (1.0 - squared(keep_rate)));
 }
@@ -193,9 +162,10 @@ double MapHeight::update(double z_m, double moved_m, double z_variance_m2, bool 
   if (!registered) widen(kMap, z_variance_m2);
   if (registered) unconfirmed_m2_ = 0.0;
   way_m_ += moved_m;
+  measure_speed(moved_m, dt_s);
   if (riding()) drift_.restart();
   if (!riding() && count_ > 0.0) measure(z_m, dt_s);
-  sum_m_ = count_ = base_sum_m_ = 0.0;
+  sum_m_ = count_ = base_sum_m_ = speed_sum_ = 0.0;
   if (!registered) return 0.0;
   const double share = std::min(1.0, moved_m / kCorrectionWayM);
   const double step_m = std::clamp(-x_[kMap] * share, -kLargestStepM, kLargestStepM);
@@ -203,26 +173,42 @@ double MapHeight::update(double z_m, double moved_m, double z_variance_m2, bool 
   return step_m;
 }
 
+// Mean square of the speed over the readings; without wheels by the scans.
+void MapHeight::measure_speed(double moved_m, double dt_s) {
+  if (!last_.velocity_valid) {
+    if (dt_s > 0.0) speed_m2_s2_ = squared(moved_m / dt_s);
+  } else if (count_ > 0.0) {
+    speed_m2_s2_ = speed_sum_ / count_;
+  }
+}
+
 void MapHeight::watch_drift(double residual_m) {
   drift_.add({.stamp_ns = last_.stamp_ns,
               .residual_m = residual_m,
               .base_m = base_sum_m_ / count_,
               .way_m = way_m_,
+              .airflow_sd_m = std::sqrt(P_(kAirflow, kAirflow)) * speed_m2_s2_,
               .base = last_.height_source == HeightSource::kDifferential});
   way_m_ = 0.0;
 }
 
+// Zero of the altimeter. That of a robot that drives contains the airflow, which its bias then lacks: b = -k v^2.
+void MapHeight::begin_at(double difference_m) {
+  zero_m_ = difference_m;
+  zero_known_ = true;
+  Matrix F = Matrix::Identity();
+  F(kBias, kAirflow) = -speed_m2_s2_;
+  x_ = (F * x_).eval();
+  for (Matrix* P : {&P_, &with_start_}) *P = (F * *P * F.transpose()).eval();
+}
+
 void MapHeight::measure(double z_m, double dt_s) {
   const double reading_m = sum_m_ / count_;
-  if (!zero_known_) {
-    zero_m_ = reading_m - z_m;
-    zero_known_ = true;
-  }
-  // What the map's height is known to err by is not the altimeter's.
-  watch_drift(reading_m - zero_m_ - (z_m - x_[kMap]) - shift_m_);
-  Vector h = Vector::Zero();
+  if (!zero_known_) begin_at(reading_m - z_m);
+  // What the map's height is known to err by is not the altimeter's, and airflow is no drift.
+  watch_drift(reading_m - zero_m_ - (z_m - x_[kMap]) - shift_m_ - x_[kAirflow] * speed_m2_s2_);
+  Vector h = bias_row();
   h[kMap] = -1.0;
-  h[kBias] = h[kTurbulence] = 1.0;
   const double noise_m2 = noise_m2_ / count_;
   const double variance = h.dot(P_ * h) + noise_m2;
   innovation_m_ = reading_m - zero_m_ - z_m - h.dot(x_);
@@ -255,7 +241,9 @@ void MapHeight::use_innovation(const Vector& h, double variance, double noise_m2
   // Schmidt-Kalman: zero gain on the map. Innovations of one sign are a drift of the altimeter, which b follows late.
   mean_innovation_m_ += (innovation_m_ - mean_innovation_m_) * std::min(1.0, dt_s / kDriftMemoryS);
   if (altimeter_faulty() || std::abs(mean_innovation_m_) > kDriftM) K[kMap] = K[kSlope] = 0.0;
+  if (drift_.suspect() != DriftSuspect::kNone) K[kAirflow] = 0.0;
   x_ += K * innovation_m_;
+  x_[kAirflow] = std::clamp(x_[kAirflow], -kLargestAirflowS2M, kLargestAirflowS2M);
   const Matrix keep = Matrix::Identity() - K * h.transpose();
   for (Matrix* P : {&P_, &with_start_}) {
     *P = (keep * *P * keep.transpose() + noise_m2 * K * K.transpose()).eval();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The one owner of height in the adaptive method: error of the map's height, bias of the altimeter, rides.
 //
-//     altimeter - z = b + n - d + noise,   db/dt = r
+//     altimeter - z = b + n - d + k v^2 + noise,   db/dt = r
 //
 //     d   error of the map's height where the robot is [m]: a random walk with the way, because every scan of new
 //         ground is laid onto the one before. On a way of 100 m floors and ceilings keep it to 2 to 3 cm.
@@ -12,6 +12,10 @@
 //         shared with d, and moves the map.
 //     s   slope of the map's floors [rad], dd/dway = s: constant over a straight drive, while mounts are unknown.
 //     n   turbulence, doors [m]: first-order Gauss-Markov over seconds.
+//     k   airflow [s^2/m]: C_p / (2 g), C_p the pressure coefficient of the robot's port, because the pressure of its own
+//         wind is -C_p rho v^2 / 2 and that of a height rho g (Bernoulli): the density cancels. v is the robot's speed, the
+//         air still. A property of the robot, seen when its speed changes, a part of b at
+//         a constant one: a slow random walk, because steady wind and loads change it.
 //
 // Floors, ceilings and stairs know the height to millimetres over metres; the air knows it to decimetres over hours,
 // and alone sees an elevator. So a difference between the two is first the altimeter's (b), and only over hundreds of
@@ -26,20 +30,23 @@
 #include "core/estimates.hpp"
 #include "core/prior/prior_history.hpp"
 #include "core/registration/ride_meter.hpp"
+#include "core/squared.hpp"
 
 namespace isobar {
 
 /// Noise of the height and of the altimeter, 1 sigma.
 struct MapHeightConfig {
-  double map_walk_m_sqrt_m = 0.008;     ///< random walk of the map's height with the way [m/sqrt(m)]
-  double bias_sigma_m = 0.15;           ///< altimeter bias: zones [m] …
-  double bias_time_s = 450.0;           ///< … and its correlation time [s]
-  double start_bias_sigma_m = 0.02;     ///< bias at the start, where it is zero by definition [m]
-  double drift_sigma_m_s = 0.0005;      ///< drift of the bias, 0.006 Pa/s [m/s]: fronts, warm-up ...
-  double drift_time_s = 200.0;          ///< ... and its correlation time [s]
-  double turbulence_sigma_m = 0.05;     ///< turbulence [m] …
-  double turbulence_time_s = 8.0;       ///< … and its correlation time [s]
-  double weather_walk_m_sqrt_s = 0.02;  ///< bias without a base station [m/sqrt(s)]
+  double map_walk_m_sqrt_m = 0.008;        ///< random walk of the map's height with the way [m/sqrt(m)]
+  double bias_sigma_m = 0.15;              ///< altimeter bias: zones [m] …
+  double bias_time_s = 450.0;              ///< … and its correlation time [s]
+  double start_bias_sigma_m = 0.02;        ///< bias at the start, where it is zero by definition [m]
+  double drift_sigma_m_s = 0.0005;         ///< drift of the bias, 0.006 Pa/s [m/s]: fronts, warm-up ...
+  double drift_time_s = 200.0;             ///< ... and its correlation time [s]
+  double turbulence_sigma_m = 0.05;        ///< turbulence [m] …
+  double turbulence_time_s = 8.0;          ///< … and its correlation time [s]
+  double weather_walk_m_sqrt_s = 0.02;     ///< bias without a base station [m/sqrt(s)]
+  double airflow_sigma_s2_m = 0.02;        ///< airflow: C_p of 0.4, ports on robots' housings [s^2/m] …
+  double airflow_walk_s2_m_sqrt_s = 1e-4;  ///< … and its random walk, 0.002 in 400 s [s^2/m/sqrt(s)]
 };
 
 /// Tilt of the map, per axis.
@@ -51,7 +58,12 @@ struct MapTilt {
 /// Owner of the height. Fed with the priors up to each scan, and with each scan's pose.
 class MapHeight {
  public:
-  explicit MapHeight(const MapHeightConfig& config = {}) : config_(config) {}
+  /// Largest |k| [s^2/m], C_p = 1: the stagnation pressure.
+  static constexpr double kLargestAirflowS2M = 0.051;
+
+  explicit MapHeight(const MapHeightConfig& config = {}) : config_(config) {
+    P_(kAirflow, kAirflow) = squared(config.airflow_sigma_s2_m);
+  }
 
   /// Takes the priors up to `stamp_ns`: altimeter readings, acceleration, rides.
   void advance_to(std::int64_t stamp_ns, const PriorHistory& history);
@@ -68,12 +80,13 @@ class MapHeight {
   /// @return the correction of z that moves the robot, and with it the ground it is about to map [m]
   double update(double z_m, double moved_m, double z_variance_m2, bool registered, const MapTilt& tilt);
 
-  /// Begins at a pose in the map; the altimeter reads `z_m` there.
+  /// Begins at a pose in the map; the altimeter reads `z_m` there. The airflow is kept: it is the robot's.
   void restart();
   /// Forgets the priors, whose clock may have started over; restart() follows.
-  void restart_clock() { *this = MapHeight(config_); }
+  void restart_clock();
 
-  [[nodiscard]] double bias_m() const { return x_[kBias] + x_[kTurbulence]; }
+  /// Altimeter minus height, at the present speed.
+  [[nodiscard]] double bias_m() const { return bias_row().dot(x_); }
   [[nodiscard]] double bias_sd_m() const;
   /// What is known of the altimeter.
   [[nodiscard]] AltimeterState altimeter() const;
@@ -83,7 +96,7 @@ class MapHeight {
   [[nodiscard]] bool altimeter_faulty() const { return faulty_ || drift_.suspect() != DriftSuspect::kNone; }
 
  private:
-  enum State { kMap, kBias, kTurbulence, kSlope, kRate, kStates };
+  enum State { kMap, kBias, kTurbulence, kSlope, kRate, kAirflow, kStates };
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Matrix = Eigen::Matrix<double, kStates, kStates>;
 
@@ -92,7 +105,10 @@ class MapHeight {
   void predict(double dt_s, double moved_m, const MapTilt& tilt);
   static void predict(const Matrix& F, double tilt_rad2, Matrix& P);
   void widen(State state, double variance);
+  [[nodiscard]] Vector bias_row() const;
+  void measure_speed(double moved_m, double dt_s);
   void measure(double z_m, double dt_s);
+  void begin_at(double difference_m);
   void use_innovation(const Vector& h, double variance, double noise_m2, double dt_s);
   void judge_fault();
   void watch_drift(double residual_m);
@@ -115,12 +131,14 @@ class MapHeight {
   double zero_m_ = 0.0;
   double sum_m_ = 0.0;  // altimeter readings since the last update
   double count_ = 0.0;
-  double base_sum_m_ = 0.0;  // the base station's part of them
-  double way_m_ = 0.0;       // since the last reading that was compared
-  double noise_m2_ = 0.0;    // white, of one reading
-  double shift_m_ = 0.0;     // Prior::altimeter_shift_m already taken into the bias
-  double taken_m_ = 0.0;     // of RideMeter::risen_m()
-  double risen_m_ = 0.0;     // not taken yet
+  double base_sum_m_ = 0.0;   // the base station's part of them
+  double speed_sum_ = 0.0;    // squares of the wheels' speed at them [m^2/s^2]
+  double speed_m2_s2_ = 0.0;  // mean square of the speed
+  double way_m_ = 0.0;        // since the last reading that was compared
+  double noise_m2_ = 0.0;     // white, of one reading
+  double shift_m_ = 0.0;      // Prior::altimeter_shift_m already taken into the bias
+  double taken_m_ = 0.0;      // of RideMeter::risen_m()
+  double risen_m_ = 0.0;      // not taken yet
   double unconfirmed_m2_ = 0.0;
   double floor_bias_m_ = 0.0;  // of the altimeter on this floor, learnt on rides: the bias returns to it
   double waited_s_ = 0.0;      // in a ride: since the air saw its end

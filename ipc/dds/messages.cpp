@@ -112,6 +112,8 @@ void fill_altitude(const Prior& prior, const PoseEstimate& pose, const DdsConfig
   message.bias = known * altimeter.bias_m;
   message.bias_variance = known * altimeter.bias_sd_m * altimeter.bias_sd_m;
   message.innovation = known * altimeter.innovation_m;
+  message.airflow = known * altimeter.airflow_s2_m;
+  message.airflow_variance = known * altimeter.airflow_sd_s2_m * altimeter.airflow_sd_s2_m;
   message.faulty = altimeter.faulty;
   message.drifting = text(kDriftSuspectNames.name(altimeter.drifts).data());
 }

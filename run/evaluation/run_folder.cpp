@@ -23,7 +23,9 @@ const std::vector<std::string_view> kOptionalColumns{"mode",
                                                      "altimeter_bias_sd_m",
                                                      "altimeter_innovation_m",
                                                      "altimeter_faulty",
-                                                     "altimeter_drifts"};
+                                                     "altimeter_drifts",
+                                                     "airflow_s2_m",
+                                                     "airflow_sd_s2_m"};
 enum Column : std::size_t {
   kStampNs,
   kMode,
@@ -34,7 +36,9 @@ enum Column : std::size_t {
   kBiasSdM,
   kInnovationM,
   kFaulty,
-  kDrifts
+  kDrifts,
+  kAirflow,
+  kAirflowSd
 };
 
 StatusRow status_row(const text::CsvReader& csv) {
@@ -49,6 +53,8 @@ StatusRow status_row(const text::CsvReader& csv) {
   row.altimeter_innovation_m = csv.number_or_nan(kInnovationM);
   row.altimeter_faulty = csv.field(kFaulty) == "1";
   row.altimeter_drifts = csv.field(kDrifts);
+  row.airflow_s2_m = csv.number_or_nan(kAirflow);
+  row.airflow_sd_s2_m = csv.number_or_nan(kAirflowSd);
   return row;
 }
 

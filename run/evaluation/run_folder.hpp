@@ -28,6 +28,8 @@ struct StatusRow {
   double altimeter_bias_m = kUnknown;
   double altimeter_bias_sd_m = kUnknown;
   double altimeter_innovation_m = kUnknown;
+  double airflow_s2_m = kUnknown;
+  double airflow_sd_s2_m = kUnknown;
   bool altimeter_faulty = false;
   std::string altimeter_drifts;  ///< kDriftSuspectNames; empty: unknown
 };

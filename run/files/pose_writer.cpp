@@ -84,7 +84,7 @@ std::string_view status_line(const PoseEstimate& pose, double altimeter_height_m
       line.data(), line.size(),
       "%lld,%u,%s,%s,%s,%d,%u,%u,%u,%.4f,%.6f,%.6g,%.6g,%.6g,%.3f,%.4f,%.4f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%."
       "6g,%.4f,%.4f,%.4f,%d,%s,"
-      "%zu,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%s\n",
+      "%zu,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%s,%.5f,%.5f\n",
       static_cast<long long>(pose.stamp_ns), pose.sequence, kPoseModeNames.name(pose.mode).data(),
       kMethodNames.name(pose.effective_method).data(), kHeightSourceNames.name(pose.height_source).data(),
       pose.degenerate ? 1 : 0, pose.iterations, pose.sampled_points, pose.matched_pairs, pose.overlap,
@@ -93,7 +93,8 @@ std::string_view status_line(const PoseEstimate& pose, double altimeter_height_m
       known * altimeter.bias_m, known * altimeter.bias_sd_m, known * altimeter.innovation_m,
       altimeter.faulty ? 1 : 0, kDriftSuspectNames.name(altimeter.drifts).data(),
       pose.localisability.weak_count(), static_cast<double>(weakest.strength), part(0), part(1), part(2),
-      part(3), part(4), part(5), any ? kHolderNames.name(weakest.holder).data() : "none");
+      part(3), part(4), part(5), any ? kHolderNames.name(weakest.holder).data() : "none",
+      known * altimeter.airflow_s2_m, known * altimeter.airflow_sd_s2_m);
   return text_of(line, length);
 }
 

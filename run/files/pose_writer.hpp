@@ -12,8 +12,8 @@
 namespace isobar::files {
 
 /// Header line of status.csv. `method` is the method that ran (PoseEstimate::effective_method); `scan_ms` is
-/// PoseEstimate::registration_ms; sd_* are the square roots of the covariance's diagonal; altimeter_bias_m … are those
-/// of AltimeterState, nan in methods without it; weakest_* is the first direction of
+/// PoseEstimate::registration_ms; sd_* are the square roots of the covariance's diagonal; altimeter_bias_m … and
+/// airflow_* are those of AltimeterState, nan in methods without it; weakest_* is the first direction of
 /// PoseEstimate::localisability. New columns come last: a file that an older version began keeps its
 /// columns when its run goes on.
 inline constexpr std::string_view kStatusColumns =
@@ -22,7 +22,7 @@ inline constexpr std::string_view kStatusColumns =
     "x_m,y_m,z_m,sd_x_m,sd_y_m,sd_z_m,sd_yaw_rad,"
     "altimeter_bias_m,altimeter_bias_sd_m,altimeter_innovation_m,altimeter_faulty,altimeter_drifts,"
     "weak_directions,weakest_strength,weakest_x,weakest_y,weakest_z,weakest_roll,weakest_pitch,weakest_yaw,"
-    "weakest_held_by";
+    "weakest_held_by,airflow_s2_m,airflow_sd_s2_m";
 
 /// Header line of covariance.csv: the upper triangle of PoseEstimate::covariance, in m, rad and their products.
 /// A file of its own, so that a run begun by an older version, whose status.csv has other columns, goes on.

@@ -226,4 +226,42 @@ TEST_CASE("weak directions are named, with who holds them; a direction that noth
         "the scans hold every direction");
 }
 
+TEST_CASE("a base station that the prior stage says to drift is named by the altimeter's entry") {
+  HealthMonitor monitor{Config{}};
+  StatusSnapshot status = working(kStart, true);
+  status.registration.effective_method = Method::kAdaptive;
+  status.registration.altimeter.bias_m = 0.02;
+  status.registration.altimeter.bias_sd_m = 0.05;
+  CHECK(entry(report_of(monitor, status), "altimeter").level == HealthLevel::kOk);
+
+  // 5 Pa/s: its samples are refused, so that the map sees no drift.
+  status.prior.barometers.base[0] = BarometerFault::kDrifting;
+  const HealthReport said = report_of(monitor, status);
+  CHECK(entry(said, "altimeter").level == HealthLevel::kWarning);
+  CHECK(std::string(entry(said, "altimeter").message) ==
+        "the base station's barometer drifts, bias 0.02 m; check it; the height follows the scans");
+
+  status.prior.barometers.base[0] = BarometerFault::kOk;
+  status.prior.barometers.base[1] = BarometerFault::kDrifting;
+  const HealthReport second = report_of(monitor, status);
+  CHECK(std::string(entry(second, "altimeter").message)
+            .starts_with("the second base station's barometer drifts"));
+
+  status.prior.barometers.robot = BarometerFault::kDrifting;
+  const HealthReport robot = report_of(monitor, status);
+  CHECK(std::string(entry(robot, "altimeter").message).starts_with("the robot's barometer drifts"));
+}
+
+TEST_CASE("the airflow's coefficient is an entry of its own where it is estimated") {
+  HealthMonitor monitor{Config{}};
+  StatusSnapshot status = working(kStart, true);
+  status.registration.effective_method = Method::kAdaptive;
+  status.registration.altimeter.airflow_s2_m = 0.017;
+  status.registration.altimeter.airflow_sd_s2_m = 0.0021;
+  const HealthReport report = report_of(monitor, status);
+  CHECK(std::string(entry(report, "altimeter/airflow").message) ==
+        "+17.0 mm per (m/s)^2, sd 2.1: the robot's own wind at its barometer, corrected");
+  CHECK(entry(report, "altimeter/airflow").value == 0.017);
+}
+
 }  // namespace isobar::test::test_robot_health

@@ -140,8 +140,13 @@ TEST_CASE("the altitude message names the height source") {
 
 TEST_CASE("the altitude message has the altimeter's bias, and nan where the method does not estimate it") {
   PoseEstimate pose;
-  pose.altimeter = {
-      .bias_m = -0.5, .bias_sd_m = 0.1, .innovation_m = 0.25, .faulty = true, .drifts = DriftSuspect::kBase};
+  pose.altimeter = {.bias_m = -0.5,
+                    .bias_sd_m = 0.1,
+                    .innovation_m = 0.25,
+                    .faulty = true,
+                    .drifts = DriftSuspect::kBase,
+                    .airflow_s2_m = 0.017,
+                    .airflow_sd_s2_m = 0.002};
   AltitudeMessage message{};
   const DdsConfig names;
   pose.effective_method = Method::k3Dof;
@@ -149,11 +154,15 @@ TEST_CASE("the altitude message has the altimeter's bias, and nan where the meth
   CHECK(std::isnan(message.bias));
   CHECK(std::isnan(message.bias_variance));
   CHECK(std::isnan(message.innovation));
+  CHECK(std::isnan(message.airflow));
+  CHECK(std::isnan(message.airflow_variance));
   pose.effective_method = Method::kAdaptive;
   fill_altitude(Prior{}, pose, names, message);
   CHECK(message.bias == -0.5);
   CHECK(message.bias_variance == doctest::Approx(0.01));
   CHECK(message.innovation == 0.25);
+  CHECK(message.airflow == 0.017);
+  CHECK(std::abs(message.airflow_variance - 4e-6) < 1e-9);
   CHECK(message.faulty);
   CHECK(std::string(message.drifting) == "base_station");
 }

@@ -98,6 +98,14 @@ std::string largest_innovation(const EvaluatedMethod& method) {
          fixed(time_s(method, *largest), 1) + " s. ";
 }
 
+/// Coefficient of the airflow at the end of the run; empty where nothing was learnt of it.
+std::string airflow_text(const EvaluatedMethod& method) {
+  const StatusRow& last = method.status.back();
+  if (!(last.airflow_sd_s2_m > 0.0)) return "";
+  return "The robot's own wind shifts the altimeter by " + fixed_signed(1e3 * last.airflow_s2_m, 1) +
+         " mm per (m/s)², 1 sigma " + fixed(1e3 * last.airflow_sd_s2_m, 1) + ". ";
+}
+
 std::string faults_text(const EvaluatedMethod& method) {
   const std::vector<Band> bands = faults_of(method);
   if (bands.empty()) return "No fault of a barometer was seen.";
@@ -117,9 +125,9 @@ std::string altimeter_section(const evaluation::EvaluatedRun& run) {
   return heading("Altimeter against the map") +
          figure(draw(bias_chart(*method)), "Bias of the altimeter against time",
                 "Estimated bias of the altimeter of " + evaluation::display_name(method->name) +
-                    ": ventilated zones, doors, weather, drifts of a barometer. The height does not follow "
-                    "it. " +
-                    largest_innovation(*method) + faults_text(*method));
+                    ": ventilated zones, doors, weather, airflow, drifts of a barometer. The height does not "
+                    "follow it. " +
+                    largest_innovation(*method) + airflow_text(*method) + faults_text(*method));
 }
 
 }  // namespace isobar::report

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -152,6 +153,25 @@ TEST_CASE("a gap, another reference and a clock that goes back begin a new watch
     for (double t = 20.1; t < 26.0; t += 0.1) add(start_s + t, 2.0, true);
     CHECK(watch.suspect() == DriftSuspect::kNone);
   }
+}
+
+TEST_CASE("airflow that is not known yet is no drift") {
+  DriftWatch knows;
+  DriftWatch doubts;
+  bool named = false;
+  for (double t = 0.0; t < 60.0; t += 0.1) {
+    const double speed_m_s = std::clamp(t - 30.0, 0.0, 8.0);
+    DriftWatch::Reading reading{.stamp_ns = 1'000'000'000 + static_cast<std::int64_t>(t * 1e9),
+                                .residual_m = 0.085 * std::clamp(t - 30.0, 0.0, 8.0),
+                                .way_m = 0.1 * speed_m_s,
+                                .base = true};
+    knows.add(reading);
+    named = named || knows.suspect() != DriftSuspect::kNone;
+    reading.airflow_sd_m = 0.02 * speed_m_s * speed_m_s;
+    doubts.add(reading);
+    CHECK(doubts.suspect() == DriftSuspect::kNone);
+  }
+  CHECK(named);
 }
 
 }  // namespace isobar::test::test_drift_watch

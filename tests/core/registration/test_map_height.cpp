@@ -3,69 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
-#include <random>
 
 #include "core/registration/map_height.hpp"
+#include "tests/core/registration/height_drive.hpp"
 
 namespace isobar::test::test_map_height {
 
 namespace {
-
-constexpr std::int64_t kStartNs = 1'000'000'000;
-constexpr double kScanS = 0.1;
-const MapHeightConfig kConfig;
-
-// A robot that drives at `speed_m_s`; its scans hold it at `z`, and its altimeter reads `altimeter`, functions of time.
-struct Drive {
-  double speed_m_s = 0.5;
-  double stays =
-      0.1;  // share of a correction that stays, because scans are laid onto ground mapped before it
-  double tilt_rad = 0.0;      // of the map, 1 sigma
-  double turbulence_m = 0.0;  // of the altimeter, 1 sigma, over 3 s
-  HeightSource source = HeightSource::kDifferential;
-  std::function<double(double)> z = [](double) { return 0.0; };
-  std::function<double(double)> altimeter = [](double) { return 0.0; };
-
-  MapHeight height{kConfig};
-  PriorHistory history{};
-  std::uint32_t readings = 0;
-  double t = 0.0;
-  double corrected_m = 0.0;
-  double unrest_m = 0.0;
-  std::mt19937 random{1};
-
-  Drive() { height.restart(); }
-
-  double air(double at) {
-    constexpr double kTurbulenceS = 3.0;
-    const double keep = std::exp(-0.25 * kScanS / kTurbulenceS);
-    std::normal_distribution<double> normal(0.0, 1.0);
-    unrest_m = keep * unrest_m + turbulence_m * std::sqrt(1.0 - keep * keep) * normal(random);
-    return altimeter(at) + unrest_m;
-  }
-
-  void go(double seconds) {
-    for (const double end = t + seconds; t < end; t += kScanS) {
-      Prior prior;
-      for (int i = 0; i < 4; ++i) {
-        const double at = t + 0.25 * kScanS * i;
-        prior.stamp_ns = kStartNs + static_cast<std::int64_t>(at * 1e9);
-        prior.height_source = source;
-        prior.velocity_valid = true;
-        prior.v_base_m_s.x() = speed_m_s;
-        prior.altimeter_m = air(at);
-        prior.altimeter_variance_m2 = 0.0009;
-        prior.altimeter_count = ++readings;
-        history.add(prior);
-      }
-      height.advance_to(prior.stamp_ns, history);
-      corrected_m += stays * height.update(z(t) + corrected_m, speed_m_s * kScanS, 1e-6, true,
-                                           {tilt_rad * tilt_rad, tilt_rad * tilt_rad});
-    }
-  }
-};
 
 // A robot that stands in an elevator: 4 s of rest, 10 m in 12 s, and rest. The air sees the ground move from `seen_s` to
 // `ended_s` after the start of the ride, and `zone_m` more upstairs.
@@ -74,7 +19,7 @@ struct Elevator {
   double ended_s = 13.2;
   double zone_m = 0.0;
 
-  MapHeight height{kConfig};
+  MapHeight height{HeightDrive::kConfig};
   double risen_m = 0.0;
 
   void run(double until_s) {
@@ -85,7 +30,7 @@ struct Elevator {
     Prior prior;
     double before_m_s = 0.0;
     double true_m = 0.0;
-    std::int64_t stamp_ns = kStartNs;
+    std::int64_t stamp_ns = HeightDrive::kStartNs;
     for (double t = -4.0; t < until_s; t += kDtS) {
       const double ramp_s = std::clamp(std::min(t, 12.0 - t), 0.0, 2.0);
       const double speed_m_s = 0.5 * (1.0 - std::cos(0.5 * std::numbers::pi * ramp_s));
@@ -112,7 +57,7 @@ struct Elevator {
 TEST_CASE("a barometer that drifts moves the altimeter's bias and not the height") {
   for (const double rate_m_s : {0.02, 0.085, 0.17, 0.42}) {  // 0.25, 1, 2 and 5 Pa/s
     CAPTURE(rate_m_s);
-    Drive drive;
+    HeightDrive drive;
     drive.go(20.0);
     drive.altimeter = [&](double t) { return rate_m_s * std::max(0.0, t - 20.0); };
     drive.go(70.0);
@@ -127,7 +72,7 @@ TEST_CASE("a slow drift of a barometer moves the bias and not the height") {
   for (const double rate_m_s : {0.00085, 0.0021, 0.00425, 0.0085}) {  // 0.01, 0.025, 0.05 and 0.1 Pa/s
     for (const double sign : {1.0, -1.0}) {
       CAPTURE(sign * rate_m_s);
-      Drive drive;
+      HeightDrive drive;
       drive.turbulence_m = 0.03;
       drive.go(60.0);
       const double before_m = drive.corrected_m;
@@ -142,7 +87,7 @@ TEST_CASE("a slow drift of a barometer moves the bias and not the height") {
 TEST_CASE(
     "a robot that stands for 50 minutes beside a barometer of 0.01 Pa/s keeps its height and says the "
     "drift") {
-  Drive drive;
+  HeightDrive drive;
   drive.speed_m_s = 0.0;
   drive.turbulence_m = 0.02;
   drive.go(60.0);
@@ -156,7 +101,7 @@ TEST_CASE(
 }
 
 TEST_CASE("what a drift was taken for is withdrawn when the drift is said") {
-  Drive drive;
+  HeightDrive drive;
   drive.stays = 0.5;
   drive.go(20.0);
   drive.altimeter = [](double t) { return 0.03 * std::max(0.0, t - 20.0); };
@@ -168,7 +113,7 @@ TEST_CASE("what a drift was taken for is withdrawn when the drift is said") {
 }
 
 TEST_CASE("doors and zones move the altimeter's bias and not the height, and are no fault") {
-  Drive drive;
+  HeightDrive drive;
   drive.go(20.0);
   // Pulses of 8 Pa of 1.5 s every 15 s, in a zone of 4 Pa from half a minute on.
   drive.altimeter = [](double t) {
@@ -180,7 +125,7 @@ TEST_CASE("doors and zones move the altimeter's bias and not the height, and are
 }
 
 TEST_CASE("over kilometres the altimeter keeps the map's height") {
-  Drive drive;
+  HeightDrive drive;
   drive.speed_m_s = 5.0;
   drive.stays = 0.5;  // at speed new ground comes sooner
   // The scans gain 1 m in 2 km, ten times what the random walk expects.
@@ -191,7 +136,7 @@ TEST_CASE("over kilometres the altimeter keeps the map's height") {
 }
 
 TEST_CASE("the variance of the height grows with the way, and not while the robot stands") {
-  Drive drive;
+  HeightDrive drive;
   drive.go(100.0);
   const double after_50_m = drive.height.variance_m2();
   CHECK(after_50_m > 1e-4);
@@ -201,9 +146,9 @@ TEST_CASE("the variance of the height grows with the way, and not while the robo
 }
 
 TEST_CASE("a map that may be tilted is unsure of the height ahead from the first metres") {
-  Drive level;
+  HeightDrive level;
   level.go(10.0);
-  Drive tilted;
+  HeightDrive tilted;
   tilted.tilt_rad = 0.01;
   tilted.go(10.0);
   CHECK(std::sqrt(level.height.variance_m2()) < 0.025);
@@ -211,7 +156,7 @@ TEST_CASE("a map that may be tilted is unsure of the height ahead from the first
 }
 
 TEST_CASE("without a base station the weather is the altimeter's") {
-  Drive drive;
+  HeightDrive drive;
   drive.source = HeightSource::kSingleBarometer;
   drive.altimeter = [](double t) { return 0.003 * t; };
   drive.go(300.0);

@@ -81,6 +81,7 @@ TEST_CASE("altitude, pressure and inertial samples") {
   altitude.height = 3.5;
   altitude.source = text("held");
   altitude.bias = -0.5;
+  altitude.airflow = 0.017;
   altitude.faulty = true;
   altitude.drifting = text("robot");
   round_trip(topics::kAltitude, altitude, [](const AltitudeMessage& got) {

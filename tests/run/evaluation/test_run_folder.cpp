@@ -38,7 +38,9 @@ PoseEstimate some_pose(std::uint32_t i) {
                     .bias_sd_m = 0.05,
                     .innovation_m = -0.02,
                     .faulty = i % 2 == 1,
-                    .drifts = DriftSuspect::kBase};
+                    .drifts = DriftSuspect::kBase,
+                    .airflow_s2_m = 0.017,
+                    .airflow_sd_s2_m = 0.002};
   return pose;
 }
 
@@ -92,6 +94,9 @@ TEST_CASE("status.csv has the altimeter's bias of the adaptive method, and nan o
   CHECK(rows[1].altimeter_innovation_m == doctest::Approx(-0.02));
   CHECK(rows[1].altimeter_faulty);
   CHECK(rows[1].altimeter_drifts == "base_station");
+  CHECK(std::isnan(rows[0].airflow_s2_m));
+  CHECK(rows[1].airflow_s2_m == doctest::Approx(0.017));
+  CHECK(rows[1].airflow_sd_s2_m == doctest::Approx(0.002));
 }
 
 TEST_CASE("a run that an older version began goes on with the columns of its status.csv") {

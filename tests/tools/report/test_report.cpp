@@ -64,11 +64,14 @@ TEST_CASE(
     row.altimeter_innovation_m = i == 40 ? -0.37 : 0.01;
     row.altimeter_drifts = i >= 50 && i < 70 ? "robot" : "none";
     row.altimeter_faulty = i >= 50;
+    row.airflow_s2_m = 0.017;
+    row.airflow_sd_s2_m = 0.0012;
   }
   const std::string html = render_report({"T", "", "", run});
   CHECK(contains(html, "Altimeter against the map"));
   CHECK(contains(html, "0.37 m at 40.0 s"));
   CHECK(contains(html, "robot drifts since 50.0 s until 69.0 s, faulty since 70.0 s until 99.0 s"));
+  CHECK(contains(html, "17.0 mm per (m/s)², 1 sigma 1.2."));
   CHECK(contains(html, "<polygon"));
   std::string body = html.substr(html.find("<body>"));
   body.erase(body.find("</html>"));
