@@ -29,6 +29,8 @@ constexpr double kTurnShare = 0.05;
 // Tilt against gravity, which accelerations without wheels to tell them pull by 9 degrees.
 constexpr double kTiltRad = 12.0 * kRadPerDeg;
 constexpr double kTiltSigmas = 4.0;
+// Turn of roll and pitch by gravity while a robot without wheels speeds up by 1.2 m/s^2.
+constexpr double kGravityTurnRad = 8.0 * kRadPerDeg;
 // Scans in a row that must contradict: one may be an outlier.
 constexpr int kContradictions = 2;
 
@@ -37,13 +39,17 @@ double turn_rad(const Eigen::Matrix3d& R) { return rotation_angle_rad(Eigen::Qua
 // Turns from `then` to `now` in axes of base_link: of the gyro, and by how much the registered one differs.
 struct Turn {
   double gyro_rad;
-  double difference_rad;
+  double difference_rad;  // less what gravity may have added
 };
 
 Turn turn_between(const LostEvidence& then, const LostEvidence& now) {
   const Eigen::Matrix3d registered = then.T_map_base.linear().transpose() * now.T_map_base.linear();
   const Eigen::Matrix3d gyro = then.T_odom_base.linear().transpose() * now.T_odom_base.linear();
-  return {turn_rad(gyro), turn_rad(registered.transpose() * gyro)};
+  const Eigen::Vector3d difference_rad = log_so3(Eigen::Quaterniond(registered.transpose() * gyro));
+  if (now.on_wheels) return {turn_rad(gyro), difference_rad.norm()};
+  const Eigen::Vector3d up_base = now.T_map_base.linear().row(2).transpose();
+  const double yaw_rad = std::abs(up_base.dot(difference_rad));
+  return {turn_rad(gyro), std::max(yaw_rad, difference_rad.norm() - kGravityTurnRad)};
 }
 
 double tilt_rad(const LostEvidence& at) {

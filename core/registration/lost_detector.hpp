@@ -31,6 +31,9 @@ struct LostEvidence {
   Eigen::Isometry3d T_odom_base = Eigen::Isometry3d::Identity();  ///< Prior::T_odom_base
   double tilt_sd_rad = 0.0;                                       ///< of gravity's roll and pitch
   double turn_rate_sd_rad_s = 0.0;                                ///< of the gyro
+  /// Wheels tell accelerations from gravity. Without them gravity turns roll and pitch of T_odom_base by degrees while the
+  /// robot speeds up, and only its yaw is the gyro's.
+  bool on_wheels = true;
 };
 
 /// Judges registered scans in order of time. Allocates nothing. Not thread-safe.

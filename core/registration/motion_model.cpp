@@ -157,9 +157,7 @@ Prediction MotionModel::predict(const Prior& now, const MethodTraits& method,
       std::min(rotation_error_rad(turn_rad, rate_rad_s, dt_s), kLargestDeviationRad));
   if (on_wheels && !followed) prediction.deviation(2) = wheel_turn_error_rad(now, turn_rad, dt_s);
   prediction.deviation.tail<3>().setConstant(std::min(translation_m, kLargestDeviationM));
-  if (!on_wheels) {
-    prediction.deviation.segment<2>(3).setConstant(std::max(prediction.deviation(3), start_error_m(now)));
-  }
+  prediction.deviation.segment<2>(3).setConstant(std::max(prediction.deviation(3), start_error_m(now)));
   if (method.follows_altimeter()) {
     prediction.deviation(5) = config_.altitude_prior_error_m;
   }
@@ -196,10 +194,14 @@ double MotionModel::free_error_m(double dt_s) const {
          (kFreeMotionFloorM + 0.5 * config_.free_acceleration_m_s2 * dt_s * dt_s);
 }
 
+bool MotionModel::speed_unknown(const Prior& now) const {
+  const bool on_wheels = now.velocity_valid && last_.velocity_valid;
+  return registered_ < kScansToVelocity && !on_wheels && !now.standing_still;
+}
+
 // Horizontal error of a step while the velocity of the start is unknown.
 double MotionModel::start_error_m(const Prior& now) const {
-  const bool unknown = registered_ < kScansToVelocity && !now.standing_still;
-  return unknown ? std::min(kUnknownSpeedMS * travel_s(now), kLargestDeviationM) : 0.0;
+  return speed_unknown(now) ? std::min(kUnknownSpeedMS * travel_s(now), kLargestDeviationM) : 0.0;
 }
 
 double MotionModel::rotation_error_rad(double turn_rad, double rate_rad_s, double dt_s) const {
@@ -238,6 +240,22 @@ void MotionModel::keep_prediction(const Prior& now, const Prediction& prediction
   unconfirmed_m_ += (prediction.T_map_base.translation() - T_map_base_.translation()).norm();
   T_map_base_ = prediction.T_map_base;
   last_ = now;
+}
+
+ScanMotion MotionModel::motion_towards(const Prior& end, const Eigen::Isometry3d& T_map_base) const {
+  // The mean of what was predicted and what is shown: undamped, steps of a robot that turns swing by half of them.
+  constexpr double kShare = 0.5;
+  const double dt_s = std::max(travel_s(end), 1e-3);
+  const Eigen::Vector3d v_map_m_s = (T_map_base.translation() - T_map_base_.translation()) / dt_s;
+  const Eigen::Vector3d w_base_rad_s =
+      log_so3(Eigen::Quaterniond(T_map_base_.linear().transpose() * T_map_base.linear())) / dt_s;
+  ScanMotion motion;
+  motion.end = end;
+  motion.from_wheels = motion.turn_known = false;
+  motion.v_base_m_s =
+      T_map_base.linear().transpose() * (kShare * v_map_m_s + (1.0 - kShare) * velocity_at(end.stamp_ns));
+  motion.w_base_rad_s = kShare * w_base_rad_s + (1.0 - kShare) * turn_rate_at(end.stamp_ns);
+  return motion;
 }
 
 ScanMotion MotionModel::scan_motion(const Prior& end, const Prediction& prediction) const {

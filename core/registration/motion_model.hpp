@@ -57,6 +57,16 @@ class MotionModel {
   [[nodiscard]] Prediction predict(const Prior& now, const MethodTraits& method,
                                    const GravityOffset& offset = {}) const;
 
+  /// Few scans have been registered since the start, and no wheels tell the speed.
+  [[nodiscard]] bool speed_unknown(const Prior& now) const;
+  /// Time since the last scan [s].
+  [[nodiscard]] double travel_s(const Prior& now) const;
+
+  /// The turn up to `now` is known, by the gyro or by wheels.
+  [[nodiscard]] bool turn_known(const Prior& now) const;
+  /// Motion during a scan that has been found at `T_map_base` at its end, without gyro and wheels.
+  [[nodiscard]] ScanMotion motion_towards(const Prior& end, const Eigen::Isometry3d& T_map_base) const;
+
   /// The registration succeeded: `T_map_base` is the pose at the time of `now`.
   void correct(const Prior& now, const Eigen::Isometry3d& T_map_base);
   /// The registration failed: the next prediction starts from this one, with an error that grows.
@@ -70,9 +80,7 @@ class MotionModel {
 
  private:
   [[nodiscard]] Eigen::Vector3d step_at_velocity_map(const Prior& now) const;
-  [[nodiscard]] bool turn_known(const Prior& now) const;
   void turn_on(const Prior& now, Prediction& prediction) const;
-  [[nodiscard]] double travel_s(const Prior& now) const;
   [[nodiscard]] double since_confirmed_s(std::int64_t stamp_ns) const;
   [[nodiscard]] Eigen::Vector3d velocity_at(std::int64_t stamp_ns) const;
   [[nodiscard]] Eigen::Vector3d turn_rate_at(std::int64_t stamp_ns) const;

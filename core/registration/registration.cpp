@@ -139,10 +139,12 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
     lost() ? search_lost(map, end, prediction, out) : search_place(map, end, prediction, out);
     return;
   }
+  if (search_speed(map, end, traits, prediction, pose)) return;
 
   const bool riding =
       traits.method == Method::kAdaptive ? state_.height.riding() : state_.ground_since_ns != 0;
-  const MatchResult result = knows(map) && !riding ? match(map, end, prediction, traits) : MatchResult{};
+  MatchResult result;
+  if (knows(map) && !riding) result = match_steadily(scan, map, end, traits, prediction, out);
   const bool registered = result.solved && acceptable(result, prediction);
   copy_statistics(result, pose);
   pose.mode = mode_after(registered, traits);

@@ -30,6 +30,7 @@
 #include "core/registration/registration_config.hpp"
 #include "core/registration/scan_matcher.hpp"
 #include "core/registration/scan_preparation.hpp"
+#include "core/registration/speed_search.hpp"
 #include "core/registration/tilt_offset.hpp"
 
 namespace isobar {
@@ -71,6 +72,7 @@ struct RegistrationState {
   MountDoubt mount_doubt;
   Eigen::Quaterniond q_base_lidar;  ///< as found so far
   HeldPose held;
+  SpeedSearch speed;
   double wheel_turn_rad = 0.0;  ///< Prior::wheel_turn_rad of the last registered scan
   PlaceSearch search;
   LostDetector lost_detector;
@@ -172,6 +174,12 @@ class Registration {
   void own_height(const Prediction& prediction, bool registered, PoseEstimate& pose);
   void continue_from(const Prior& end, const Prediction& prediction, bool registered,
                      const PoseEstimate& pose);
+  // registration_speed.cpp
+  bool search_speed(const MapSnapshot& map, const Prior& end, const MethodTraits& traits,
+                    Prediction& prediction, PoseEstimate& pose);
+  void wait_for_speed(const Prediction& standing, double after_s, PoseEstimate& pose);
+  MatchResult match_steadily(const Scan& scan, const MapSnapshot& map, const Prior& end,
+                             const MethodTraits& traits, const Prediction& prediction, RegisteredScan& out);
   // registration_covariance.cpp
   void restart_drift(const Prior& prior);
   void own_covariance(const Prior& end, const MethodTraits& traits, bool registered, PoseEstimate& pose);

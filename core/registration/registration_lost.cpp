@@ -85,6 +85,7 @@ void Registration::watch(const Prior& end, PoseEstimate& pose) {
   evidence.T_odom_base = end.T_odom_base;
   evidence.tilt_sd_rad = std::sqrt(std::max(0.0, end.roll_pitch_variance_rad2));
   evidence.turn_rate_sd_rad_s = std::sqrt(std::max(0.0, end.yaw_rate_variance_rad2_s2));
+  evidence.on_wheels = end.velocity_valid;
   const LostReason reason = state_.lost_detector.add(evidence);
   if (reason != LostReason::kNone) {
     begin_lost(end, reason, pose);

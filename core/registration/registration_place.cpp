@@ -79,6 +79,7 @@ void Registration::next_frame() {
   state_.last = blank;
   state_.motion = MotionModel(config_);
   state_.search.stop();
+  state_.speed.restart();
   state_.lost_detector.restart();
   state_.lost = {};
   state_.ground_since_ns = 0;
@@ -90,6 +91,8 @@ void Registration::next_frame() {
 }
 
 bool Registration::start_at_place(const Prior& prior) {
+  // The whole map tells the place, and the scans after it the speed.
+  state_.speed.stop();
   const bool waits = state_.place->has_height && prior.height_source == HeightSource::kNone;
   const double waited_s = seconds_between(state_.first_prior_ns, prior.stamp_ns);
   const bool short_pause = is_short_pause(seconds_between(state_.place->stamp_ns, prior.stamp_ns));

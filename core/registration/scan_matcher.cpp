@@ -62,6 +62,7 @@ ScanMatcher::Iteration ScanMatcher::iterate(const MatchProblem& problem, const P
   iteration.pair_count = correspondences_.matched() * schedule.stride();
   iteration.residual_rms_m =
       equations.weight_sum > 0.0 ? std::sqrt(equations.squared_error_sum / equations.weight_sum) : 0.0;
+  iteration.level_information = equations.hessian.block<2, 2>(3, 3) * static_cast<double>(schedule.stride());
   return iteration;
 }
 
@@ -103,6 +104,7 @@ void ScanMatcher::count(const Iteration& iteration, std::size_t sampled_points, 
   result.sampled_points = static_cast<std::uint32_t>(sampled_points);
   result.matched_pairs = static_cast<std::uint32_t>(iteration.pair_count);
   result.residual_rms_m = iteration.residual_rms_m;
+  result.level_information = iteration.level_information;
 }
 
 void ScanMatcher::summarise(const MatchProblem& problem, const Step& step, MatchResult& result) const {

@@ -44,6 +44,8 @@ struct MatchResult {
   double residual_rms_m = 0.0;      ///< of the last iteration, weighted
 
   double overlap = 0.0;  ///< matched_pairs / sampled_points, 0 … 1
+  /// Sum of w n n^T over the pairs, horizontal part: how firmly planes hold the pose along x and y of the map.
+  Eigen::Matrix2d level_information = Eigen::Matrix2d::Zero();
   Localisability localisability;
   Eigen::Vector3d smallest_eigenvalues = Eigen::Vector3d::Zero();
 };
@@ -65,6 +67,7 @@ class ScanMatcher {
     Step step;
     std::size_t pair_count = 0;  // scaled up to all points
     double residual_rms_m = 0.0;
+    Eigen::Matrix2d level_information = Eigen::Matrix2d::Zero();  // scaled up to all points
   };
 
   [[nodiscard]] PairNoise pair_noise(const MatchProblem& problem, bool settled) const;

@@ -111,6 +111,14 @@ std::string_view covariance_line(const PoseEstimate& pose, Line& line) {
   return text_of(line, length);
 }
 
+// A run that begins in motion without wheels knows its place once its speed is found. What was said before is no
+// trajectory, and would shift all of it against a reference.
+bool knows_place(const PoseEstimate& pose) {
+  constexpr double kUnknownM = 0.5;
+  const double variance_m2 = std::max(pose.covariance(0, 0), pose.covariance(1, 1));
+  return pose.mode != PoseMode::kInitializing || variance_m2 < kUnknownM * kUnknownM;
+}
+
 }  // namespace
 
 PoseWriter::PoseWriter(const std::filesystem::path& directory, Start start, std::uint32_t session)
@@ -124,7 +132,7 @@ PoseWriter::PoseWriter(const std::filesystem::path& directory, Start start, std:
 
 void PoseWriter::add(const PoseEstimate& pose, double altimeter_height_m, double altimeter_sd_m) {
   Line line;
-  trajectory_.add(trajectory_line(pose, line));
+  if (knows_place(pose)) trajectory_.add(trajectory_line(pose, line));
   const std::string_view status = status_line(pose, altimeter_height_m, altimeter_sd_m, line);
   const std::string_view kept = with_columns_of(status_header_, status);
   if (kept.size() == status.size()) {

@@ -42,8 +42,8 @@ double World::range(const Eigen::Vector3d& origin, const Eigen::Vector3d& direct
       if (!(t > 1e-6 && t < nearest)) continue;
       const double at_u = from_u + t * along_u;
       const double at_v = from_v + t * along_v;
-      const bool inside = at_u >= face.lowest_u && at_u <= face.highest_u && at_v >= face.lowest_v &&
-                          at_v <= face.highest_v;
+      const bool inside =
+          at_u >= face.lowest_u && at_u <= face.highest_u && at_v >= face.lowest_v && at_v <= face.highest_v;
       if (inside) nearest = t;
     }
   }

@@ -82,6 +82,24 @@ TEST_CASE("what mounts, clocks and the attitude filter explain is no contradicti
             reason, detector) < 0.0);
 }
 
+TEST_CASE("without wheels roll and pitch of dead reckoning are no witness of a turn, and yaw is") {
+  const auto lost = [](const Eigen::Vector3d& error_deg_s, bool on_wheels) {
+    LostDetector detector;
+    const Drive drive{.yaw_deg_s = 0.0, .error_deg_s = error_deg_s};
+    for (int scan = 0; scan < 80; ++scan) {
+      LostEvidence evidence = drive.at(scan);
+      evidence.on_wheels = on_wheels;
+      if (detector.add(evidence) != LostReason::kNone) return true;
+    }
+    return false;
+  };
+  // Three seconds of an acceleration of 1.2 m/s^2: gravity seems to turn by 7 degrees.
+  const Eigen::Vector3d pitch_deg_s(0.0, 2.3, 0.0);
+  CHECK(!lost(pitch_deg_s, false));
+  CHECK(lost(pitch_deg_s, true));
+  CHECK(lost({0.0, 0.0, 4.5}, false));
+}
+
 TEST_CASE("one outlier is no contradiction, and a pause begins anew") {
   const Drive standing;
   LostDetector detector;
