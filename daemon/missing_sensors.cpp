@@ -16,8 +16,7 @@ std::vector<std::string> missing_sensor_texts(const PresentSensors& present) {
   if (!present.imu) {
     texts.emplace_back(
         "no IMU: every scan as 6-DOF, from the wheels or else the motion of the scans before; gravity is "
-        "unknown: "
-        "the first scan is level, and roll, pitch and height drift with the way");
+        "unknown: the first scan is level, and roll, pitch and height drift with the way");
   }
   if (!present.barometer) texts.push_back(without_barometer(present.imu));
   if (present.barometer && !present.base_station) {

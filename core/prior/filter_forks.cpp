@@ -15,7 +15,7 @@ void FilterForks::predict(const VerticalFilter& filter, double up_accel_m_s2, do
     fork.filter.predict(up_accel_m_s2, dt_s, accel_density, weather_moves);
     fork.age_s += dt_s;
   }
-  const std::size_t older = forks_[0].age_s >= forks_[1].age_s ? 0 : 1;
+  const std::size_t older = oldest();
   if (forks_[older].age_s < kLifeS) return;
   forks_[older] = {filter, 0.0};
   // Half a lifetime at most staggers the two, which restart() had made of one age.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "core/prior/vertical_filter.hpp"
 
@@ -30,8 +31,8 @@ class FilterForks {
   }
 
   /// The older fork; after the first kLifeS its age is 50 to 100 % of that.
-  [[nodiscard]] const VerticalFilter& older() const { return oldest().filter; }
-  [[nodiscard]] double age_s() const { return oldest().age_s; }
+  [[nodiscard]] const VerticalFilter& older() const { return forks_[oldest()].filter; }
+  [[nodiscard]] double age_s() const { return forks_[oldest()].age_s; }
 
  private:
   struct Fork {
@@ -39,9 +40,7 @@ class FilterForks {
     double age_s = 0.0;
   };
 
-  [[nodiscard]] const Fork& oldest() const {
-    return forks_[0].age_s >= forks_[1].age_s ? forks_[0] : forks_[1];
-  }
+  [[nodiscard]] std::size_t oldest() const { return forks_[0].age_s >= forks_[1].age_s ? 0 : 1; }
 
   std::array<Fork, 2> forks_;
 };

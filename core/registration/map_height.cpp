@@ -59,20 +59,24 @@ AltimeterState MapHeight::altimeter() const {
 }
 
 void MapHeight::restart_clock() {
+  keep_airflow();
+  MapHeight fresh(config_);
+  fresh.x_ = x_;
+  fresh.P_ = P_;
+  *this = fresh;
+}
+
+void MapHeight::keep_airflow() {
   const double airflow = x_[kAirflow];
   const double variance = P_(kAirflow, kAirflow);
-  *this = MapHeight(config_);
+  x_.setZero();
+  P_.setZero();
   x_[kAirflow] = airflow;
   P_(kAirflow, kAirflow) = variance;
 }
 
 void MapHeight::restart() {
-  const double airflow = x_[kAirflow];
-  const double airflow_variance = P_(kAirflow, kAirflow);
-  x_.setZero();
-  P_.setZero();
-  x_[kAirflow] = airflow;
-  P_(kAirflow, kAirflow) = airflow_variance;
+  keep_airflow();
   P_(kBias, kBias) = squared(config_.start_bias_sigma_m);
   P_(kRate, kRate) = squared(config_.drift_sigma_m_s);
   with_start_ = P_;

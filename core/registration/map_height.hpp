@@ -100,6 +100,8 @@ class MapHeight {
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Matrix = Eigen::Matrix<double, kStates, kStates>;
 
+  /// Forgets all states but the airflow.
+  void keep_airflow();
   void take(const Prior& prior);
   void take_reading(const Prior& prior);
   void predict(double dt_s, double moved_m, const MapTilt& tilt);

@@ -124,20 +124,18 @@ Eigen::Vector3d MotionModel::turn_rate_at(std::int64_t stamp_ns) const {
 }
 
 // By the gyro, or by wheels without one.
-bool MotionModel::turn_known(const Prior& now) const {
-  return (now.attitude_valid && last_.attitude_valid) || (now.velocity_valid && last_.velocity_valid);
-}
+bool MotionModel::turn_known(const Prior& now) const { return followed(now) || on_wheels(now); }
 
 Prediction MotionModel::predict(const Prior& now, const MethodTraits& method,
                                 const GravityOffset& offset) const {
-  const bool followed = now.attitude_valid && last_.attitude_valid;
-  const bool on_wheels = now.velocity_valid && last_.velocity_valid;
+  const bool by_gyro = followed(now);
+  const bool by_wheels = on_wheels(now);
   const Eigen::Isometry3d& T_odom_before = turn_known(now) ? last_.T_odom_base : now.T_odom_base;
   const PoseAnchor anchor(T_map_base_, T_odom_before);
   const Eigen::Matrix3d R_map_odom =
       method.tilt == Constraint::kFixed ? nearest_rotation_about_z(anchor.R_map_odom()) : anchor.R_map_odom();
   const Eigen::Vector3d step_map_m =
-      on_wheels ? anchor.step_map_m(now.T_odom_base) : step_at_velocity_map(now);
+      by_wheels ? anchor.step_map_m(now.T_odom_base) : step_at_velocity_map(now);
 
   Prediction prediction;
   prediction.T_map_base.linear() =
@@ -150,12 +148,15 @@ Prediction MotionModel::predict(const Prior& now, const MethodTraits& method,
   const double dt_s = std::max(travel_s(now), seconds_between(confirmed_ns_, now.stamp_ns));
   const double turn_rad =
       rotation_angle_rad(Eigen::Quaterniond(T_odom_before.linear().transpose() * now.T_odom_base.linear()));
-  const double rate_rad_s =
-      std::max(non_negative_root(now.yaw_rate_variance_rad2_s2), followed ? 0.0 : kUnseenRateRadS);
-  const double translation_m = on_wheels ? wheel_error_m(now, step_map_m.norm(), dt_s) : free_error_m(dt_s);
+  const double rate_rad_s = non_negative_root(now.yaw_rate_variance_rad2_s2);
+  const auto error_rad = [&](double rate) {
+    return std::min(rotation_error_rad(turn_rad, rate, dt_s), kLargestDeviationRad);
+  };
+  const double translation_m = by_wheels ? wheel_error_m(now, step_map_m.norm(), dt_s) : free_error_m(dt_s);
   prediction.deviation.head<3>().setConstant(
-      std::min(rotation_error_rad(turn_rad, rate_rad_s, dt_s), kLargestDeviationRad));
-  if (on_wheels && !followed) prediction.deviation(2) = wheel_turn_error_rad(now, turn_rad, dt_s);
+      error_rad(by_gyro ? rate_rad_s : std::max(rate_rad_s, kUnseenRateRadS)));
+  // Wheels know yaw alone.
+  if (by_wheels && !by_gyro) prediction.deviation(2) = error_rad(rate_rad_s);
   prediction.deviation.tail<3>().setConstant(std::min(translation_m, kLargestDeviationM));
   prediction.deviation.segment<2>(3).setConstant(std::max(prediction.deviation(3), start_error_m(now)));
   if (method.follows_altimeter()) {
@@ -167,7 +168,7 @@ Prediction MotionModel::predict(const Prior& now, const MethodTraits& method,
                     prediction);
   }
   prediction.T_map_odom = prediction.T_map_base * now.T_odom_base.inverse();
-  prediction.holders = holders_of(method, followed, on_wheels);
+  prediction.holders = holders_of(method, by_gyro, by_wheels);
   return prediction;
 }
 
@@ -176,11 +177,6 @@ void MotionModel::turn_on(const Prior& now, Prediction& prediction) const {
   const Eigen::Vector3d turn_rad = turn_rate_at(last_.stamp_ns) * travel_s(now);
   const Eigen::Quaterniond q_map_base(prediction.T_map_base.linear());
   prediction.T_map_base.linear() = (q_map_base * exp_so3(turn_rad)).normalized().toRotationMatrix();
-}
-
-double MotionModel::wheel_turn_error_rad(const Prior& now, double turn_rad, double dt_s) const {
-  const double rate_rad_s = non_negative_root(now.yaw_rate_variance_rad2_s2);
-  return std::min(rotation_error_rad(turn_rad, rate_rad_s, dt_s), kLargestDeviationRad);
 }
 
 double MotionModel::wheel_error_m(const Prior& now, double step_m, double dt_s) const {
@@ -195,8 +191,7 @@ double MotionModel::free_error_m(double dt_s) const {
 }
 
 bool MotionModel::speed_unknown(const Prior& now) const {
-  const bool on_wheels = now.velocity_valid && last_.velocity_valid;
-  return registered_ < kScansToVelocity && !on_wheels && !now.standing_still;
+  return registered_ < kScansToVelocity && !on_wheels(now) && !now.standing_still;
 }
 
 // Horizontal error of a step while the velocity of the start is unknown.
@@ -209,16 +204,20 @@ double MotionModel::rotation_error_rad(double turn_rad, double rate_rad_s, doubl
          rate_rad_s * dt_s;
 }
 
+MotionModel::Twist MotionModel::twist_to(const Eigen::Isometry3d& T_map_base, double dt_s) const {
+  return {(T_map_base.translation() - T_map_base_.translation()) / dt_s,
+          log_so3(Eigen::Quaterniond(T_map_base_.linear().transpose() * T_map_base.linear())) / dt_s};
+}
+
 void MotionModel::correct(const Prior& now, const Eigen::Isometry3d& T_map_base) {
   const double dt_s = travel_s(now);
   if (dt_s > 1e-3 && dt_s < kLongestVelocityStepS) {
-    const Eigen::Vector3d measured = (T_map_base.translation() - T_map_base_.translation()) / dt_s;
+    const Twist measured = twist_to(T_map_base, dt_s);
     const Eigen::Vector3d gain = registered_ == 0
                                      ? Eigen::Vector3d(1.0, 1.0, kVerticalVelocityGain)
                                      : Eigen::Vector3d(kVelocityGain, kVelocityGain, kVerticalVelocityGain);
-    v_map_m_s_ += gain.cwiseProduct(measured - v_map_m_s_);
-    w_base_rad_s_ =
-        log_so3(Eigen::Quaterniond(T_map_base_.linear().transpose() * T_map_base.linear())) / dt_s;
+    v_map_m_s_ += gain.cwiseProduct(measured.v_map_m_s - v_map_m_s_);
+    w_base_rad_s_ = measured.w_base_rad_s;
   } else {
     v_map_m_s_.setZero();
     w_base_rad_s_.setZero();
@@ -245,16 +244,13 @@ void MotionModel::keep_prediction(const Prior& now, const Prediction& prediction
 ScanMotion MotionModel::motion_towards(const Prior& end, const Eigen::Isometry3d& T_map_base) const {
   // The mean of what was predicted and what is shown: undamped, steps of a robot that turns swing by half of them.
   constexpr double kShare = 0.5;
-  const double dt_s = std::max(travel_s(end), 1e-3);
-  const Eigen::Vector3d v_map_m_s = (T_map_base.translation() - T_map_base_.translation()) / dt_s;
-  const Eigen::Vector3d w_base_rad_s =
-      log_so3(Eigen::Quaterniond(T_map_base_.linear().transpose() * T_map_base.linear())) / dt_s;
+  const Twist shown = twist_to(T_map_base, std::max(travel_s(end), 1e-3));
   ScanMotion motion;
   motion.end = end;
   motion.from_wheels = motion.turn_known = false;
-  motion.v_base_m_s =
-      T_map_base.linear().transpose() * (kShare * v_map_m_s + (1.0 - kShare) * velocity_at(end.stamp_ns));
-  motion.w_base_rad_s = kShare * w_base_rad_s + (1.0 - kShare) * turn_rate_at(end.stamp_ns);
+  motion.v_base_m_s = T_map_base.linear().transpose() *
+                      (kShare * shown.v_map_m_s + (1.0 - kShare) * velocity_at(end.stamp_ns));
+  motion.w_base_rad_s = kShare * shown.w_base_rad_s + (1.0 - kShare) * turn_rate_at(end.stamp_ns);
   return motion;
 }
 

@@ -79,12 +79,21 @@ class MotionModel {
   [[nodiscard]] ScanMotion scan_motion(const Prior& end, const Prediction& prediction) const;
 
  private:
+  struct Twist {
+    Eigen::Vector3d v_map_m_s;
+    Eigen::Vector3d w_base_rad_s;
+  };
+
+  /// The IMU has followed the turn since the last scan.
+  [[nodiscard]] bool followed(const Prior& now) const { return now.attitude_valid && last_.attitude_valid; }
+  [[nodiscard]] bool on_wheels(const Prior& now) const { return now.velocity_valid && last_.velocity_valid; }
+  /// Mean velocity and turn rate from the last scan to `T_map_base`, `dt_s` later.
+  [[nodiscard]] Twist twist_to(const Eigen::Isometry3d& T_map_base, double dt_s) const;
   [[nodiscard]] Eigen::Vector3d step_at_velocity_map(const Prior& now) const;
   void turn_on(const Prior& now, Prediction& prediction) const;
   [[nodiscard]] double since_confirmed_s(std::int64_t stamp_ns) const;
   [[nodiscard]] Eigen::Vector3d velocity_at(std::int64_t stamp_ns) const;
   [[nodiscard]] Eigen::Vector3d turn_rate_at(std::int64_t stamp_ns) const;
-  [[nodiscard]] double wheel_turn_error_rad(const Prior& now, double turn_rad, double dt_s) const;
   [[nodiscard]] double wheel_error_m(const Prior& now, double step_m, double dt_s) const;
   [[nodiscard]] double free_error_m(double dt_s) const;
   [[nodiscard]] double start_error_m(const Prior& now) const;

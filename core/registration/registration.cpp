@@ -144,7 +144,7 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
   const bool riding =
       traits.method == Method::kAdaptive ? state_.height.riding() : state_.ground_since_ns != 0;
   MatchResult result;
-  if (knows(map) && !riding) result = match_steadily(scan, map, end, traits, prediction, out);
+  if (knows(map) && !riding) result = match_by_own_motion(scan, map, end, traits, prediction, out);
   const bool registered = result.solved && acceptable(result, prediction);
   copy_statistics(result, pose);
   pose.mode = mode_after(registered, traits);

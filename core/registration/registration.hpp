@@ -178,8 +178,9 @@ class Registration {
   bool search_speed(const MapSnapshot& map, const Prior& end, const MethodTraits& traits,
                     Prediction& prediction, PoseEstimate& pose);
   void wait_for_speed(const Prediction& standing, double after_s, PoseEstimate& pose);
-  MatchResult match_steadily(const Scan& scan, const MapSnapshot& map, const Prior& end,
-                             const MethodTraits& traits, const Prediction& prediction, RegisteredScan& out);
+  MatchResult match_by_own_motion(const Scan& scan, const MapSnapshot& map, const Prior& end,
+                                  const MethodTraits& traits, const Prediction& prediction,
+                                  RegisteredScan& out);
   // registration_covariance.cpp
   void restart_drift(const Prior& prior);
   void own_covariance(const Prior& end, const MethodTraits& traits, bool registered, PoseEstimate& pose);

@@ -16,9 +16,9 @@ constexpr double kTurnRad = 0.3 * kRadPerDeg;
 constexpr double kStepM = 0.03;
 constexpr int kPasses = 4;
 // A gap between scans, over which a rate says nothing [s].
-constexpr double kLongestStepS = 0.3;
-// Speed of a robot without wheels [m/s], 1 sigma, until scans have shown it.
-constexpr double kUnknownSpeedMS = 6.0;
+constexpr double kTurnGapS = 0.3;
+// Speed that the search may find [m/s], 1 sigma.
+constexpr double kSearchedSpeedMS = 6.0;
 
 }  // namespace
 
@@ -51,18 +51,18 @@ void Registration::wait_for_speed(const Prediction& standing, double after_s, Po
   pose.T_map_base = standing.T_map_base;
   pose.T_map_odom = standing.T_map_odom;
   pose.covariance = state_.last.covariance;
-  pose.covariance.topLeftCorner<2, 2>().diagonal().array() += squared(kUnknownSpeedMS * after_s);
+  pose.covariance.topLeftCorner<2, 2>().diagonal().array() += squared(kSearchedSpeedMS * after_s);
   pose.for_map = false;
   state_.last = pose;
 }
 
 // A scan during which a turn begins was deskewed as if there were none, and shows half of it. Where neither gyro nor wheels
 // know the turn, it is deskewed again by what it has shown.
-MatchResult Registration::match_steadily(const Scan& scan, const MapSnapshot& map, const Prior& end,
-                                         const MethodTraits& traits, const Prediction& prediction,
-                                         RegisteredScan& out) {
+MatchResult Registration::match_by_own_motion(const Scan& scan, const MapSnapshot& map, const Prior& end,
+                                              const MethodTraits& traits, const Prediction& prediction,
+                                              RegisteredScan& out) {
   MatchResult result = match(map, end, prediction, traits);
-  if (state_.motion.turn_known(end) || state_.motion.travel_s(end) > kLongestStepS) return result;
+  if (state_.motion.turn_known(end) || state_.motion.travel_s(end) > kTurnGapS) return result;
   Prediction by_scan = prediction;
   for (int pass = 1; pass < kPasses && result.solved; ++pass) {
     const Vector6d shown = twist_between(by_scan.T_map_base, result.T_map_base);

@@ -44,8 +44,7 @@ void SpeedSearch::restart() {
 void SpeedSearch::add(std::size_t hypothesis, const MatchResult& match, const Eigen::Vector2d& moved_m,
                       double after_s) {
   Hypothesis& one = hypotheses_[hypothesis];
-  const double fit = fit_of(match);
-  one.fit += fit;
+  one.fit += fit_of(match);
   if (match.solved && hypothesis != 0) one.v_map_m_s = moved_m / after_s;
 }
 

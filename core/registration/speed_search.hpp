@@ -33,7 +33,7 @@ class SpeedSearch {
   [[nodiscard]] const Eigen::Vector2d& velocity_m_s(std::size_t hypothesis) const {
     return hypotheses_[hypothesis].v_map_m_s;
   }
-  /// A scan `after_s` after the first was matched from that velocity and is `moved_m` away from it.
+  /// A scan `after_s` after the first has been matched from that velocity, and lies `moved_m` away from the first.
   void add(std::size_t hypothesis, const MatchResult& match, const Eigen::Vector2d& moved_m, double after_s);
   /// All hypotheses have seen the scan: ends the search where they tell a speed, or that the robot stands.
   void end_scan();

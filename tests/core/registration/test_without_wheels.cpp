@@ -43,15 +43,21 @@ MakePrior time_alone() {
   };
 }
 
+/// A run of a robot that has a lidar and nothing else.
+RegistrationRun lidar_alone(const World& world, const Motion& motion) {
+  RegistrationRun run(world, motion, time_alone(), Method::k6Dof);
+  RegistrationConfig config;
+  config.has_imu = false;
+  run.rebuild(config, Method::k6Dof);
+  return run;
+}
+
 }  // namespace
 
 TEST_CASE("a lidar alone finds the speed of a run that begins in motion, and that of one that stands") {
   for (const double speed_m_s : {0.0, 1.0, 5.0, 8.0}) {
     CAPTURE(speed_m_s);
-    RegistrationRun run(street(), straight(speed_m_s), time_alone(), Method::k6Dof);
-    RegistrationConfig config;
-    config.has_imu = false;
-    run.rebuild(config, Method::k6Dof);
+    RegistrationRun run = lidar_alone(street(), straight(speed_m_s));
     // The map, the search, and the first scans by its speed.
     run.steps(8);
     CHECK(run.pose().mode == PoseMode::kRegistered);
@@ -100,10 +106,7 @@ TEST_CASE("a lidar alone follows a turn that begins within a scan") {
     T.translation() = Eigen::Vector3d(0.5, 0.3, 0.7);
     return T;
   };
-  RegistrationRun run(furnished_room(), turning, time_alone(), Method::k6Dof);
-  RegistrationConfig config;
-  config.has_imu = false;
-  run.rebuild(config, Method::k6Dof);
+  RegistrationRun run = lidar_alone(furnished_room(), turning);
   run.steps(20);
   double largest_deg = 0.0;
   for (int i = 0; i < 30; ++i) {
