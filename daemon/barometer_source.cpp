@@ -2,20 +2,20 @@
 #include "daemon/barometer_source.hpp"
 
 #include "core/errors.hpp"
+#include "drivers/bus/smbus.hpp"
 #include "drivers/dps310/sensor.hpp"
-#include "drivers/dps310/smbus.hpp"
 #include "drivers/iio/barometer.hpp"
 
 namespace isobar {
 namespace {
 
-std::unique_ptr<BarometerDevice> make_device(const BarometerSettings& settings) {
+std::unique_ptr<Device<PressureSample>> make_device(const BarometerSettings& settings) {
   const auto stuck_time_ns = static_cast<std::int64_t>(settings.stuck_time_s * 1e9);
   if (settings.source == "input" || !settings.present()) return nullptr;
   if (settings.source == "dps310") {
     const std::uint8_t address = settings.dps310.address == "0x76" ? 0x76 : 0x77;
     return std::make_unique<dps310::Sensor>(
-        settings.dps310, std::make_unique<dps310::SmbusDevice>(settings.dps310.bus, address), stuck_time_ns);
+        settings.dps310, std::make_unique<SmbusDevice>(settings.dps310.bus, address), stuck_time_ns);
   }
   if (settings.source == "setra278") {
     return std::make_unique<iio::Barometer>(settings.setra278, stuck_time_ns);
@@ -28,7 +28,7 @@ std::unique_ptr<BarometerDevice> make_device(const BarometerSettings& settings) 
 
 std::unique_ptr<BarometerThread> make_barometer_thread(const BarometerSettings& settings,
                                                        const ThreadSettings& scheduling) {
-  std::unique_ptr<BarometerDevice> device = make_device(settings);
+  std::unique_ptr<Device<PressureSample>> device = make_device(settings);
   return device ? std::make_unique<BarometerThread>(std::move(device), scheduling) : nullptr;
 }
 

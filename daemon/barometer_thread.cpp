@@ -5,7 +5,7 @@
 
 namespace isobar {
 
-BarometerThread::BarometerThread(std::unique_ptr<BarometerDevice> device, ThreadSettings settings)
+BarometerThread::BarometerThread(std::unique_ptr<Device<PressureSample>> device, ThreadSettings settings)
     : device_(std::move(device)),
       publisher_(ipc::topics::kBarometer),
       worker_(std::move(settings), timer_, [this] { loop(); }) {
@@ -22,7 +22,7 @@ void BarometerThread::loop() noexcept {
 
 /// @return time until the next step [ns]
 std::int64_t BarometerThread::step() noexcept {
-  const BarometerDevice::Step step = device_->step(RobotClock::now_ns());
+  const Device<PressureSample>::Step step = device_->step(RobotClock::now_ns());
   if (step.has_sample && !publisher_.send(step.sample)) ++draft_status_.samples_without_memory;
   draft_status_.device = device_->status();
   status_.put(draft_status_);

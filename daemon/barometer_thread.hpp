@@ -8,7 +8,7 @@
 #include "daemon/seq_lock.hpp"
 #include "daemon/stoppable_timer.hpp"
 #include "daemon/worker.hpp"
-#include "drivers/barometer/barometer_device.hpp"
+#include "drivers/device/device.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar {
@@ -17,7 +17,7 @@ namespace isobar {
 struct BarometerThreadStatus {
   bool present = false;          ///< false: no such thread, samples arrive as datagrams
   std::array<char, 80> place{};  ///< "DPS310 on /dev/i2c-1 at 0x77"
-  BarometerStatus device;
+  DeviceStatus device;
   std::uint64_t samples_without_memory = 0;
 };
 
@@ -26,7 +26,7 @@ struct BarometerThreadStatus {
 class BarometerThread {
  public:
   /// @throws ServiceError when the kernel refuses a timer
-  BarometerThread(std::unique_ptr<BarometerDevice> device, ThreadSettings settings);
+  BarometerThread(std::unique_ptr<Device<PressureSample>> device, ThreadSettings settings);
 
   [[nodiscard]] Worker& worker() noexcept { return worker_; }
   [[nodiscard]] BarometerThreadStatus status() const noexcept { return status_.get(); }
@@ -35,7 +35,7 @@ class BarometerThread {
   void loop() noexcept;
   std::int64_t step() noexcept;
 
-  std::unique_ptr<BarometerDevice> device_;
+  std::unique_ptr<Device<PressureSample>> device_;
   StoppableTimer timer_;
   ipc::Publisher<PressureSample> publisher_;
   BarometerThreadStatus draft_status_;

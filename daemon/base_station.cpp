@@ -41,8 +41,8 @@ std::vector<std::string> BaseStationGraph::waiting_for() const {
   return {input_.waiting_for(), barometer_ ? isobar::waiting_for(barometer_->status()) : std::string{}};
 }
 
-BarometerState BaseStationGraph::barometer_state() const {
-  return barometer_ ? barometer_->status().device.state : BarometerState{};
+DeviceState BaseStationGraph::barometer_state() const {
+  return barometer_ ? barometer_->status().device.state : DeviceState{};
 }
 
 void BaseStationGraph::apply(const ConfigChange& change) {

@@ -99,7 +99,7 @@ std::vector<files::RunCount> counts_of(const BaseStationStatus& base) {
   };
 }
 
-std::vector<files::RunCount> counts_of(const BarometerCounters& counters) {
+std::vector<files::RunCount> counts_of(const DeviceCounters& counters) {
   return {
       {"barometer readings", counters.samples, ""},
       {"barometer accesses failed", counters.io_errors, ""},

@@ -7,8 +7,8 @@
 
 #include "core/prior/prior_estimator.hpp"
 #include "core/time/base_station_stream.hpp"
-#include "drivers/barometer/barometer_device.hpp"
 #include "drivers/datagram/datagram.hpp"
+#include "drivers/device/device.hpp"
 #include "drivers/velodyne/velodyne_decoder.hpp"
 #include "run/files/run_output.hpp"
 #include "run/tile_store/file_tile_store.hpp"
@@ -21,7 +21,7 @@ std::vector<files::RunCount> counts_of(const PriorCounters& counters);
 std::vector<files::RunCount> counts_of(const datagram::Counters& counters);
 /// Counters of the base station that sends datagrams.
 std::vector<files::RunCount> counts_of(const BaseStationStatus& base);
-std::vector<files::RunCount> counts_of(const BarometerCounters& counters);
+std::vector<files::RunCount> counts_of(const DeviceCounters& counters);
 
 /// Writes map.ply; returns the counters of the tile store, during the run and while writing.
 std::vector<files::RunCount> counts_of_map(FileTileStore& store, files::RunOutput& output);

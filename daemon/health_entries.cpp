@@ -81,12 +81,12 @@ void add_absent(HealthReport& report, const std::string& name, const char* key, 
 void add_barometer_device(HealthReport& report, const BarometerSettings& settings,
                           const BarometerThreadStatus& now, const BarometerThreadStatus& before,
                           std::int64_t now_ns, double rate_hz) {
-  const BarometerStatus& device = now.device;
+  const DeviceStatus& device = now.device;
   const std::string place = now.place.data();
   const std::int64_t age_ns = now_ns - device.last_sample_ns;
-  if (device.state == BarometerState::kStarting) {
+  if (device.state == DeviceState::kStarting) {
     add_entry(report, "barometer", HealthLevel::kStale, place + ": starting", 0.0);
-  } else if (device.state != BarometerState::kMeasuring) {
+  } else if (device.state != DeviceState::kMeasuring) {
     add_entry(report, "barometer", HealthLevel::kError, place + ": " + device.fault.data(), 0.0);
   } else if (age_ns > kSensorSilenceNs + period_ns(settings)) {
     // The thread hangs in the kernel or gets no processor time.
@@ -96,7 +96,7 @@ void add_barometer_device(HealthReport& report, const BarometerSettings& setting
     add_entry(report, "barometer", HealthLevel::kOk, fmt::format("{:.1f} per second from {}", rate_hz, place),
               rate_hz);
   }
-  const BarometerCounters& earlier = before.device.counters;
+  const DeviceCounters& earlier = before.device.counters;
   add_count(report, "barometer/io_errors", device.counters.io_errors, earlier.io_errors,
             "accesses that failed");
   add_count(report, "barometer/resets", device.counters.resets, earlier.resets,

@@ -109,8 +109,8 @@ void add_system_clock(ipc::HealthReport& report, const SystemClockWatch& system,
 }
 
 std::string waiting_for(const BarometerThreadStatus& barometer) {
-  const BarometerState state = barometer.device.state;
-  const bool waits = state == BarometerState::kNoAnswer || state == BarometerState::kWrongDevice;
+  const DeviceState state = barometer.device.state;
+  const bool waits = state == DeviceState::kNoAnswer || state == DeviceState::kWrongDevice;
   if (!barometer.present || !waits) return {};
   return std::string(barometer.place.data()) + ": " + barometer.device.fault.data();
 }

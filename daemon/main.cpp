@@ -118,8 +118,8 @@ class RobotGraph final : public Graph {
     return fmt::format("lidar {} on UDP port {}, samples on UDP port {}", config_.lidar.model, lidar_.port(),
                        samples_.port());
   }
-  [[nodiscard]] BarometerState barometer_state() const override {
-    return barometer_ ? barometer_->status().device.state : BarometerState{};
+  [[nodiscard]] DeviceState barometer_state() const override {
+    return barometer_ ? barometer_->status().device.state : DeviceState{};
   }
   [[nodiscard]] std::vector<std::string> waiting_for() const override {
     return {lidar_.waiting_for(), samples_.waiting_for(),

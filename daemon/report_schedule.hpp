@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "drivers/barometer/barometer_device.hpp"
+#include "drivers/device/device.hpp"
 
 namespace isobar {
 
@@ -14,7 +14,7 @@ inline constexpr std::int64_t kReportEveryNs = 1'000'000'000;
 /// report is due one second after the first call, by which time every working sensor has sent. One thread.
 class ReportSchedule {
  public:
-  [[nodiscard]] bool due(std::int64_t now_ns, BarometerState barometer) {
+  [[nodiscard]] bool due(std::int64_t now_ns, DeviceState barometer) {
     if (!started_) {
       started_ = true;
       last_ns_ = now_ns;
@@ -29,7 +29,7 @@ class ReportSchedule {
 
  private:
   std::int64_t last_ns_ = 0;
-  BarometerState barometer_{};
+  DeviceState barometer_{};
   bool started_ = false;
   bool reported_ = false;
 };

@@ -11,8 +11,8 @@
 
 #include "core/errors.hpp"
 #include "core/printable_text.hpp"
+#include "drivers/bus/smbus.hpp"
 #include "drivers/dps310/registers.hpp"
-#include "drivers/dps310/smbus.hpp"
 #include "drivers/udp/udp.hpp"
 #include "drivers/velodyne/packet_format.hpp"
 
@@ -45,7 +45,7 @@ std::string first_line(const fs::path& file) {
 /// Reads the product id at the addresses of the supported barometers. Reading a register changes no device.
 void probe_i2c(const std::string& bus, Survey& survey) {
   for (const std::uint8_t address : {std::uint8_t{0x76}, std::uint8_t{0x77}}) {
-    dps310::SmbusDevice device(bus, address);
+    SmbusDevice device(bus, address);
     std::uint8_t id = 0;
     int error = device.open();
     if (error == 0) error = device.read(dps310::kProductId, {&id, 1});

@@ -33,11 +33,11 @@ Sensor::Sensor(const Settings& settings, std::unique_ptr<RegisterBus> bus, std::
           std::clamp(std::int64_t{250'000'000} / settings.pressure_rate_hz, kFastestPollNs, kSlowestPollNs)),
       pressure_time_ns_(to_ns(measurement_time_s(settings.pressure_oversampling))),
       temperature_time_ns_(to_ns(measurement_time_s(settings.temperature_oversampling))),
-      temperature_silence_ns_(barometer_silence_ns(settings.temperature_rate_hz)),
-      faults_(barometer_silence_ns(settings.pressure_rate_hz)),
+      temperature_silence_ns_(device_silence_ns(settings.temperature_rate_hz)),
+      faults_(device_silence_ns(settings.pressure_rate_hz)),
       stuck_(stuck_time_ns) {}
 
-BarometerDevice::Step Sensor::step(std::int64_t now_ns) noexcept {
+Device<PressureSample>::Step Sensor::step(std::int64_t now_ns) noexcept {
   Step step;
   switch (phase_) {
     case Phase::kBegin:
@@ -63,12 +63,12 @@ std::int64_t Sensor::begin(std::int64_t now_ns) noexcept {
     const char* what = error == EBUSY     ? "a kernel driver holds the device"
                        : error == ENOTSUP ? "the bus has no SMBus byte reads and writes"
                                           : "the bus cannot be opened";
-    return faults_.fail(BarometerState::kNoAnswer, what, now_ns, error);
+    return faults_.fail(DeviceState::kNoAnswer, what, now_ns, error);
   }
   std::uint8_t id = 0;
   if (const int error = bus_->read(kProductId, {&id, 1}); error != 0) return no_answer(error, now_ns);
   if (id != kDps310Id) {
-    return fail(BarometerState::kWrongDevice, "the product id is not 0x10: another device", now_ns);
+    return fail(DeviceState::kWrongDevice, "the product id is not 0x10: another device", now_ns);
   }
   if (const int error = bus_->write(kReset, kSoftReset); error != 0) return no_answer(error, now_ns);
   phase_ = Phase::kWaitReady;
@@ -82,13 +82,13 @@ std::int64_t Sensor::wait_ready(std::int64_t now_ns) noexcept {
   if (ready.error == 0 && (ready.bits & kBoth) == kBoth) return set_up(now_ns);
   if (now_ns < deadline_ns_) return now_ns + kReadyPollNs;  // a resetting chip does not answer
   if (ready.error != 0) return no_answer(ready.error, now_ns);
-  return fail(BarometerState::kWrongDevice, "sensor or coefficients not ready 0.1 s after a reset", now_ns);
+  return fail(DeviceState::kWrongDevice, "sensor or coefficients not ready 0.1 s after a reset", now_ns);
 }
 
 std::int64_t Sensor::set_up(std::int64_t now_ns) noexcept {
   const char* rule = nullptr;
   int error = read_coefficients(rule);
-  if (error == 0 && rule != nullptr) return fail(BarometerState::kWrongDevice, rule, now_ns);
+  if (error == 0 && rule != nullptr) return fail(DeviceState::kWrongDevice, rule, now_ns);
   if (error == 0) error = apply_erratum();
   if (error == 0) error = write_settings();
   if (error == 0) error = bus_->write(kMeasurementConfig, kModeOneTemperature);
@@ -154,7 +154,7 @@ std::int64_t Sensor::first_temperature(std::int64_t now_ns) noexcept {
   if (ready.error != 0) return no_answer(ready.error, now_ns);
   if ((ready.bits & kTemperatureReady) == 0) {
     if (now_ns < deadline_ns_) return now_ns + kFastestPollNs;
-    return fail(BarometerState::kSilent, "no first temperature", now_ns);
+    return fail(DeviceState::kSilent, "no first temperature", now_ns);
   }
   raw_ = {};
   int error = read_raw(kTemperatureReady);
@@ -173,13 +173,13 @@ void Sensor::measure(std::int64_t now_ns, Step& step) noexcept {
   int error = first.error;
   if (error == 0 && (ready & kModeMask) != kModeBackground) {
     ++faults_.counters().resets;
-    step.next_ns = fail(BarometerState::kSilent, "lost its settings (power failure?)", now_ns);
+    step.next_ns = fail(DeviceState::kSilent, "lost its settings (power failure?)", now_ns);
     return;
   }
   if (error == 0 && (ready & kResultsReady) != 0) error = read_results(ready);
   if (error != 0) {
     ++faults_.counters().io_errors;
-    faults_.problem(BarometerState::kNoAnswer, "no answer", error);
+    faults_.problem(DeviceState::kNoAnswer, "no answer", error);
   } else {
     if ((ready & kTemperatureReady) != 0) newest_temperature_ns_ = now_ns;
     if ((ready & kPressureReady) != 0) take_result(now_ns, step);
@@ -192,19 +192,19 @@ void Sensor::measure(std::int64_t now_ns, Step& step) noexcept {
 
 void Sensor::take_result(std::int64_t now_ns, Step& step) noexcept {
   if (stuck_.add(raw_.pressure, now_ns)) {
-    if (status().state != BarometerState::kStuck) ++faults_.counters().stuck;
-    step.next_ns = fail(BarometerState::kStuck, "the result no longer changes", now_ns);
+    if (status().state != DeviceState::kStuck) ++faults_.counters().stuck;
+    step.next_ns = fail(DeviceState::kStuck, "the result no longer changes", now_ns);
     return;
   }
   const Compensated value = compensate(coefficients_, raw_, scale_factor(settings_.pressure_oversampling),
                                        scale_factor(settings_.temperature_oversampling));
   if (const char* rule = implausibility(raw_, value); rule != nullptr) {
     ++faults_.counters().implausible;
-    faults_.problem(BarometerState::kImplausible, rule);
+    faults_.problem(DeviceState::kImplausible, rule);
     return;
   }
   if (now_ns - newest_temperature_ns_ > temperature_silence_ns_) {
-    faults_.problem(BarometerState::kSilent,
+    faults_.problem(DeviceState::kSilent,
                     "no new temperature");  // the compensation of every pressure needs one
     return;
   }
@@ -258,10 +258,10 @@ Sensor::Ready Sensor::read_ready() noexcept {
 std::int64_t Sensor::no_answer(int error, std::int64_t now_ns) noexcept {
   ++faults_.counters().io_errors;
   phase_ = Phase::kBegin;
-  return faults_.fail(BarometerState::kNoAnswer, "no answer", now_ns, error);
+  return faults_.fail(DeviceState::kNoAnswer, "no answer", now_ns, error);
 }
 
-std::int64_t Sensor::fail(BarometerState state, const char* what, std::int64_t now_ns) noexcept {
+std::int64_t Sensor::fail(DeviceState state, const char* what, std::int64_t now_ns) noexcept {
   phase_ = Phase::kBegin;
   return faults_.fail(state, what, now_ns);
 }

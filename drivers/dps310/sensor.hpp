@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "drivers/barometer/fault_watch.hpp"
-#include "drivers/dps310/register_bus.hpp"
+#include "drivers/bus/register_bus.hpp"
+#include "drivers/device/fault_watch.hpp"
 #include "drivers/dps310/settings.hpp"
 
 namespace isobar::dps310 {
@@ -16,14 +16,14 @@ namespace isobar::dps310 {
 ///
 /// The ready bits are polled four times a measurement. A sample's stamp is the middle of the chip's averaging
 /// time, exact to half a poll.
-class Sensor final : public BarometerDevice {
+class Sensor final : public Device<PressureSample> {
  public:
   /// @param settings validated: busy_time_s() below 1
   /// @param stuck_time_ns see StuckWatch
   Sensor(const Settings& settings, std::unique_ptr<RegisterBus> bus, std::int64_t stuck_time_ns);
 
   Step step(std::int64_t now_ns) noexcept override;
-  [[nodiscard]] const BarometerStatus& status() const noexcept override { return faults_.status(); }
+  [[nodiscard]] const DeviceStatus& status() const noexcept override { return faults_.status(); }
   [[nodiscard]] const std::string& place() const noexcept override { return place_; }
 
  private:
@@ -48,7 +48,7 @@ class Sensor final : public BarometerDevice {
   int read_results(std::uint8_t ready) noexcept;
   int read_raw(std::uint8_t wanted) noexcept;
   std::int64_t no_answer(int error, std::int64_t now_ns) noexcept;
-  std::int64_t fail(BarometerState state, const char* what, std::int64_t now_ns) noexcept;
+  std::int64_t fail(DeviceState state, const char* what, std::int64_t now_ns) noexcept;
 
   Settings settings_;
   std::unique_ptr<RegisterBus> bus_;

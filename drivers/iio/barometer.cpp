@@ -30,10 +30,10 @@ Barometer::Barometer(std::string place, const Settings& settings, const std::str
       channel_(settings.folder, channel),
       thermometer_(settings.folder, "in_temp"),
       span_(span),
-      faults_(barometer_silence_ns(settings.rate_hz)),
+      faults_(device_silence_ns(settings.rate_hz)),
       stuck_(stuck_time_ns) {}
 
-BarometerDevice::Step Barometer::step(std::int64_t now_ns) noexcept {
+Device<PressureSample>::Step Barometer::step(std::int64_t now_ns) noexcept {
   Step step;
   if (open_) {
     measure(now_ns, step);
@@ -48,7 +48,7 @@ std::int64_t Barometer::begin(std::int64_t now_ns) noexcept {
   if (const int error = channel_.open(); error != 0) {
     ++faults_.counters().io_errors;
     const char* what = error == ENOENT ? "no such device or channel" : "no answer";
-    return faults_.fail(BarometerState::kNoAnswer, what, now_ns, error);
+    return faults_.fail(DeviceState::kNoAnswer, what, now_ns, error);
   }
   // A converter's in_temp is its own temperature, not the transducer's.
   has_thermometer_ = !span_ && thermometer_.open() == 0;
@@ -63,14 +63,14 @@ void Barometer::measure(std::int64_t now_ns, Step& step) noexcept {
   if (reading.error != 0) {
     ++faults_.counters().io_errors;
     const char* what = reading.error == EBADMSG ? "the file does not hold a number" : "no answer";
-    faults_.problem(BarometerState::kNoAnswer, what, reading.error);
+    faults_.problem(DeviceState::kNoAnswer, what, reading.error);
   } else if (const char* fault = convert(reading.value, pressure_pa); fault != nullptr) {
     ++faults_.counters().implausible;
-    faults_.problem(BarometerState::kImplausible, fault);
+    faults_.problem(DeviceState::kImplausible, fault);
   } else if (stuck_.add(reading.bits, now_ns)) {
-    if (status().state != BarometerState::kStuck) ++faults_.counters().stuck;
+    if (status().state != DeviceState::kStuck) ++faults_.counters().stuck;
     open_ = false;
-    step.next_ns = faults_.fail(BarometerState::kStuck, "the value no longer changes", now_ns);
+    step.next_ns = faults_.fail(DeviceState::kStuck, "the value no longer changes", now_ns);
     return;
   } else {
     faults_.good(now_ns);

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "drivers/barometer/fault_watch.hpp"
+#include "drivers/device/fault_watch.hpp"
 #include "drivers/iio/channel.hpp"
 #include "drivers/iio/settings.hpp"
 
@@ -13,7 +13,7 @@ namespace isobar::iio {
 /// Barometer read through the kernel's industrial I/O: a sensor with a kernel driver (in_pressure, and
 /// in_temp if present), or a Setra 278 behind an analogue-to-digital converter. Its noise is unknown:
 /// variance_pa2 is NaN.
-class Barometer final : public BarometerDevice {
+class Barometer final : public Device<PressureSample> {
  public:
   /// A sensor with a pressure channel.
   /// @param stuck_time_ns see StuckWatch
@@ -23,7 +23,7 @@ class Barometer final : public BarometerDevice {
   Barometer(const SetraSettings& settings, std::int64_t stuck_time_ns);
 
   Step step(std::int64_t now_ns) noexcept override;
-  [[nodiscard]] const BarometerStatus& status() const noexcept override { return faults_.status(); }
+  [[nodiscard]] const DeviceStatus& status() const noexcept override { return faults_.status(); }
   [[nodiscard]] const std::string& place() const noexcept override { return place_; }
 
  private:

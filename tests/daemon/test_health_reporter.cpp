@@ -21,7 +21,7 @@ class TalkativeGraph final : public Graph {
   void stop() override {}
   WorkerGroup& workers() override { return workers_; }
   std::string inputs() const override { return {}; }
-  BarometerState barometer_state() const override { return {}; }
+  DeviceState barometer_state() const override { return {}; }
   void fill_health(std::int64_t /*now_ns*/, ipc::HealthReport& report) override {
     for (int i = 0; i < entries_; ++i) add_entry(report, "stage", ipc::HealthLevel::kOk, "", i);
   }
@@ -106,21 +106,21 @@ TEST_CASE("health is reported once a second, and at once when the barometer fail
   ReportSchedule schedule;
   std::int64_t now_ns = 5'000'000'000;
   int reports = 0;
-  const auto tick = [&](BarometerState state, int times) {
+  const auto tick = [&](DeviceState state, int times) {
     for (int i = 0; i < times; ++i) {
       now_ns += 100'000'000;
       reports += schedule.due(now_ns, state) ? 1 : 0;
     }
   };
-  tick(BarometerState::kMeasuring, 10);
+  tick(DeviceState::kMeasuring, 10);
   CHECK(reports == 0);  // none in the first second, to give every sensor time to start
-  tick(BarometerState::kMeasuring, 1);
+  tick(DeviceState::kMeasuring, 1);
   CHECK(reports == 1);
-  tick(BarometerState::kMeasuring, 3);
+  tick(DeviceState::kMeasuring, 3);
   CHECK(reports == 1);
-  tick(BarometerState::kSilent, 1);
+  tick(DeviceState::kSilent, 1);
   CHECK(reports == 2);
-  tick(BarometerState::kSilent, 30);
+  tick(DeviceState::kSilent, 30);
   CHECK(reports == 5);
 }
 

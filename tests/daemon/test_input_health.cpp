@@ -166,7 +166,7 @@ TEST_CASE("A barometer of this machine whose device file is missing is waited fo
   barometer.present = true;
   std::string("DPS310 on /dev/i2c-1 at 0x77").copy(barometer.place.data(), barometer.place.size() - 1);
   CHECK(waiting_for(barometer).empty());
-  barometer.device.state = BarometerState::kNoAnswer;
+  barometer.device.state = DeviceState::kNoAnswer;
   std::string("no such device file").copy(barometer.device.fault.data(), barometer.device.fault.size() - 1);
   CHECK(waiting_for(barometer) == "DPS310 on /dev/i2c-1 at 0x77: no such device file");
 }

@@ -65,7 +65,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Sensor sensor({}, std::make_unique<FuzzedBus>(input), 1'500'000'000);
   std::int64_t now_ns = 0;
   for (int steps = 0; steps < 5'000 && !input.empty(); ++steps) {
-    const isobar::BarometerDevice::Step step = sensor.step(now_ns);
+    const isobar::Device<PressureSample>::Step step = sensor.step(now_ns);
     // The next step lies in the future, at most the longest back-off away.
     if (step.next_ns <= now_ns || step.next_ns - now_ns > 6'000'000'000) std::abort();
     if (step.has_sample) {

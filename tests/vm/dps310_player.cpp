@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "drivers/dps310/smbus.hpp"
+#include "drivers/bus/smbus.hpp"
 #include "tests/drivers/dps310/chip_model.hpp"
 
 using namespace isobar::dps310;

@@ -7,8 +7,8 @@
 #include <memory>
 #include <thread>
 
+#include "drivers/bus/smbus.hpp"
 #include "drivers/dps310/sensor.hpp"
-#include "drivers/dps310/smbus.hpp"
 
 int main(int count, char** arguments) {
   using namespace isobar;
@@ -18,14 +18,14 @@ int main(int count, char** arguments) {
   }
   dps310::Settings settings;
   settings.bus = arguments[1];
-  dps310::Sensor sensor(settings, std::make_unique<dps310::SmbusDevice>(settings.bus, 0x77), 0);
+  dps310::Sensor sensor(settings, std::make_unique<SmbusDevice>(settings.bus, 0x77), 0);
   const auto now_ns = [] { return std::chrono::steady_clock::now().time_since_epoch().count(); };
   const std::int64_t end_ns = now_ns() + std::atoi(arguments[2]) * 1'000'000'000LL;
   double pressure_sum = 0.0;
   double temperature_sum = 0.0;
   int samples = 0;
   while (now_ns() < end_ns) {
-    const BarometerDevice::Step step = sensor.step(now_ns());
+    const Device<PressureSample>::Step step = sensor.step(now_ns());
     if (step.has_sample) {
       pressure_sum += step.sample.pressure_pa;
       temperature_sum += step.sample.temperature_c;

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "drivers/dps310/register_bus.hpp"
+#include "drivers/bus/register_bus.hpp"
 #include "tests/drivers/dps310/known_sensor.hpp"
 
 namespace isobar::dps310 {

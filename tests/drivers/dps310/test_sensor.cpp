@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/bus/smbus.hpp"
 #include "drivers/dps310/sensor.hpp"
-#include "drivers/dps310/smbus.hpp"
 #include "tests/drivers/dps310/chip_model.hpp"
 #include "tests/support/allocation_count.hpp"
 
@@ -44,7 +44,7 @@ struct Bench {
     while (next_ns < end_ns) {
       chip.run_until(next_ns + std::uniform_int_distribution<std::int64_t>(0, late_ns)(random));
       const std::int64_t called_ns = chip.now_ns();
-      const BarometerDevice::Step step = sensor.step(called_ns);
+      const Device<PressureSample>::Step step = sensor.step(called_ns);
       ++steps;
       REQUIRE(step.next_ns > called_ns);
       next_ns = step.next_ns;
@@ -54,7 +54,7 @@ struct Bench {
   }
   /// Runs until the driver reports this state.
   /// @return time until then, or the limit [s]
-  double time_until(BarometerState state, double limit_s) {
+  double time_until(DeviceState state, double limit_s) {
     const std::int64_t start_ns = chip.now_ns();
     const auto elapsed_s = [&] { return static_cast<double>(chip.now_ns() - start_ns) * 1e-9; };
     while (sensor.status().state != state && elapsed_s() < limit_s) run(0.005);
@@ -82,7 +82,7 @@ TEST_CASE("first sample 0.3 s after power-up, then at the configured rate") {
   Bench bench;
   bench.run(0.3);
   CHECK_FALSE(bench.samples.empty());
-  CHECK(bench.sensor.status().state == BarometerState::kMeasuring);
+  CHECK(bench.sensor.status().state == DeviceState::kMeasuring);
   bench.samples.clear();
   bench.run(10.0);
   CHECK(bench.samples.size() >= 318);
@@ -147,7 +147,7 @@ TEST_CASE("coefficients are read only after the chip reports them ready") {
   never.chip.coefficients_ready_ns = std::int64_t{1} << 60;
   never.run(20.0);
   CHECK(never.samples.empty());
-  CHECK(never.sensor.status().state == BarometerState::kWrongDevice);
+  CHECK(never.sensor.status().state == DeviceState::kWrongDevice);
   CHECK(never.fault() == "sensor or coefficients not ready 0.1 s after a reset");
   CHECK(never.sensor.status().counters.starts < 12);  // the wait doubles each time
 }
@@ -171,7 +171,7 @@ TEST_CASE(
   Bench bench;
   bench.run(2.0);
   bench.chip.unplugged = true;
-  CHECK(bench.time_until(BarometerState::kNoAnswer, 3.0) < 0.5);
+  CHECK(bench.time_until(DeviceState::kNoAnswer, 3.0) < 0.5);
   CHECK(bench.fault() == "no answer (Remote I/O error)");
   const std::size_t samples = bench.samples.size();
   const std::uint64_t transactions = bench.chip.transactions;
@@ -181,7 +181,7 @@ TEST_CASE(
   CHECK(bench.sensor.status().counters.io_errors > 10);
   bench.chip.unplugged = false;
   bench.chip.power_up();
-  CHECK(bench.time_until(BarometerState::kMeasuring, 10.0) < 4.5);  // the longest wait is 4 s
+  CHECK(bench.time_until(DeviceState::kMeasuring, 10.0) < 4.5);  // the longest wait is 4 s
   CHECK(bench.fault().empty());
   CHECK(bench.largest_error_pa(96'000.0) < 0.3);
 }
@@ -201,12 +201,12 @@ TEST_CASE("a sensor that answers without new results is reported within 0.5 s an
   Bench bench;
   bench.run(2.0);
   bench.chip.stops = true;
-  CHECK(bench.time_until(BarometerState::kSilent, 3.0) < 0.5);
+  CHECK(bench.time_until(DeviceState::kSilent, 3.0) < 0.5);
   CHECK(bench.fault() == "no new result");
   bench.run(1.0);
   CHECK(bench.chip.soft_resets > 1);
   bench.chip.stops = false;
-  CHECK(bench.time_until(BarometerState::kMeasuring, 10.0) < 5.5);
+  CHECK(bench.time_until(DeviceState::kMeasuring, 10.0) < 5.5);
   CHECK(bench.sensor.status().counters.silent >= 1);
 }
 
@@ -214,7 +214,7 @@ TEST_CASE("a thermometer without new results is a fault: every pressure needs it
   Bench bench;
   bench.run(2.0);
   bench.chip.thermometer_stops = true;
-  CHECK(bench.time_until(BarometerState::kSilent, 5.0) < 1.5);  // 3 measurements at 4 Hz, and silence
+  CHECK(bench.time_until(DeviceState::kSilent, 5.0) < 1.5);  // 3 measurements at 4 Hz, and silence
   CHECK(bench.fault().find("temperature") != std::string::npos);
 }
 
@@ -223,14 +223,14 @@ TEST_CASE("a sensor whose bits freeze is reported within 2 s and gives no sample
   bench.chip.noise_pa = 0.35;
   bench.run(3.0);
   bench.chip.frozen = true;
-  CHECK(bench.time_until(BarometerState::kStuck, 5.0) < 2.0);
+  CHECK(bench.time_until(DeviceState::kStuck, 5.0) < 2.0);
   const std::size_t samples = bench.samples.size();
   bench.run(20.0);
   CHECK(bench.samples.size() == samples);
-  CHECK(bench.sensor.status().state == BarometerState::kStuck);
+  CHECK(bench.sensor.status().state == DeviceState::kStuck);
   CHECK(bench.sensor.status().counters.stuck == 1);
   bench.chip.frozen = false;
-  CHECK(bench.time_until(BarometerState::kMeasuring, 10.0) < 5.5);
+  CHECK(bench.time_until(DeviceState::kMeasuring, 10.0) < 5.5);
 }
 
 TEST_CASE("implausible values are refused, counted and reported within 0.5 s; good values clear the fault") {
@@ -240,13 +240,13 @@ TEST_CASE("implausible values are refused, counted and reported within 0.5 s; go
   bench.chip.temperature_c = 95.0;
   bench.run(0.3);  // the next temperature
   const std::size_t before = bench.samples.size();
-  CHECK(bench.time_until(BarometerState::kImplausible, 3.0) < 0.5);
+  CHECK(bench.time_until(DeviceState::kImplausible, 3.0) < 0.5);
   CHECK(bench.fault() == "temperature outside -40 ... 85 degrees C");
   CHECK(bench.samples.size() == before);
   CHECK(before < good + 12);
   CHECK(bench.sensor.status().counters.implausible > 5);
   bench.chip.temperature_c = 21.0;
-  CHECK(bench.time_until(BarometerState::kMeasuring, 10.0) < 5.5);
+  CHECK(bench.time_until(DeviceState::kMeasuring, 10.0) < 5.5);
 }
 
 TEST_CASE("noise of the data sheet never counts as a frozen sensor") {
@@ -267,7 +267,7 @@ TEST_CASE(
   for (int i = 0; i < 20; ++i) {
     bench.chip.power_up();
     bench.run(0.05);
-    CHECK(bench.time_until(BarometerState::kMeasuring, 3.0) < 0.45);
+    CHECK(bench.time_until(DeviceState::kMeasuring, 3.0) < 0.45);
     bench.run(3.0 + 0.0037 * i);  // each time in another phase of the measurement
   }
   CHECK(bench.sensor.status().counters.resets == 20);
@@ -278,7 +278,7 @@ TEST_CASE("another device at the address is reported, and nothing is written to 
   Bench other;
   other.chip.id = 0x58;
   other.run(1.0);
-  CHECK(other.sensor.status().state == BarometerState::kWrongDevice);
+  CHECK(other.sensor.status().state == DeviceState::kWrongDevice);
   CHECK(other.fault() == "the product id is not 0x10: another device");
   CHECK(other.chip.soft_resets == 0);
 }
@@ -353,7 +353,7 @@ std::vector<PressureSample> run_free(Sensor& sensor, int steps) {
   std::vector<PressureSample> samples;
   std::int64_t now_ns = 1'000'000'000;
   for (int i = 0; i < steps; ++i) {
-    const BarometerDevice::Step step = sensor.step(now_ns);
+    const Device<PressureSample>::Step step = sensor.step(now_ns);
     REQUIRE(step.next_ns > now_ns);
     now_ns = step.next_ns;
     if (step.has_sample) samples.push_back(step.sample);
@@ -367,7 +367,7 @@ TEST_CASE("a bus held low or high is not a sensor and gives no sample") {
   for (const std::uint8_t level : {0x00, 0xFF}) {
     Sensor sensor({}, std::make_unique<FreeBus>([level](std::uint8_t) { return level; }), kStuckNs);
     CHECK(run_free(sensor, 200).empty());
-    CHECK(sensor.status().state == BarometerState::kWrongDevice);
+    CHECK(sensor.status().state == DeviceState::kWrongDevice);
   }
 }
 

@@ -51,14 +51,14 @@ struct Bench {
     const std::int64_t end_ns = now_ns + static_cast<std::int64_t>(seconds * 1e9);
     while (now_ns < end_ns) {
       if (before_each) before_each();
-      const BarometerDevice::Step step = device.step(now_ns);
+      const Device<PressureSample>::Step step = device.step(now_ns);
       REQUIRE(step.next_ns > now_ns);
       if (step.has_sample) samples.push_back(step.sample);
       now_ns = step.next_ns;
     }
   }
   [[nodiscard]] std::string fault() const { return device.status().fault.data(); }
-  [[nodiscard]] BarometerState state() const { return device.status().state; }
+  [[nodiscard]] DeviceState state() const { return device.status().state; }
 
   iio::Barometer device;
   std::int64_t now_ns = 1'000'000'000;
@@ -118,13 +118,13 @@ TEST_CASE(
   REQUIRE(good > 5);
   folder.put("in_voltage0_raw", "3");
   bench.run(0.5);
-  CHECK(bench.state() == BarometerState::kImplausible);
+  CHECK(bench.state() == DeviceState::kImplausible);
   CHECK(bench.fault() == "voltage at or below the span: wire open, or no supply?");
   CHECK(bench.samples.size() == good);
   CHECK(bench.device.status().counters.implausible >= 3);
   folder.put("in_voltage0_raw", "1601");
   bench.run(5.0);
-  CHECK(bench.state() == BarometerState::kMeasuring);
+  CHECK(bench.state() == DeviceState::kMeasuring);
   CHECK(bench.samples.back().pressure_pa == doctest::Approx(60e3 + 1.601 / 2.5 * 50e3));
 }
 
@@ -134,11 +134,11 @@ TEST_CASE("a device that vanishes is retried, and may return with another scale"
   folder.put("in_pressure_scale", "0.001");
   Bench bench(at(folder));
   bench.run(1.0);
-  REQUIRE(bench.state() == BarometerState::kMeasuring);
+  REQUIRE(bench.state() == DeviceState::kMeasuring);
   // In sysfs the open file would fail with ENODEV; here it becomes empty.
   { std::ofstream(folder.path() + "/in_pressure_raw", std::ios::trunc); }
   bench.run(0.5);
-  CHECK(bench.state() == BarometerState::kNoAnswer);
+  CHECK(bench.state() == DeviceState::kNoAnswer);
   CHECK(bench.fault().find("the file does not hold a number") == 0);
   folder.remove("in_pressure_raw");
   bench.run(3.0);
@@ -146,7 +146,7 @@ TEST_CASE("a device that vanishes is retried, and may return with another scale"
   folder.put("in_pressure_scale", "0.0005");
   folder.put("in_pressure_raw", "200000");
   bench.run(6.0);
-  CHECK(bench.state() == BarometerState::kMeasuring);
+  CHECK(bench.state() == DeviceState::kMeasuring);
   CHECK(bench.samples.back().pressure_pa == doctest::Approx(100e3));
 }
 
@@ -157,14 +157,14 @@ TEST_CASE("a frozen value is reported within 2 s, unless the detection is off") 
     int count = 0;
     folder.put("in_pressure_input", "99.5");
     bench.run(5.0, [&] { folder.put("in_pressure_input", "99." + std::to_string(500 + ++count % 7)); });
-    REQUIRE(bench.state() == BarometerState::kMeasuring);
+    REQUIRE(bench.state() == DeviceState::kMeasuring);
     bench.run(2.0);
-    CHECK((bench.state() == BarometerState::kStuck) == watched);
+    CHECK((bench.state() == DeviceState::kStuck) == watched);
     CHECK(bench.device.status().counters.stuck == (watched ? 1 : 0));
     bench.run(20.0);
     CHECK(bench.device.status().counters.stuck == (watched ? 1 : 0));
     bench.run(6.0, [&] { folder.put("in_pressure_input", "99." + std::to_string(500 + ++count % 7)); });
-    CHECK(bench.state() == BarometerState::kMeasuring);
+    CHECK(bench.state() == DeviceState::kMeasuring);
   }
 }
 
@@ -176,7 +176,7 @@ TEST_CASE("hPa instead of kPa, text and infinities are refused and counted") {
     Bench bench(at(folder));
     bench.run(2.0);
     CHECK(bench.samples.empty());
-    CHECK(bench.state() != BarometerState::kMeasuring);
+    CHECK(bench.state() != DeviceState::kMeasuring);
     CHECK_FALSE(bench.fault().empty());
     CHECK(bench.device.status().counters.implausible + bench.device.status().counters.io_errors > 0);
   }
@@ -194,7 +194,7 @@ TEST_CASE("a failed thermometer makes the temperature NaN and keeps the pressure
   folder.put("in_temp_raw", "broken");
   bench.run(1.0);
   CHECK(std::isnan(bench.samples.back().temperature_c));
-  CHECK(bench.state() == BarometerState::kMeasuring);
+  CHECK(bench.state() == DeviceState::kMeasuring);
 }
 
 }  // namespace isobar::test::test_barometer

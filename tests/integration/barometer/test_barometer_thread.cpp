@@ -39,7 +39,7 @@ struct LiveChip {
   std::int64_t start_ns = RobotClock::now_ns();
 };
 
-class LiveBus final : public dps310::RegisterBus {
+class LiveBus final : public RegisterBus {
  public:
   explicit LiveBus(LiveChip& live) : live_(&live) {}
   int open() noexcept override { return 0; }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fault detection shared by all barometers: current fault, since when, and time of the next try.
+// Fault detection shared by all devices: current fault, since when, and time of the next try.
 #pragma once
 
 #include <cstdint>
 
-#include "drivers/barometer/barometer_device.hpp"
+#include "drivers/device/device.hpp"
 
 namespace isobar {
 
@@ -49,10 +49,10 @@ class FaultWatch {
   /// A good result: clears the fault.
   void good(std::int64_t now_ns) noexcept;
   /// A failed access or a bad result. It becomes a fault when no good result follows in time.
-  void problem(BarometerState state, const char* what, int error = 0) noexcept;
+  void problem(DeviceState state, const char* what, int error = 0) noexcept;
   /// Sets the fault.
   /// @return time of the next try
-  std::int64_t fail(BarometerState state, const char* what, std::int64_t now_ns, int error = 0) noexcept;
+  std::int64_t fail(DeviceState state, const char* what, std::int64_t now_ns, int error = 0) noexcept;
   /// True when no good result came in time: the caller then calls give_up() and restarts the device.
   [[nodiscard]] bool overdue(std::int64_t now_ns) const noexcept {
     return now_ns - newest_good_ns_ > silence_ns_;
@@ -60,11 +60,11 @@ class FaultWatch {
   /// fail() with the last problem, or silence when there was none.
   std::int64_t give_up(std::int64_t now_ns) noexcept;
 
-  [[nodiscard]] const BarometerStatus& status() const noexcept { return status_; }
-  [[nodiscard]] BarometerCounters& counters() noexcept { return status_.counters; }
+  [[nodiscard]] const DeviceStatus& status() const noexcept { return status_; }
+  [[nodiscard]] DeviceCounters& counters() noexcept { return status_.counters; }
 
  private:
-  void set_fault(BarometerState state, const char* what, int error) noexcept;
+  void set_fault(DeviceState state, const char* what, int error) noexcept;
 
   static constexpr std::int64_t kFirstWaitNs = 100'000'000;
   /// Shorter than the silence after which a thread counts as hung (WorkerGroup, 5 s).
@@ -76,10 +76,10 @@ class FaultWatch {
   std::int64_t newest_good_ns_ = 0;
   std::int64_t good_since_ns_ = 0;
   std::int64_t wait_ns_ = kFirstWaitNs;
-  BarometerState problem_state_ = BarometerState::kSilent;
+  DeviceState problem_state_ = DeviceState::kSilent;
   const char* problem_ = nullptr;
   int problem_error_ = 0;
-  BarometerStatus status_;
+  DeviceStatus status_;
 };
 
 }  // namespace isobar

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-namespace isobar::dps310 {
+namespace isobar {
 
 /// Register access to one device on a bus. Every call returns 0 or an errno value; nothing throws.
 class RegisterBus {
@@ -21,4 +21,4 @@ class RegisterBus {
   virtual int write(std::uint8_t address, std::uint8_t value) noexcept = 0;
 };
 
-}  // namespace isobar::dps310
+}  // namespace isobar

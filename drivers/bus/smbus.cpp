@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/dps310/smbus.hpp"
+#include "drivers/bus/smbus.hpp"
 
 #include <fcntl.h>
 #include <linux/i2c-dev.h>
@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cerrno>
 
-namespace isobar::dps310 {
+namespace isobar {
 
 namespace {
 
@@ -91,4 +91,4 @@ int SmbusDevice::write(std::uint8_t address, std::uint8_t value) noexcept {
   return transfer(file_, I2C_SMBUS_WRITE, address, I2C_SMBUS_BYTE_DATA, data);
 }
 
-}  // namespace isobar::dps310
+}  // namespace isobar

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/barometer/fault_watch.hpp"
+#include "drivers/device/fault_watch.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -24,20 +24,19 @@ void FaultWatch::good(std::int64_t now_ns) noexcept {
   if (good_since_ns_ == 0) good_since_ns_ = now_ns;
   if (now_ns - good_since_ns_ >= kWellNs) wait_ns_ = kFirstWaitNs;
   problem_ = nullptr;
-  status_.state = BarometerState::kMeasuring;
+  status_.state = DeviceState::kMeasuring;
   status_.fault[0] = '\0';
   status_.last_sample_ns = now_ns;
   ++status_.counters.samples;
 }
 
-void FaultWatch::problem(BarometerState state, const char* what, int error) noexcept {
+void FaultWatch::problem(DeviceState state, const char* what, int error) noexcept {
   problem_state_ = state;
   problem_ = what;
   problem_error_ = error;
 }
 
-std::int64_t FaultWatch::fail(BarometerState state, const char* what, std::int64_t now_ns,
-                              int error) noexcept {
+std::int64_t FaultWatch::fail(DeviceState state, const char* what, std::int64_t now_ns, int error) noexcept {
   set_fault(state, what, error);
   const std::int64_t next_ns = now_ns + wait_ns_;
   wait_ns_ = std::min(2 * wait_ns_, kLongestWaitNs);
@@ -46,11 +45,11 @@ std::int64_t FaultWatch::fail(BarometerState state, const char* what, std::int64
 
 std::int64_t FaultWatch::give_up(std::int64_t now_ns) noexcept {
   ++status_.counters.silent;
-  if (problem_ == nullptr) return fail(BarometerState::kSilent, "no new result", now_ns);
+  if (problem_ == nullptr) return fail(DeviceState::kSilent, "no new result", now_ns);
   return fail(problem_state_, problem_, now_ns, problem_error_);
 }
 
-void FaultWatch::set_fault(BarometerState state, const char* what, int error) noexcept {
+void FaultWatch::set_fault(DeviceState state, const char* what, int error) noexcept {
   status_.state = state;
   if (error == 0) {
     std::snprintf(status_.fault.data(), status_.fault.size(), "%s", what);

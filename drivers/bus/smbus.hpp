@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "drivers/dps310/register_bus.hpp"
+#include "drivers/bus/register_bus.hpp"
 
-namespace isobar::dps310 {
+namespace isobar {
 
 /// Device on a kernel I2C bus, /dev/i2c-N. Uses SMBus byte reads and writes, and block reads if the adapter
 /// has them: i2c-stub and the simplest adapters support nothing else.
@@ -32,4 +32,4 @@ class SmbusDevice final : public RegisterBus {
   bool has_block_reads_ = false;
 };
 
-}  // namespace isobar::dps310
+}  // namespace isobar
