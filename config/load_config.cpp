@@ -83,6 +83,12 @@ void load_named_compensation(const LoadedConfig& loaded, const std::string& key,
   named.clear();
 }
 
+/// Makes the path of a file that a key names relative to the folder of its configuration.
+void resolve_path(const LoadedConfig& loaded, const std::string& key, std::string& named) {
+  if (named.empty() || !loaded.origins.contains(key)) return;
+  named = (std::filesystem::path(loaded.origins.at(key).file).parent_path() / named).string();
+}
+
 }  // namespace
 
 LoadedConfig parse_layers(const std::vector<ConfigLayer>& layers) {
@@ -100,6 +106,7 @@ LoadedConfig parse_layers(const std::vector<ConfigLayer>& layers) {
     load_named_compensation(loaded, "base_barometer.compensation_file",
                             config.base_barometer.compensation_file, config.prior.base_compensation);
   });
+  resolve_path(loaded, "lidar.calibration_file", config.lidar.calibration_file);
   check_together(
       config, [&](const std::string& key) { return place_of(loaded, key); }, problems);
   problems.throw_if_any();

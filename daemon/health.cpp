@@ -86,7 +86,8 @@ void HealthMonitor::fill(const StatusSnapshot& now, HealthReport& report) {
 void HealthMonitor::fill_lidar(const StatusSnapshot& now, double elapsed_s, HealthReport& report) const {
   const auto& counters = now.lidar.counters;
   const auto& before = last_.lidar.counters;
-  const double rate_hz = per_second(counters.scans, before.scans, elapsed_s);
+  const double rate_hz =
+      per_second(counters.scans - counters.divided, before.scans - before.divided, elapsed_s);
   const std::string where = "UDP port " + std::to_string(config_.lidar.port);
   if (!now.lidar_waits_for.empty()) {
     add_entry(report, "lidar", HealthLevel::kError, "waiting: " + now.lidar_waits_for, 0.0);
@@ -98,6 +99,11 @@ void HealthMonitor::fill_lidar(const StatusSnapshot& now, double elapsed_s, Heal
         rate_hz);
   } else {
     add_stream(report, "lidar", now.lidar.last_packet_ns, now.now_ns, kSensorSilenceNs, rate_hz, where);
+  }
+  if (now.lidar.sync != LidarSync::kUnknown) {
+    const bool is_faulty = now.lidar.sync == LidarSync::kFault;
+    add_entry(report, "lidar/clock", is_faulty ? HealthLevel::kWarning : HealthLevel::kOk,
+              std::string(kLidarSyncTexts.name(now.lidar.sync)), 0.0);
   }
   add_senders(report, "lidar", now.lidar.sender, now.now_ns, "lidar.sender chooses");
   if (counters.wrong_model > before.wrong_model) {

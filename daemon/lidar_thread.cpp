@@ -75,6 +75,7 @@ void LidarThread::report() noexcept {
   draft_status_.counters = assembler_.counters();
   draft_status_.sender = sender_.status();
   draft_status_.clock_jumped_ns = assembler_.clock_jumped_ns();
+  draft_status_.sync = assembler_.decoder().sync();
   draft_status_.punctuality = deadline_.status();
   draft_status_.dropped_by_kernel = receiver_.dropped_by_kernel();
   status_.put(draft_status_);

@@ -45,6 +45,9 @@ Config with_sensors_of(const recording::Manifest& manifest, Config config) {
   }
   config.lidar.model = manifest.lidar->model;
   config.lidar.port = manifest.lidar->port;
+  if (!manifest.lidar->calibration_file.empty()) {
+    config.lidar.calibration_file = manifest.lidar->calibration_file;
+  }
   if (config.lidar.sender.empty()) config.lidar.sender = manifest.lidar->sender;
   config.lidar.mount = manifest.lidar->mount;
   if (manifest.imu) {

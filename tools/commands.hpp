@@ -29,6 +29,7 @@ void add_record_command(CLI::App& app);     ///< running isobard -> recording
 void add_black_box_command(CLI::App& app);  ///< orders to the black box of the running isobard
 void add_reset_command(CLI::App& app);      ///< asks the running isobard for a new map frame
 void add_echo_command(CLI::App& app);       ///< prints what a DDS subscriber receives
+void add_points_command(CLI::App& app);     ///< capture of a lidar -> points
 void add_keys_command(CLI::App& app);       ///< keys that sign base-station pressure
 
 }  // namespace isobar::tools

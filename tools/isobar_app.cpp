@@ -31,6 +31,7 @@ void add_all_commands(CLI::App& app) {
   add_black_box_command(app);
   add_config_command(app);
   add_reset_command(app);
+  add_points_command(app);
   add_keys_command(app);
 #if ISOBAR_WITH_DDS
   add_echo_command(app);

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 
+#include "core/name_table.hpp"
 #include "core/samples.hpp"
 
 namespace isobar {
@@ -66,6 +67,14 @@ enum class LidarSync : std::uint8_t {
   kLocked,   ///< follows GPS, PPS or PTP
   kFault,    ///< the sensor reports an error of its source
 };
+
+inline constexpr NameTable<LidarSync, 5> kLidarSyncTexts{{{
+    {LidarSync::kUnknown, "not told"},
+    {LidarSync::kFree, "free: it counts from the sensor's start"},
+    {LidarSync::kLocking, "a time source is there, not locked"},
+    {LidarSync::kLocked, "locked to its time source"},
+    {LidarSync::kFault, "its time source is faulty"},
+}}};
 
 /// A lidar model: layout and checks of its packets, geometry, firing times. No I/O, no clock; no allocation
 /// after construction. Points are in the sensor's frame: x at azimuth 0, y left, z up.

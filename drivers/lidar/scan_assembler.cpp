@@ -110,6 +110,7 @@ DecodeResult ScanAssembler::add_in_order(Packet& packet, bool stepped, std::int6
   }
   if (cut < packet.columns.count) {
     if (scan_open_) {
+      counters_.divided += is_full(current, packet.columns.count) ? 1 : 0;
       complete(offset_before_ns, current);
       result.scan_complete = true;
     }

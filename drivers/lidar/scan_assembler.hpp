@@ -37,6 +37,7 @@ struct LidarCounters {
   std::uint64_t clock_steps = 0;  ///< steps of the sensor's or the host's clock
   std::uint64_t returns = 0;      ///< points written
   std::uint64_t scans = 0;        ///< scans completed
+  std::uint64_t divided = 0;  ///< of these, full before their turn ended: more points than Scan::kMaxPoints
 };
 
 /// Assembles the packets of any lidar model into scans of one turn. No I/O, no clock, no allocation after

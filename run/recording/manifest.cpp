@@ -120,7 +120,8 @@ std::optional<LidarEntry> read_lidar(const toml::table& root, ManifestText& text
   if (table == nullptr) {
     return std::nullopt;
   }
-  text.warn_unknown_keys(*table, "lidar.", {"model", "file", "port", "sender", "xyz_m", "rpy_deg"});
+  text.warn_unknown_keys(*table, "lidar.",
+                         {"model", "file", "port", "sender", "calibration_file", "xyz_m", "rpy_deg"});
   LidarEntry lidar;
   const toml::node* model = table->get("model");
   if (model == nullptr || !model->is_string() || model->value<std::string>()->empty()) {
@@ -143,6 +144,10 @@ std::optional<LidarEntry> read_lidar(const toml::table& root, ManifestText& text
       text.fail(*sender, "lidar.sender", "must be an IPv4 address such as \"192.168.1.201\"");
     }
     lidar.sender = *value;
+  }
+  if (const toml::node* calibration = table->get("calibration_file"); calibration != nullptr) {
+    if (!calibration->is_string()) text.fail(*calibration, "lidar.calibration_file", "must name a file");
+    lidar.calibration_file = *calibration->value<std::string>();
   }
   lidar.mount = text.mount(*table, "lidar");
   return lidar;
@@ -188,6 +193,10 @@ toml::table parse_toml(std::string_view text, const std::string& file) {
 std::string triple_text(const Eigen::Vector3d& v) {
   return "[" + text::number_text(v.x()) + ", " + text::number_text(v.y()) + ", " + text::number_text(v.z()) +
          "]";
+}
+
+std::string calibration_text(const LidarEntry& lidar) {
+  return lidar.calibration_file.empty() ? "" : "\ncalibration_file = " + quoted_toml(lidar.calibration_file);
 }
 
 std::string sender_text(const LidarEntry& lidar) {
@@ -263,7 +272,7 @@ std::string manifest_text(const Manifest& manifest) {
     out += "\n[lidar]\nmodel   = " + quoted_toml(manifest.lidar->model) +
            "\nfile    = " + quoted_toml(manifest.lidar->file) +
            "\nport    = " + std::to_string(manifest.lidar->port) + sender_text(*manifest.lidar) +
-           "\nxyz_m   = " + triple_text(manifest.lidar->mount.xyz_m) +
+           calibration_text(*manifest.lidar) + "\nxyz_m   = " + triple_text(manifest.lidar->mount.xyz_m) +
            "\nrpy_deg = " + triple_text(manifest.lidar->mount.rpy_deg) + "\n";
   }
   out += sensor_text("imu", manifest.imu, true, true);

@@ -21,6 +21,9 @@ struct LidarEntry {
   std::string file = "lidar.pcap";
   std::uint16_t port = 2368;  ///< UDP destination port of the data packets
   std::string sender;         ///< IPv4 address of the lidar; empty: the first sender in the file
+  /// The sensor's own calibration (Ouster's metadata, angles of Hesai and RoboSense); empty: none. A relative path
+  /// starts at the recording's folder.
+  std::string calibration_file;
   Mount mount;
 };
 

@@ -241,6 +241,10 @@ RecordingReader::RecordingReader(const std::filesystem::path& folder, const Read
     : impl_(std::make_unique<Impl>()) {
   impl_->folder = folder;
   impl_->manifest = read_manifest(folder, impl_->warnings);
+  if (impl_->manifest.lidar && !impl_->manifest.lidar->calibration_file.empty()) {
+    std::string& file = impl_->manifest.lidar->calibration_file;
+    file = (folder / file).string();
+  }
   impl_->open_all(options);
 }
 
