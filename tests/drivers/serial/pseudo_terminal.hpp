@@ -15,6 +15,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "drivers/serial/port.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace isobar::test {
@@ -37,6 +38,8 @@ class PseudoTerminal {
       throw std::runtime_error("no pseudo-terminal");
     }
     std::filesystem::create_symlink(name.data(), path());
+    // Raw from the beginning: a terminal's echo would return what the sensor sends before the port is open.
+    if (serial::Port(path(), 9'600).open() != 0) throw std::runtime_error("no raw pseudo-terminal");
   }
   /// As a USB adapter that is pulled: the open port hangs up and its name is gone.
   void unplug() {
