@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cerrno>
 #include <cstdio>
 
@@ -23,9 +22,6 @@ constexpr std::int64_t kPauseNs = 40'000'000;
 constexpr std::int64_t kSilenceNs = 120'000'000;
 /// Limit of the back-off [ns]: a sensor that returns must measure within 2 s.
 constexpr std::int64_t kLongestWaitNs = 500'000'000;
-/// Time after which values whose bits do not change are stuck [ns]: the noise of MEMS sensors moves the last
-/// bits of every sample.
-constexpr std::int64_t kStuckNs = 1'000'000'000;
 /// Interval at which a pressure that does not change is delivered again [ns]: sensors repeat one conversion in
 /// several messages, and a coarse converter repeats its value in calm air.
 constexpr std::int64_t kRepeatNs = 100'000'000;
@@ -34,16 +30,6 @@ constexpr std::int64_t kAfterNs = 1'000'000;
 
 std::int64_t silence_of(int rate_hz) {
   return std::max(kSilenceNs, 4 * std::int64_t{1'000'000'000} / rate_hz);
-}
-
-/// Hash of the bits of the six values, for StuckWatch.
-std::int64_t bits_of(const ImuSample& imu) {
-  std::uint64_t bits = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    bits = std::rotl(bits, 7) ^ std::bit_cast<std::uint64_t>(imu.gyro_rad_s[axis]);
-    bits = std::rotl(bits, 7) ^ std::bit_cast<std::uint64_t>(imu.accel_m_s2[axis]);
-  }
-  return std::bit_cast<std::int64_t>(bits);
 }
 
 ClockAnchorConfig clock_of(const ImuProtocol& protocol) {
@@ -76,7 +62,6 @@ SerialImu::SerialImu(const std::string& name, const std::string& port, int baud,
       protocol_(std::move(protocol)),
       silence_ns_(silence_of(rate_hz)),
       faults_(silence_ns_, kLongestWaitNs),
-      stuck_(kStuckNs),
       anchor_(clock_of(*protocol_)) {}
 
 Device<InertialReading>::Step SerialImu::step(std::int64_t now_ns) noexcept {
@@ -209,17 +194,16 @@ bool SerialImu::take_reading(const ImuEvent& event, std::int64_t now_ns, Step& s
   reading.imu.stamp_ns = reading.pressure.stamp_ns = stamp_ns;
   if (reading.has_pressure) take_pressure(reading);
   if (reading.has_imu) {
-    if (const char* rule = implausibility(reading.imu); rule != nullptr) {
-      ++faults_.counters().implausible;
-      faults_.problem(DeviceState::kImplausible, rule);
-      reading.has_imu = false;
-    } else if (stuck_.add(bits_of(reading.imu), now_ns)) {
-      if (status().state != DeviceState::kStuck) ++faults_.counters().stuck;
-      step.next_ns = fail(DeviceState::kStuck, "the values no longer change", now_ns);
-      return true;
-    } else {
-      newest_good_ns_ = now_ns;
-      faults_.good(now_ns);
+    switch (watch_.judge(reading.imu, now_ns, faults_)) {
+      case InertialWatch::Verdict::kGood:
+        newest_good_ns_ = now_ns;
+        break;
+      case InertialWatch::Verdict::kRefused:
+        reading.has_imu = false;
+        break;
+      case InertialWatch::Verdict::kStuck:
+        step.next_ns = fail(DeviceState::kStuck, "the values no longer change", now_ns);
+        return true;
     }
   }
   if (!reading.has_imu && !reading.has_pressure) return false;

@@ -7,6 +7,7 @@
 
 #include "core/time/clock_anchor.hpp"
 #include "drivers/device/fault_watch.hpp"
+#include "drivers/device/inertial_watch.hpp"
 #include "drivers/serial/imu_protocol.hpp"
 #include "drivers/serial/port.hpp"
 
@@ -55,7 +56,7 @@ class SerialImu final : public Device<InertialReading> {
   std::unique_ptr<ImuProtocol> protocol_;
   std::int64_t silence_ns_;
   FaultWatch faults_;
-  StuckWatch stuck_;
+  InertialWatch watch_;
   ClockAnchor anchor_;
   Phase phase_ = Phase::kClosed;
   int tries_ = 0;
