@@ -17,8 +17,8 @@ namespace isobar::iio {
 
 namespace {
 
-/// Time without a scan that is silence [ns].
-constexpr std::int64_t kSilenceNs = 120'000'000;
+/// Shortest time without a scan that is silence [ns]: with the 0.1 s of isobard's supervision said within 0.2 s.
+constexpr std::int64_t kSilenceNs = 80'000'000;
 /// Limit of the back-off [ns]: a device that returns must measure within 2 s.
 constexpr std::int64_t kLongestWaitNs = 500'000'000;
 /// Largest deviation of the rate that the device holds from the one asked for: rounded in its text.

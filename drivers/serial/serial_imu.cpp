@@ -18,8 +18,9 @@ constexpr int kTries = 3;
 /// Pause after which an incomplete message stays so [ns]: longer than the 16 ms for which an adapter without
 /// the low-latency flag holds bytes back.
 constexpr std::int64_t kPauseNs = 40'000'000;
-/// Shortest time without a measurement that is silence [ns]: above kPauseNs, and said within 0.2 s.
-constexpr std::int64_t kSilenceNs = 120'000'000;
+/// Shortest time without a measurement that is silence [ns]: above kPauseNs, and with the 0.1 s of isobard's
+/// supervision said within 0.2 s.
+constexpr std::int64_t kSilenceNs = 80'000'000;
 /// Limit of the back-off [ns]: a sensor that returns must measure within 2 s.
 constexpr std::int64_t kLongestWaitNs = 500'000'000;
 /// Interval at which a pressure that does not change is delivered again [ns]: sensors repeat one conversion in
@@ -86,7 +87,8 @@ std::int64_t SerialImu::open(std::int64_t now_ns) noexcept {
     ++faults_.counters().io_errors;
     return fail(DeviceState::kNoAnswer, open_fault(error), now_ns, error);
   }
-  faults_.note(port_.low_latency() ? nullptr : "the port has no low-latency mode: bytes may come 16 ms late");
+  faults_.note(port_.low_latency() ? "the port is in low-latency mode"
+                                   : "the port has no low-latency mode: bytes may come 16 ms late");
   protocol_->restart();
   anchor_ = ClockAnchor(clock_of(*protocol_));
   heard_bytes_ = false;

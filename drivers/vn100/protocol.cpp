@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "drivers/serial/serial_imu.hpp"
 #include "drivers/vn100/measurement.hpp"
 #include "drivers/vn100/text_line.hpp"
 
@@ -34,27 +33,6 @@ std::vector<std::uint8_t> header_of(const Settings& settings) {
 }
 
 }  // namespace
-
-int packet_bytes(const Settings& settings) noexcept {
-  constexpr int kFixed = 6 + 8 + 24 + 4 + 4 + 2;  // header, time, Imu, Temp, Pres, CRC
-  return kFixed + (settings.attitude ? 16 : 0);
-}
-
-const char* broken_rule(const Settings& settings) noexcept {
-  if (settings.rate_hz <= 0 || kSensorRateHz % settings.rate_hz != 0) {
-    return "rate_hz must divide the sensor's 800 Hz";
-  }
-  constexpr int kBitsPerByte = 10;
-  const bool fits = packet_bytes(settings) * settings.rate_hz * kBitsPerByte <= settings.baud * 9LL / 10;
-  return fits || !settings.configure
-             ? nullptr
-             : "the packets fill more than 0.9 of the line: raise baud or lower rate_hz";
-}
-
-std::unique_ptr<Device<InertialReading>> make_sensor(const Settings& settings) {
-  return std::make_unique<serial::SerialImu>("VN-100", settings.port, settings.baud, settings.rate_hz,
-                                             std::make_unique<Protocol>(settings));
-}
 
 Protocol::Protocol(const Settings& settings) : configure_(settings.configure) {
   if (!configure_) return;

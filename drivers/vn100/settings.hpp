@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
 #include <string>
-
-#include "drivers/device/device.hpp"
 
 namespace isobar::vn100 {
 
@@ -21,13 +18,21 @@ struct Settings {
 /// Rate of the sensor's own measurements, which the output divides [Hz] (factory setting of ImuRate).
 inline constexpr int kSensorRateHz = 800;
 
-/// Bytes of a packet of the output that is set up.
-[[nodiscard]] int packet_bytes(const Settings& settings) noexcept;
+/// Bytes of a packet of the output that is set up: header, time, Imu, Temp, Pres, CRC; Quaternion.
+[[nodiscard]] constexpr int packet_bytes(const Settings& settings) noexcept {
+  return 6 + 8 + 24 + 4 + 4 + 2 + (settings.attitude ? 16 : 0);
+}
 
 /// The rule that the settings break, nullptr: none. Packets must fill at most 0.9 of the line.
-[[nodiscard]] const char* broken_rule(const Settings& settings) noexcept;
-
-/// @param settings validated: broken_rule() is nullptr
-[[nodiscard]] std::unique_ptr<Device<InertialReading>> make_sensor(const Settings& settings);
+[[nodiscard]] constexpr const char* broken_rule(const Settings& settings) noexcept {
+  if (settings.rate_hz <= 0 || kSensorRateHz % settings.rate_hz != 0) {
+    return "rate_hz must divide the sensor's 800 Hz";
+  }
+  constexpr int kBitsPerByte = 10;
+  const bool fits = packet_bytes(settings) * settings.rate_hz * kBitsPerByte <= settings.baud * 9LL / 10;
+  return fits || !settings.configure
+             ? nullptr
+             : "the packets fill more than 0.9 of the line: raise baud or lower rate_hz";
+}
 
 }  // namespace isobar::vn100

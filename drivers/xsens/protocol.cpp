@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "drivers/serial/serial_imu.hpp"
-
 namespace isobar::xsens {
 
 namespace {
@@ -51,26 +49,6 @@ int rate_in(std::span<const std::uint8_t> held, std::uint16_t id) {
 }
 
 }  // namespace
-
-int message_bytes(const Settings& settings) noexcept {
-  constexpr int kFixed = 5 + 5 + 7 + 15 + 15;  // frame, counter, time, acceleration, rate of turn
-  return kFixed + (settings.attitude ? 19 : 0) + (settings.pressure ? 14 : 0);
-}
-
-const char* broken_rule(const Settings& settings) noexcept {
-  constexpr int kFastestHz = 400;
-  if (settings.rate_hz <= 0 || kFastestHz % settings.rate_hz != 0) return "rate_hz must divide 400 Hz";
-  constexpr int kBitsPerByte = 10;
-  const bool fits = message_bytes(settings) * settings.rate_hz * kBitsPerByte <= settings.baud * 9LL / 10;
-  return fits || !settings.configure
-             ? nullptr
-             : "the messages fill more than 0.9 of the line: raise baud or lower rate_hz";
-}
-
-std::unique_ptr<Device<InertialReading>> make_sensor(const Settings& settings) {
-  return std::make_unique<serial::SerialImu>("Xsens MTi", settings.port, settings.baud, settings.rate_hz,
-                                             std::make_unique<Protocol>(settings));
-}
 
 Protocol::Protocol(const Settings& settings)
     : configure_(settings.configure),

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
 #include <string>
-
-#include "drivers/device/device.hpp"
 
 namespace isobar::xsens {
 
@@ -18,13 +15,21 @@ struct Settings {
   bool attitude = false;  ///< asks for the attitude of the sensor's own filter, too
 };
 
-/// Bytes of a message of the output that is set up.
-[[nodiscard]] int message_bytes(const Settings& settings) noexcept;
+/// Bytes of a message of the output that is set up: frame, counter, time, acceleration, rate of turn; quaternion;
+/// pressure and temperature.
+[[nodiscard]] constexpr int message_bytes(const Settings& settings) noexcept {
+  return 5 + 5 + 7 + 15 + 15 + (settings.attitude ? 19 : 0) + (settings.pressure ? 14 : 0);
+}
 
 /// The rule that the settings break, nullptr: none. Messages must fill at most 0.9 of the line.
-[[nodiscard]] const char* broken_rule(const Settings& settings) noexcept;
-
-/// @param settings validated: broken_rule() is nullptr
-[[nodiscard]] std::unique_ptr<Device<InertialReading>> make_sensor(const Settings& settings);
+[[nodiscard]] constexpr const char* broken_rule(const Settings& settings) noexcept {
+  constexpr int kFastestHz = 400;
+  if (settings.rate_hz <= 0 || kFastestHz % settings.rate_hz != 0) return "rate_hz must divide 400 Hz";
+  constexpr int kBitsPerByte = 10;
+  const bool fits = message_bytes(settings) * settings.rate_hz * kBitsPerByte <= settings.baud * 9LL / 10;
+  return fits || !settings.configure
+             ? nullptr
+             : "the messages fill more than 0.9 of the line: raise baud or lower rate_hz";
+}
 
 }  // namespace isobar::xsens

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "drivers/xsens/message.hpp"
-#include "drivers/xsens/settings.hpp"
+#include "drivers/xsens/sensor.hpp"
 #include "tests/drivers/serial/imu_bench.hpp"
 #include "tests/drivers/serial/pseudo_terminal.hpp"
 #include "tests/drivers/xsens/message_writer.hpp"
