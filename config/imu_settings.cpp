@@ -40,7 +40,8 @@ void add_xsens(xsens::Settings& xsens, std::vector<Setting>& settings) {
   s.number("rate_hz", &xsens.rate_hz, "Hz", 20, 400,
            "Measurements per second, a divisor of 400. 100 is the most of the MTi-1 series.");
   s.flag("configure", xsens.configure,
-         "Whether isobard sets the sensor's output at every start. false: any MTData2 with acceleration and "
+         "Whether isobard sets the sensor's output at the start, which the sensor keeps. false: any MTData2 "
+         "with acceleration and "
          "rate "
          "of turn, or their increments, is taken as it comes.");
   s.flag("pressure", xsens.pressure,

@@ -55,6 +55,7 @@ Protocol::Protocol(const Settings& settings)
       outputs_(outputs_of(settings)),
       go_to_config_(make_message(Id::kGoToConfig, {})),
       go_to_measurement_(make_message(Id::kGoToMeasurement, {})),
+      read_output_(make_message(Id::kSetOutput, {})),  // without data: a request
       set_output_(output_command(outputs_, true)),
       set_output_without_(output_command(outputs_, false)) {}
 
@@ -70,6 +71,8 @@ std::span<const std::uint8_t> Protocol::command() const noexcept {
   switch (stage_) {
     case Stage::kGoToConfig:
       return go_to_config_;
+    case Stage::kReadOutput:
+      return read_output_;
     case Stage::kSetOutput:
       return without_optional_ ? set_output_without_ : set_output_;
     case Stage::kGoToMeasurement:
@@ -84,6 +87,8 @@ const char* Protocol::command_name() const noexcept {
   switch (stage_) {
     case Stage::kGoToConfig:
       return "GoToConfig";
+    case Stage::kReadOutput:
+      return "ReqOutputConfiguration";
     case Stage::kSetOutput:
       return "SetOutputConfiguration";
     case Stage::kGoToMeasurement:
@@ -108,10 +113,15 @@ serial::ImuEvent Protocol::next() noexcept {
       take_error(frame, event);
       break;
     case Id::kGoToConfigAck:
-      answer(Stage::kGoToConfig, Stage::kSetOutput, event);
+      answer(Stage::kGoToConfig, Stage::kReadOutput, event);
       break;
     case Id::kSetOutputAck:
-      if (stage_ == Stage::kSetOutput) event.kind = check_outputs(frame.data);
+      if (stage_ == Stage::kSetOutput) {
+        event.kind = check_outputs(frame.data);
+      } else {
+        answer(Stage::kReadOutput, as_wanted(frame.data) ? Stage::kGoToMeasurement : Stage::kSetOutput,
+               event);
+      }
       break;
     case Id::kGoToMeasurementAck:
       answer(Stage::kGoToMeasurement, Stage::kDone, event);
@@ -144,6 +154,10 @@ void Protocol::take_error(const Frame& frame, serial::ImuEvent& event) noexcept 
   const char* words = error_words(code);
   event.complaint = words != nullptr ? words : "an error of an unknown code";
   if (stage_ == Stage::kDone) return;
+  if (stage_ == Stage::kReadOutput) {
+    answer(Stage::kReadOutput, Stage::kSetOutput, event);  // older firmware cannot be asked
+    return;
+  }
   if (stage_ == Stage::kSetOutput && !without_optional_) {
     without_optional_ = true;  // a model without a barometer
     event.kind = serial::ImuEvent::Kind::kAnswer;
@@ -152,6 +166,15 @@ void Protocol::take_error(const Frame& frame, serial::ImuEvent& event) noexcept 
   std::snprintf(refusal_.data(), refusal_.size(), "refuses %s: error %d, %s", command_name(), code,
                 event.complaint);
   event.kind = serial::ImuEvent::Kind::kRefusal;
+}
+
+bool Protocol::as_wanted(std::span<const std::uint8_t> held) const noexcept {
+  constexpr std::size_t kFrame = 5;  // four bytes before the data, the checksum behind
+  const auto equals = [held](const std::vector<std::uint8_t>& command) {
+    return held.size() + kFrame == command.size() &&
+           std::equal(held.begin(), held.end(), command.begin() + 4);
+  };
+  return equals(set_output_) || equals(set_output_without_);
 }
 
 serial::ImuEvent::Kind Protocol::check_outputs(std::span<const std::uint8_t> held) noexcept {

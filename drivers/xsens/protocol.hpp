@@ -21,8 +21,9 @@ struct Output {
 inline constexpr std::uint16_t kEveryMessage = 0xFFFF;
 
 /// Messages and dialogue of an Xsens MTi: configuration state, output configuration, measurement state. The
-/// acknowledgement of the output holds what the sensor will send and is checked. Nothing is written to the
-/// sensor's permanent memory other than by these commands, and its option flags are left alone.
+/// sensor keeps its output configuration in permanent memory, so that it is read first and written only if it
+/// is another one; the acknowledgement holds what the sensor will send and is checked. The option flags are left
+/// alone.
 class Protocol final : public serial::ImuProtocol {
  public:
   explicit Protocol(const Settings& settings);
@@ -40,16 +41,18 @@ class Protocol final : public serial::ImuProtocol {
   [[nodiscard]] std::int64_t clock_period_ns() const noexcept override { return kClockPeriodNs; }
 
  private:
-  enum class Stage : std::uint8_t { kGoToConfig, kSetOutput, kGoToMeasurement, kDone };
+  enum class Stage : std::uint8_t { kGoToConfig, kReadOutput, kSetOutput, kGoToMeasurement, kDone };
 
   void take_data(const Frame& frame, serial::ImuEvent& event) noexcept;
   void take_error(const Frame& frame, serial::ImuEvent& event) noexcept;
+  /// The data of a message are the outputs that are asked for, or those without the optional ones.
+  [[nodiscard]] bool as_wanted(std::span<const std::uint8_t> held) const noexcept;
   serial::ImuEvent::Kind check_outputs(std::span<const std::uint8_t> held) noexcept;
   void answer(Stage of, Stage next, serial::ImuEvent& event) noexcept;
 
   bool configure_;
   std::vector<Output> outputs_;
-  std::vector<std::uint8_t> go_to_config_, go_to_measurement_;
+  std::vector<std::uint8_t> go_to_config_, go_to_measurement_, read_output_;
   std::vector<std::uint8_t> set_output_, set_output_without_;  ///< all outputs, without the optional ones
   StreamParser parser_;
   SampleReader reader_;

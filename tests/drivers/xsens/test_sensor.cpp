@@ -30,7 +30,6 @@ class SimulatedMti {
     if (!was_plugged_) {
       was_plugged_ = true;
       measuring_ = true;
-      rate_hz_ = 100;
       started_ns_ = next_ns_ = now_ns;
       terminal.send(xsens::make_message(xsens::Id::kWakeUp, {}));
     }
@@ -59,7 +58,8 @@ class SimulatedMti {
   bool has_barometer = true;
   bool drops_unknown = true;  ///< leaves an output out of the acknowledgement; else an error
   int fastest_hz = 400;
-  int error = 0;  ///< of every GoToMeasurement
+  int writes = 0;  ///< of the output configuration
+  int error = 0;   ///< of every GoToMeasurement
 
  private:
   void answer(const Bytes& message) {
@@ -87,7 +87,12 @@ class SimulatedMti {
     }
   }
   void set_output(const Bytes& wanted) {
+    if (wanted.empty()) {  // a request
+      terminal.send(xsens::make_message(xsens::Id::kSetOutputAck, held_));
+      return;
+    }
     Bytes held;
+    ++writes;
     for (std::size_t at = 0; at + 4 <= wanted.size(); at += 4) {
       const int id = wanted[at] << 8 | wanted[at + 1];
       int rate_hz = wanted[at + 2] << 8 | wanted[at + 3];
@@ -101,10 +106,12 @@ class SimulatedMti {
       held.insert(held.end(), {wanted[at], wanted[at + 1], static_cast<std::uint8_t>(rate_hz >> 8),
                                static_cast<std::uint8_t>(rate_hz & 0xFF)});
     }
+    held_ = held;
     terminal.send(xsens::make_message(xsens::Id::kSetOutputAck, held));
   }
 
   Bytes input_;
+  Bytes held_;  ///< output configuration, kept without power
   bool was_plugged_ = false;
   bool measuring_ = false;
   int rate_hz_ = 100;
@@ -184,6 +191,7 @@ TEST_CASE("pulled out, an MTi says so within 0.2 s, and measures within 2 s of i
   robot.bench->run(0.5);
   robot.sensor->terminal.plug();
   CHECK(robot.bench->run_until_state(2.0, DeviceState::kMeasuring));
+  CHECK(robot.sensor->writes == 1);  // it has kept the output, which permanent memory need not take again
 }
 
 TEST_CASE("an MTi that sends but does not hear is told apart from one that is silent") {

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <string>
 #include <thread>
+#include <tuple>
 
 #include "daemon/health.hpp"
 #include "daemon/imu_thread.hpp"
