@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace isobar::vn100 {
@@ -29,7 +30,8 @@ inline constexpr int kSensorRateHz = 800;
     return "rate_hz must divide the sensor's 800 Hz";
   }
   constexpr int kBitsPerByte = 10;
-  const bool fits = packet_bytes(settings) * settings.rate_hz * kBitsPerByte <= settings.baud * 9LL / 10;
+  const std::int64_t bits_per_s = std::int64_t{packet_bytes(settings)} * settings.rate_hz * kBitsPerByte;
+  const bool fits = bits_per_s <= std::int64_t{settings.baud} * 9 / 10;
   return fits || !settings.configure
              ? nullptr
              : "the packets fill more than 0.9 of the line: raise baud or lower rate_hz";

@@ -28,9 +28,8 @@ Eigen::Quaterniond from_euler(const Eigen::Vector3d& rpy_deg) {
 /// Sent column by column.
 Eigen::Quaterniond from_matrix(const DataItem& item) {
   Eigen::Matrix3d matrix;
-  for (int column = 0; column < 3; ++column) {
-    for (int row = 0; row < 3; ++row)
-      matrix(row, column) = item.number(static_cast<std::size_t>(3 * column + row));
+  for (std::size_t i = 0; i < 9; ++i) {
+    matrix(static_cast<Eigen::Index>(i % 3), static_cast<Eigen::Index>(i / 3)) = item.number(i);
   }
   return Eigen::Quaterniond(matrix);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace isobar::xsens {
@@ -26,7 +27,8 @@ struct Settings {
   constexpr int kFastestHz = 400;
   if (settings.rate_hz <= 0 || kFastestHz % settings.rate_hz != 0) return "rate_hz must divide 400 Hz";
   constexpr int kBitsPerByte = 10;
-  const bool fits = message_bytes(settings) * settings.rate_hz * kBitsPerByte <= settings.baud * 9LL / 10;
+  const std::int64_t bits_per_s = std::int64_t{message_bytes(settings)} * settings.rate_hz * kBitsPerByte;
+  const bool fits = bits_per_s <= std::int64_t{settings.baud} * 9 / 10;
   return fits || !settings.configure
              ? nullptr
              : "the messages fill more than 0.9 of the line: raise baud or lower rate_hz";
