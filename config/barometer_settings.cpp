@@ -63,7 +63,8 @@ void add_barometer_section(BarometerSettings& barometer, std::vector<Setting>& s
   s.choice(
        "source", &barometer.source, kBarometerSourceNames.names(),
        "Source of the barometer's samples; those of any other source are refused. datagram: sample datagrams "
-       "by UDP. none: this robot has no barometer; its height is the lidar's. Any other word: a sensor of "
+       "by UDP. none: this robot has no barometer; its height is the lidar's. imu: the barometer within the "
+       "IMU, which imu.source names. Any other word: a sensor of "
        "this machine, which isobard reads itself, set up in the section of that name.")
       .basic();
   s.used_by(UsedBy::kRobot);

@@ -38,7 +38,22 @@ std::string busy_text(const dps310::Settings& settings) {
          " s of measuring in a second, must be below 1; lower a rate or an oversampling";
 }
 
+/// Settings of the IMU's own driver, and of a barometer within it.
+void check_imu(const Config& config, const Requirements& rules) {
+  const ImuSettings& imu = config.imu;
+  const char* broken = imu.source == ImuSource::kVn100   ? vn100::broken_rule(imu.vn100)
+                       : imu.source == ImuSource::kXsens ? xsens::broken_rule(imu.xsens)
+                                                         : nullptr;
+  const char* key = imu.source == ImuSource::kVn100 ? "imu.vn100.rate_hz" : "imu.xsens.rate_hz";
+  rules.require(broken == nullptr, key, broken == nullptr ? "" : broken);
+  const bool has_barometer =
+      config.role == Role::kRobot && (imu.source == ImuSource::kVn100 || imu.source == ImuSource::kXsens);
+  rules.require(config.barometer.source != BarometerSource::kImu || has_barometer, "barometer.source",
+                "must not be \"imu\" without imu.source \"vn100\" or \"xsens\", on a robot");
+}
+
 void check_sensors(const Config& config, const Requirements& rules) {
+  check_imu(config, rules);
   rules.require(config.lidar.min_range_m < config.lidar.max_range_m, "lidar.min_range_m",
                 "must be below lidar.max_range_m");
   rules.require(config.lidar.port != config.input.port || config.role == Role::kBaseStation, "input.port",

@@ -16,6 +16,8 @@
 #include "core/registration/registration_config.hpp"
 #include "drivers/dps310/settings.hpp"
 #include "drivers/iio/settings.hpp"
+#include "drivers/vn100/settings.hpp"
+#include "drivers/xsens/settings.hpp"
 #include "ipc/dds_config.hpp"
 
 namespace isobar {
@@ -49,6 +51,9 @@ struct LidarSettings {
 struct ImuSettings {
   ImuSource source = ImuSource::kDatagram;
   Mount mount;
+  vn100::Settings vn100;
+  xsens::Settings xsens;
+  iio::ImuBufferSettings iio;
   [[nodiscard]] bool present() const { return source != ImuSource::kNone; }
 };
 

@@ -15,6 +15,13 @@ struct Doc {
 constexpr auto kDocs = std::to_array<Doc>({
     {"lidar", "The lidar, as a live run receives it by UDP. A replay takes it from the recording."},
     {"imu", "The IMU. A replay takes its samples and mount from the recording."},
+    {"imu.vn100", "A VectorNav VN-100 on a serial line; used if imu.source is \"vn100\"."},
+    {"imu.xsens",
+     "An Xsens MTi-1, -3, -10, -100 or -300 series on a serial line; used if imu.source is \"xsens\"."},
+    {"imu.iio",
+     "An IMU with a kernel driver (industrial I/O), accelerometer and gyro in one device; used if imu.source "
+     "is "
+     "\"iio\"."},
     {"barometer", "The robot's barometer. A replay takes its samples and mount from the recording."},
     {"barometer.dps310", "A DPS310 on an I2C bus of this machine; used if barometer.source is \"dps310\"."},
     {"barometer.setra278",

@@ -14,6 +14,9 @@ enum class ImuSource : std::uint8_t {
   kDatagram,  ///< sample datagrams by UDP (drivers/datagram)
   kDds,       ///< ROS 2 topic, received by isobar-dds
   kNone,      ///< the robot has none
+  kVn100,     ///< VectorNav VN-100 on a serial line
+  kXsens,     ///< Xsens MTi on a serial line
+  kIio,       ///< IMU of the kernel's industrial I/O
 };
 
 /// [barometer] source
@@ -23,6 +26,7 @@ enum class BarometerSource : std::uint8_t {
   kDps310,    ///< DPS310 or DPS368 on I2C
   kSetra278,  ///< analogue transducer behind a converter of the kernel's industrial I/O
   kIio,       ///< barometer of the kernel's industrial I/O
+  kImu,       ///< barometer within the IMU that this machine reads
 };
 
 /// [wheel] source
@@ -32,18 +36,22 @@ enum class WheelSource : std::uint8_t {
   kNone,      ///< the robot has none, or they are not to be used
 };
 
-inline constexpr NameTable<ImuSource, 3> kImuSourceNames{{{
+inline constexpr NameTable<ImuSource, 6> kImuSourceNames{{{
     {ImuSource::kDatagram, "datagram"},
     {ImuSource::kDds, "dds"},
     {ImuSource::kNone, "none"},
+    {ImuSource::kVn100, "vn100"},
+    {ImuSource::kXsens, "xsens"},
+    {ImuSource::kIio, "iio"},
 }}};
 
-inline constexpr NameTable<BarometerSource, 5> kBarometerSourceNames{{{
+inline constexpr NameTable<BarometerSource, 6> kBarometerSourceNames{{{
     {BarometerSource::kDatagram, "datagram"},
     {BarometerSource::kNone, "none"},
     {BarometerSource::kDps310, "dps310"},
     {BarometerSource::kSetra278, "setra278"},
     {BarometerSource::kIio, "iio"},
+    {BarometerSource::kImu, "imu"},
 }}};
 
 inline constexpr NameTable<WheelSource, 3> kWheelSourceNames{{{

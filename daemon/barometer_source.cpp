@@ -13,6 +13,7 @@ std::unique_ptr<Device<PressureSample>> make_device(const BarometerSettings& set
   switch (settings.source) {
     case BarometerSource::kDatagram:
     case BarometerSource::kNone:
+    case BarometerSource::kImu:  // the ImuThread's
       return nullptr;
     case BarometerSource::kDps310:
       return std::make_unique<dps310::Sensor>(

@@ -30,7 +30,7 @@ BaseStationGraph::BaseStationGraph(const Config& config, const std::string& conf
 }
 
 StationSnapshot BaseStationGraph::status(std::int64_t now_ns) const {
-  return {now_ns, input_.status(), barometer_ ? barometer_->status() : BarometerThreadStatus{},
+  return {now_ns, input_.status(), barometer_ ? barometer_->status() : DeviceThreadStatus{},
           station_.status(), input_.waiting_for()};
 }
 
@@ -42,8 +42,8 @@ std::vector<std::string> BaseStationGraph::waiting_for() const {
   return {input_.waiting_for(), barometer_ ? isobar::waiting_for(barometer_->status()) : std::string{}};
 }
 
-DeviceState BaseStationGraph::barometer_state() const {
-  return barometer_ ? barometer_->status().device.state : DeviceState{};
+DeviceStates BaseStationGraph::device_states() const {
+  return {barometer_ ? barometer_->status().device.state : DeviceState{}};
 }
 
 void BaseStationGraph::apply(const ConfigChange& change) {

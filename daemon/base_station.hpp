@@ -30,7 +30,7 @@ class BaseStationGraph final : public Graph {
 
   [[nodiscard]] WorkerGroup& workers() override { return workers_; }
   [[nodiscard]] std::string inputs() const override;
-  [[nodiscard]] DeviceState barometer_state() const override;
+  [[nodiscard]] DeviceStates device_states() const override;
   [[nodiscard]] std::vector<std::string> waiting_for() const override;
   void fill_health(std::int64_t now_ns, ipc::HealthReport& report) override;
   /// isobar-dds follows at once. All else waits: a base station starts in a second and has no state to lose.

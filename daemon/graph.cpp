@@ -47,7 +47,7 @@ void supervise(Graph& graph, Service& service, Configuration& configuration,
     }
     configuration.poll(graph, service);
     graph.collect();
-    if (!schedule.due(now_ns, graph.barometer_state())) return false;
+    if (!schedule.due(now_ns, graph.device_states())) return false;
     ipc::HealthReport report;
     const bool alive = reporter.fill(now_ns, report);
     publisher.send(report);

@@ -11,9 +11,9 @@
 #include "config/config.hpp"
 #include "config/config_change.hpp"
 #include "daemon/configuration.hpp"
+#include "daemon/report_schedule.hpp"
 #include "daemon/service.hpp"
 #include "daemon/worker_group.hpp"
-#include "drivers/device/device.hpp"
 #include "ipc/topics.hpp"
 
 namespace isobar {
@@ -40,7 +40,7 @@ class Graph {
   [[nodiscard]] virtual std::string inputs() const = 0;
   /// State of the barometer attached to this machine, whose changes are reported at once; kStarting if
   /// there is none.
-  [[nodiscard]] virtual DeviceState barometer_state() const = 0;
+  [[nodiscard]] virtual DeviceStates device_states() const = 0;
   /// What the inputs wait for, a sentence each; empty texts: nothing.
   [[nodiscard]] virtual std::vector<std::string> waiting_for() const { return {}; }
   /// Adds the health entries of all stages. Rates and growth of counters refer to the time since the last

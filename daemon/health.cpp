@@ -11,6 +11,7 @@
 #include "daemon/base_station_health.hpp"
 #include "daemon/health_entries.hpp"
 #include "daemon/health_entry.hpp"
+#include "daemon/imu_source.hpp"
 #include "daemon/input_health.hpp"
 #include "daemon/lidar_sender.hpp"
 #include "daemon/run_health.hpp"
@@ -29,6 +30,7 @@ std::string input_of(const Config& config, datagram::Kind kind) {
   const bool by_dds = (kind == Kind::kImu && config.imu.source == ImuSource::kDds) ||
                       (kind == Kind::kWheel && config.wheel.source == WheelSource::kDds);
   if (by_dds) return "DDS";
+  if (kind == Kind::kPressure && config.barometer.source == BarometerSource::kImu) return "the IMU";
   const bool both = kind == Kind::kBasePressure && config.dds.receive_base_pressure;
   return "UDP port " + std::to_string(config.input.port) + (both ? " or over DDS" : "");
 }
@@ -137,7 +139,10 @@ void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, He
     } else if (which == datagram::Kind::kWheel && !config_.wheel.present()) {
       add_absent(report, kNames[kind], "wheel.source", now.samples.refused[kind]);
     } else if (which == datagram::Kind::kPressure && now.barometer.present) {
-      add_barometer_device(report, config_.barometer, now.barometer, last_.barometer, now.now_ns, rate_hz);
+      add_device(report, kNames[kind], barometer_period_ns(config_.barometer), now.barometer, last_.barometer,
+                 now.now_ns, rate_hz);
+    } else if (which == datagram::Kind::kImu && now.imu.present) {
+      add_device(report, kNames[kind], imu_period_ns(config_.imu), now.imu, last_.imu, now.now_ns, rate_hz);
     } else if (which == datagram::Kind::kBasePressure) {
       fill_base_stations(now, report);
     } else {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "config/config.hpp"
-#include "daemon/barometer_thread.hpp"
+#include "daemon/device_thread.hpp"
 #include "daemon/lidar_thread.hpp"
 #include "daemon/map_thread.hpp"
 #include "daemon/mount_news.hpp"
@@ -25,7 +25,8 @@ struct StatusSnapshot {
   std::int64_t now_ns = 0;  ///< robot clock
   LidarStatus lidar;
   SampleThreadStatus samples;
-  BarometerThreadStatus barometer;
+  DeviceThreadStatus imu;
+  DeviceThreadStatus barometer;
   PriorStatus prior;
   RegistrationStatus registration;
   MapStatus map;

@@ -11,17 +11,12 @@ namespace isobar {
 using ipc::HealthLevel;
 using ipc::HealthReport;
 
-namespace {
-
-/// Sampling period of a barometer attached to this machine.
-std::int64_t period_ns(const BarometerSettings& barometer) {
+std::int64_t barometer_period_ns(const BarometerSettings& barometer) {
   const int rate_hz = barometer.source == BarometerSource::kDps310     ? barometer.dps310.pressure_rate_hz
                       : barometer.source == BarometerSource::kSetra278 ? barometer.setra278.device.rate_hz
                                                                        : barometer.iio.rate_hz;
   return 1'000'000'000 / rate_hz;
 }
-
-}  // namespace
 
 double per_second(std::uint64_t now, std::uint64_t before, double elapsed_s) {
   return elapsed_s > 0.0 ? static_cast<double>(now - before) / elapsed_s : 0.0;
@@ -78,33 +73,39 @@ void add_absent(HealthReport& report, const std::string& name, const char* key, 
   }
 }
 
-void add_barometer_device(HealthReport& report, const BarometerSettings& settings,
-                          const BarometerThreadStatus& now, const BarometerThreadStatus& before,
-                          std::int64_t now_ns, double rate_hz) {
+void add_device(HealthReport& report, const std::string& name, std::int64_t period_ns,
+                const DeviceThreadStatus& now, const DeviceThreadStatus& before, std::int64_t now_ns,
+                double rate_hz) {
   const DeviceStatus& device = now.device;
   const std::string place = now.place.data();
   const std::int64_t age_ns = now_ns - device.last_sample_ns;
   if (device.state == DeviceState::kStarting) {
-    add_entry(report, "barometer", HealthLevel::kStale, place + ": starting", 0.0);
+    add_entry(report, name, HealthLevel::kStale, place + ": starting", 0.0);
   } else if (device.state != DeviceState::kMeasuring) {
-    add_entry(report, "barometer", HealthLevel::kError, place + ": " + device.fault.data(), 0.0);
-  } else if (age_ns > kSensorSilenceNs + period_ns(settings)) {
+    add_entry(report, name, HealthLevel::kError, place + ": " + device.fault.data(), 0.0);
+  } else if (age_ns > kSensorSilenceNs + period_ns) {
     // The thread hangs in the kernel or gets no processor time.
-    add_entry(report, "barometer", HealthLevel::kError,
+    add_entry(report, name, HealthLevel::kError,
               fmt::format("{}: silent for {:.0f} s", place, static_cast<double>(age_ns) * 1e-9), 0.0);
   } else {
-    add_entry(report, "barometer", HealthLevel::kOk, fmt::format("{:.1f} per second from {}", rate_hz, place),
+    add_entry(report, name, HealthLevel::kOk, fmt::format("{:.1f} per second from {}", rate_hz, place),
               rate_hz);
   }
+  if (device.note[0] != '\0') add_entry(report, name + "/note", HealthLevel::kOk, device.note.data(), 0.0);
   const DeviceCounters& earlier = before.device.counters;
-  add_count(report, "barometer/io_errors", device.counters.io_errors, earlier.io_errors,
-            "accesses that failed");
-  add_count(report, "barometer/resets", device.counters.resets, earlier.resets,
-            "resets of the sensor: it lost its settings, check its power supply");
-  add_count(report, "barometer/implausible", device.counters.implausible, earlier.implausible,
-            "readings outside of the range of air pressure, refused");
-  add_count(report, "barometer/no_memory", now.samples_without_memory, before.samples_without_memory,
-            "samples dropped: no free chunk of shared memory");
+  const auto count = [&](const char* what, std::uint64_t value, std::uint64_t value_before,
+                         const char* sentence) {
+    add_count(report, (name + what).c_str(), value, value_before, sentence);
+  };
+  count("/io_errors", device.counters.io_errors, earlier.io_errors, "accesses that failed");
+  count("/resets", device.counters.resets, earlier.resets,
+        "resets of the sensor: it lost its settings, check its power supply");
+  count("/implausible", device.counters.implausible, earlier.implausible,
+        "readings outside of the plausible range, refused");
+  count("/corrupt", device.counters.corrupt, earlier.corrupt,
+        "messages with a wrong checksum, refused: line too long, or another baud rate?");
+  count("/no_memory", now.samples_without_memory, before.samples_without_memory,
+        "samples dropped: no free chunk of shared memory");
 }
 
 void add_calibration(HealthReport& report, const std::string& sensor, std::uint64_t outside,

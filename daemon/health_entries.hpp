@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "config/config.hpp"
-#include "daemon/barometer_thread.hpp"
 #include "daemon/deadline.hpp"
+#include "daemon/device_thread.hpp"
 #include "daemon/level_changes.hpp"
 #include "daemon/sample_thread.hpp"
 #include "ipc/topics.hpp"
@@ -53,10 +53,15 @@ void add_absent(ipc::HealthReport& report, const std::string& name, const char* 
 void add_stream(ipc::HealthReport& report, const std::string& name, std::int64_t last_ns, std::int64_t now_ns,
                 std::int64_t silence_ns, double rate_hz, const std::string& where, bool expected = true);
 
-/// Entries of a barometer attached to this machine.
-void add_barometer_device(ipc::HealthReport& report, const BarometerSettings& settings,
-                          const BarometerThreadStatus& now, const BarometerThreadStatus& before,
-                          std::int64_t now_ns, double rate_hz);
+/// Entries of a sensor that this machine reads.
+/// @param name of the main entry, "barometer"
+/// @param period_ns interval of its samples
+void add_device(ipc::HealthReport& report, const std::string& name, std::int64_t period_ns,
+                const DeviceThreadStatus& now, const DeviceThreadStatus& before, std::int64_t now_ns,
+                double rate_hz);
+
+/// Interval of the samples of the barometer that barometer.source names, if this machine reads it [ns].
+[[nodiscard]] std::int64_t barometer_period_ns(const BarometerSettings& barometer);
 
 /// Counters of the samples outside of the calibrated range and of those without the temperature that the
 /// calibration needs.

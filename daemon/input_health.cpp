@@ -108,11 +108,11 @@ void add_system_clock(ipc::HealthReport& report, const SystemClockWatch& system,
             static_cast<double>(system.steps()));
 }
 
-std::string waiting_for(const BarometerThreadStatus& barometer) {
-  const DeviceState state = barometer.device.state;
+std::string waiting_for(const DeviceThreadStatus& sensor) {
+  const DeviceState state = sensor.device.state;
   const bool waits = state == DeviceState::kNoAnswer || state == DeviceState::kWrongDevice;
-  if (!barometer.present || !waits) return {};
-  return std::string(barometer.place.data()) + ": " + barometer.device.fault.data();
+  if (!sensor.present || !waits) return {};
+  return std::string(sensor.place.data()) + ": " + sensor.device.fault.data();
 }
 
 void add_starts_over(ipc::HealthReport& report, const StartOver& start_over, std::int64_t now_ns) {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/time/system_clock_watch.hpp"
-#include "daemon/barometer_thread.hpp"
+#include "daemon/device_thread.hpp"
 #include "daemon/path_choice.hpp"
 #include "daemon/sample_input.hpp"
 #include "daemon/start_over.hpp"
@@ -36,8 +36,8 @@ void add_paths(ipc::HealthReport& report, const std::string& name, const PathSta
 /// warning for kSenderMemoryNs after a step.
 void add_system_clock(ipc::HealthReport& report, const SystemClockWatch& system, std::int64_t now_ns);
 
-/// What a barometer of this machine waits for, see Graph::waiting_for(); empty: nothing.
-[[nodiscard]] std::string waiting_for(const BarometerThreadStatus& barometer);
+/// What a sensor that this machine reads waits for, see Graph::waiting_for(); empty: nothing.
+[[nodiscard]] std::string waiting_for(const DeviceThreadStatus& sensor);
 
 /// Adds the entry "input/starts_over": absent before the first one; a warning for kSenderMemoryNs.
 void add_starts_over(ipc::HealthReport& report, const StartOver& start_over, std::int64_t now_ns);

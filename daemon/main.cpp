@@ -23,6 +23,7 @@
 #include "daemon/configuration.hpp"
 #include "daemon/graph.hpp"
 #include "daemon/health.hpp"
+#include "daemon/imu_source.hpp"
 #include "daemon/input_health.hpp"
 #include "daemon/lidar_thread.hpp"
 #include "daemon/logging.hpp"
@@ -61,6 +62,7 @@ class RobotGraph final : public Graph {
         registration_(stages_, map_.snapshots(), scan_queue_config(config.realtime),
                       scheduling_.registration),
         prior_(stages_.prior, scheduling_.prior),
+        imu_(make_imu_thread(config, scheduling_.imu)),
         barometer_(make_barometer_thread(config.barometer, scheduling_.barometer)),
         samples_(config.input.address, config.input.port,
                  {.imu = config.imu.source == ImuSource::kDatagram,
@@ -84,8 +86,9 @@ class RobotGraph final : public Graph {
     workers_.add(registration_.worker());
     workers_.add(prior_.worker());
     workers_.add(samples_.worker());
-    // Not watched: it can hang only in the kernel, which a restart does not cure, and poses continue without
-    // it.
+    // Not watched: they can hang only in the kernel, which a restart does not cure, and poses continue without
+    // them.
+    if (imu_) workers_.add(imu_->worker(), Watch::kNo);
     if (barometer_) workers_.add(barometer_->worker(), Watch::kNo);
     workers_.add(lidar_.worker());
   }
@@ -106,7 +109,8 @@ class RobotGraph final : public Graph {
     return {now_ns,
             lidar_.status(),
             samples_.status(),
-            barometer_ ? barometer_->status() : BarometerThreadStatus{},
+            imu_ ? imu_->status() : DeviceThreadStatus{},
+            barometer_ ? barometer_->status() : DeviceThreadStatus{},
             prior_.status(),
             registration_.status(),
             map_.status(),
@@ -120,11 +124,13 @@ class RobotGraph final : public Graph {
     return fmt::format("lidar {} on UDP port {}, samples on UDP port {}", config_.lidar.model, lidar_.port(),
                        samples_.port());
   }
-  [[nodiscard]] DeviceState barometer_state() const override {
-    return barometer_ ? barometer_->status().device.state : DeviceState{};
+  [[nodiscard]] DeviceStates device_states() const override {
+    return {barometer_ ? barometer_->status().device.state : DeviceState{},
+            imu_ ? imu_->status().device.state : DeviceState{}};
   }
   [[nodiscard]] std::vector<std::string> waiting_for() const override {
     return {lidar_.waiting_for(), samples_.waiting_for(),
+            imu_ ? isobar::waiting_for(imu_->status()) : std::string{},
             barometer_ ? isobar::waiting_for(barometer_->status()) : std::string{}};
   }
   void fill_health(std::int64_t now_ns, ipc::HealthReport& report) override {
@@ -167,6 +173,7 @@ class RobotGraph final : public Graph {
   MapThread map_;
   RegistrationThread registration_;
   PriorThread prior_;
+  std::unique_ptr<ImuThread> imu_;
   std::unique_ptr<BarometerThread> barometer_;
   SampleThread samples_;
   LidarThread lidar_;

@@ -8,6 +8,7 @@ RobotScheduling robot_scheduling(const RealtimeSettings& realtime) {
   return {
       {"lidar", fifo(realtime.lidar_priority), realtime.estimator_cpus, realtime.lidar_deadline_ms},
       {"inertial", fifo(realtime.inertial_priority), realtime.estimator_cpus},
+      {"imu", fifo(realtime.inertial_priority), realtime.estimator_cpus},
       {"barometer", fifo(realtime.inertial_priority), realtime.estimator_cpus},
       {"prior", fifo(realtime.prior_priority), realtime.estimator_cpus, realtime.prior_deadline_ms},
       {"registration", fifo(realtime.registration_priority), realtime.estimator_cpus,

@@ -23,7 +23,8 @@ void add_barometer(const StationSnapshot& now, const StationSnapshot& before, co
   const double rate_hz = per_second(station.samples, before.station.samples, elapsed_s);
   const std::int64_t unchanged_ns = station.cadence.last_ns() - station.changed_ns;
   if (now.barometer.present) {
-    add_barometer_device(report, config.barometer, now.barometer, before.barometer, now.now_ns, rate_hz);
+    add_device(report, "barometer", barometer_period_ns(config.barometer), now.barometer, before.barometer,
+               now.now_ns, rate_hz);
   } else if (unchanged_ns > stuck_ns && !station.cadence.silent(now.now_ns)) {
     add_entry(report, "barometer", HealthLevel::kError,
               fmt::format("stuck: {:.3f} Pa for {:.0f} s", station.newest.pressure_pa,

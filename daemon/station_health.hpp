@@ -5,7 +5,7 @@
 #include <string>
 
 #include "config/config.hpp"
-#include "daemon/barometer_thread.hpp"
+#include "daemon/device_thread.hpp"
 #include "daemon/sample_thread.hpp"
 #include "daemon/station_thread.hpp"
 #include "ipc/topics.hpp"
@@ -16,7 +16,7 @@ namespace isobar {
 struct StationSnapshot {
   std::int64_t now_ns = 0;  ///< robot clock
   SampleThreadStatus input;
-  BarometerThreadStatus barometer;
+  DeviceThreadStatus barometer;
   StationStatus station;
   std::string input_waits_for{};  ///< see UdpReceiver::waiting_for()
 };

@@ -51,8 +51,10 @@ std::array<std::uint64_t, datagram::kKinds> rejected(const StatusSnapshot& now) 
   const std::uint64_t pressure_refused =
       used.pressure_bad_value + used.pressure_bad_time + now.barometer.device.counters.implausible;
   const auto& refused = now.samples.refused;
-  return {used.imu_bad_value + used.imu_bad_time + refused[0], pressure_refused + refused[1],
-          base_refused + refused[2], used.wheel_bad_value + used.wheel_bad_time + refused[3]};
+  const std::uint64_t imu_refused =
+      used.imu_bad_value + used.imu_bad_time + now.imu.device.counters.implausible;
+  return {imu_refused + refused[0], pressure_refused + refused[1], base_refused + refused[2],
+          used.wheel_bad_value + used.wheel_bad_time + refused[3]};
 }
 
 void add_samples(const StatusSnapshot& now, const StatusSnapshot& before, double elapsed_s,

@@ -37,6 +37,7 @@ struct DeviceCounters {
 struct DeviceStatus {
   DeviceState state = DeviceState::kStarting;
   std::array<char, 96> fault{};     ///< fault text; empty while measuring
+  std::array<char, 96> note{};      ///< what limits the device while it works, in words; empty: nothing
   std::int64_t last_sample_ns = 0;  ///< robot clock; 0: none yet
   DeviceCounters counters;
 };

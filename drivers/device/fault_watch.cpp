@@ -39,7 +39,7 @@ void FaultWatch::problem(DeviceState state, const char* what, int error) noexcep
 std::int64_t FaultWatch::fail(DeviceState state, const char* what, std::int64_t now_ns, int error) noexcept {
   set_fault(state, what, error);
   const std::int64_t next_ns = now_ns + wait_ns_;
-  wait_ns_ = std::min(2 * wait_ns_, kLongestWaitNs);
+  wait_ns_ = std::min(2 * wait_ns_, longest_wait_ns_);
   return next_ns;
 }
 
@@ -47,6 +47,10 @@ std::int64_t FaultWatch::give_up(std::int64_t now_ns) noexcept {
   ++status_.counters.silent;
   if (problem_ == nullptr) return fail(DeviceState::kSilent, "no new result", now_ns);
   return fail(problem_state_, problem_, now_ns, problem_error_);
+}
+
+void FaultWatch::note(const char* what) noexcept {
+  std::snprintf(status_.note.data(), status_.note.size(), "%s", what != nullptr ? what : "");
 }
 
 void FaultWatch::set_fault(DeviceState state, const char* what, int error) noexcept {

@@ -37,10 +37,17 @@ class StuckWatch {
   std::uint64_t equal_ = 0;
 };
 
-/// State, fault text, counters, and the back-off before the next try: 0.1 s, doubled up to 4 s.
+/// State, fault text, counters, and the back-off before the next try: 0.1 s, doubled up to a limit.
 class FaultWatch {
  public:
-  explicit FaultWatch(std::int64_t silence_ns) : silence_ns_(silence_ns) {}
+  /// Limit of the back-off [ns]: shorter than the silence after which a thread counts as hung (WorkerGroup,
+  /// 5 s).
+  static constexpr std::int64_t kLongestWaitNs = 4'000'000'000;
+
+  /// @param longest_wait_ns limit of the back-off, at most kLongestWaitNs; short where a sensor must be back
+  ///         soon after its return and a try costs little
+  explicit FaultWatch(std::int64_t silence_ns, std::int64_t longest_wait_ns = kLongestWaitNs)
+      : silence_ns_(silence_ns), longest_wait_ns_(longest_wait_ns) {}
 
   /// An initialisation begins.
   void starts(std::int64_t now_ns) noexcept;
@@ -62,17 +69,18 @@ class FaultWatch {
 
   [[nodiscard]] const DeviceStatus& status() const noexcept { return status_; }
   [[nodiscard]] DeviceCounters& counters() noexcept { return status_.counters; }
+  /// Sets DeviceStatus::note; nullptr: none.
+  void note(const char* what) noexcept;
 
  private:
   void set_fault(DeviceState state, const char* what, int error) noexcept;
 
   static constexpr std::int64_t kFirstWaitNs = 100'000'000;
-  /// Shorter than the silence after which a thread counts as hung (WorkerGroup, 5 s).
-  static constexpr std::int64_t kLongestWaitNs = 4'000'000'000;
   /// Duration of good results after which the back-off starts again at kFirstWaitNs.
   static constexpr std::int64_t kWellNs = 2'000'000'000;
 
   std::int64_t silence_ns_;
+  std::int64_t longest_wait_ns_;
   std::int64_t newest_good_ns_ = 0;
   std::int64_t good_since_ns_ = 0;
   std::int64_t wait_ns_ = kFirstWaitNs;

@@ -13,6 +13,14 @@ struct Settings {
   int rate_hz = 10;  ///< polling rate
 };
 
+/// Location of an IMU with a kernel driver, and how its buffer is set up.
+struct ImuBufferSettings {
+  std::string folder = "/sys/bus/iio/devices/iio:device0";
+  std::string device;   ///< "/dev/iio:device0"; empty: in /dev, named as the folder
+  std::string trigger;  ///< name of the trigger of the buffer; empty: the driver's own
+  int rate_hz = 200;    ///< one that the device offers
+};
+
 /// Location and span of a Setra 278 behind a converter.
 struct SetraSettings {
   Settings device;

@@ -208,6 +208,23 @@ TEST_CASE("Impossible rates of a barometer are refused if that barometer is in u
   fails("[barometer]\nsource = \"bmp280\"\n", "must be one of datagram, none, dps310, setra278, iio");
 }
 
+TEST_CASE("An IMU on a serial line needs a line that carries its rate, and its barometer needs the IMU") {
+  const Config config = parse_config(
+      "imu.source = \"vn100\"\nbarometer.source = \"imu\"\nimu.vn100.port = \"/dev/imu\"", "c.toml");
+  CHECK(config.imu.source == ImuSource::kVn100);
+  CHECK(config.imu.vn100.port == "/dev/imu");
+  CHECK(config.barometer.source == BarometerSource::kImu);
+  fails("[imu]\nsource = \"vn100\"\n[imu.vn100]\nrate_hz = 400\n",
+        "c.toml:4:11: imu.vn100.rate_hz: the packets fill more than 0.9 of the line: raise baud or lower "
+        "rate_hz");
+  fails("[imu]\nsource = \"vn100\"\n[imu.vn100]\nrate_hz = 300\n", "must divide the sensor's 800 Hz");
+  fails("[imu]\nsource = \"xsens\"\n[imu.xsens]\nrate_hz = 200\n", "imu.xsens.rate_hz: the messages fill");
+  CHECK(parse_config("[imu.xsens]\nrate_hz = 200\n", "c.toml").imu.xsens.rate_hz == 200);  // not in use
+  fails("[barometer]\nsource = \"imu\"\n",
+        "must not be \"imu\" without imu.source \"vn100\" or \"xsens\", on a robot");
+  fails("[imu]\nsource = \"iio\"\n[barometer]\nsource = \"imu\"\n", "must not be \"imu\" without");
+}
+
 TEST_CASE("A base station is configured in three lines, and only the keys it uses are shown") {
   const Config base = parse_config("role = \"base-station\"\n[dds]\nbase_station = \"roof\"\n", "c.toml");
   CHECK(base.role == Role::kBaseStation);
@@ -255,7 +272,7 @@ TEST_CASE("Basic settings are shown first, and with --basic alone") {
     CHECK(all.find("\n" + setting.key + " = ") != std::string::npos);
     basic_settings += is_basic ? 1 : 0;
   }
-  CHECK(basic_settings == 17);
+  CHECK(basic_settings == 19);
   CHECK_NOTHROW(parse_config(basic, "c.toml"));
 }
 

@@ -28,7 +28,7 @@ class NotingGraph final : public Graph {
   void stop() override {}
   WorkerGroup& workers() override { return workers_; }
   std::string inputs() const override { return {}; }
-  DeviceState barometer_state() const override { return {}; }
+  DeviceStates device_states() const override { return {}; }
   void fill_health(std::int64_t /*now_ns*/, ipc::HealthReport& /*report*/) override {}
   Apply apply_of(const Setting& setting) const override { return setting.apply; }
   void apply(const ConfigChange& change) override {

@@ -21,7 +21,7 @@ class TalkativeGraph final : public Graph {
   void stop() override {}
   WorkerGroup& workers() override { return workers_; }
   std::string inputs() const override { return {}; }
-  DeviceState barometer_state() const override { return {}; }
+  DeviceStates device_states() const override { return {}; }
   void fill_health(std::int64_t /*now_ns*/, ipc::HealthReport& report) override {
     for (int i = 0; i < entries_; ++i) add_entry(report, "stage", ipc::HealthLevel::kOk, "", i);
   }
@@ -102,14 +102,15 @@ TEST_CASE("parts of the program add entries of their own") {
   CHECK(std::string(report.entries[0].message) == "disk: full");
 }
 
-TEST_CASE("health is reported once a second, and at once when the barometer fails or recovers") {
+TEST_CASE("health is reported once a second, and at once when a sensor read here fails or recovers") {
   ReportSchedule schedule;
   std::int64_t now_ns = 5'000'000'000;
   int reports = 0;
-  const auto tick = [&](DeviceState state, int times) {
+  DeviceState imu = DeviceState::kMeasuring;
+  const auto tick = [&](DeviceState barometer, int times) {
     for (int i = 0; i < times; ++i) {
       now_ns += 100'000'000;
-      reports += schedule.due(now_ns, state) ? 1 : 0;
+      reports += schedule.due(now_ns, {barometer, imu}) ? 1 : 0;
     }
   };
   tick(DeviceState::kMeasuring, 10);
@@ -122,6 +123,9 @@ TEST_CASE("health is reported once a second, and at once when the barometer fail
   CHECK(reports == 2);
   tick(DeviceState::kSilent, 30);
   CHECK(reports == 5);
+  imu = DeviceState::kNoAnswer;
+  tick(DeviceState::kSilent, 1);
+  CHECK(reports == 6);
 }
 
 }  // namespace isobar::test::test_health_reporter

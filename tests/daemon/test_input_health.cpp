@@ -161,7 +161,7 @@ TEST_CASE("An input that starts over is a warning in the report, counted") {
 }
 
 TEST_CASE("A barometer of this machine whose device file is missing is waited for, and said so") {
-  BarometerThreadStatus barometer;
+  DeviceThreadStatus barometer;
   CHECK(waiting_for(barometer).empty());
   barometer.present = true;
   std::string("DPS310 on /dev/i2c-1 at 0x77").copy(barometer.place.data(), barometer.place.size() - 1);

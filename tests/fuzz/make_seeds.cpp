@@ -15,6 +15,8 @@
 #include "tests/drivers/hesai/packet_builder.hpp"
 #include "tests/drivers/robosense/packet_builder.hpp"
 #include "tests/drivers/velodyne/packet_builder.hpp"
+#include "tests/drivers/vn100/packet_writer.hpp"
+#include "tests/drivers/xsens/message_writer.hpp"
 
 namespace {
 
@@ -88,6 +90,24 @@ void lidar_seeds() {
   }
 }
 
+void imu_seeds() {
+  std::string vn100(1, '\x20');
+  std::string xsens(1, '\x20');
+  for (int n = 0; n < 5; ++n) {
+    const auto packet = test::own_packet(static_cast<std::uint64_t>(n) * 5'000'000);
+    vn100.append(packet.begin(), packet.end());
+    vn100 += "$VNRRG,5,9600*65\r\n$GPRMC,000012.800,V,,,,,0.00,0.00,060180,,,N*49\r\n";
+    const auto message =
+        test::own_message(static_cast<std::uint16_t>(n), static_cast<std::uint32_t>(n) * 100, 0.25, 101'000);
+    xsens.append(message.begin(), message.end());
+    const auto other =
+        test::MessageWriter().numbers(0x2032, {1, 2, 3}).numbers(0x4011, {1, 2, 3}).finish(true);
+    xsens.append(other.begin(), other.end());
+  }
+  save("fuzz_vn100", "stream", vn100);
+  save("fuzz_xsens", "stream", xsens);
+}
+
 void recording_seeds() {
   const auto folder = root / "recording";
   std::filesystem::remove_all(folder);
@@ -145,6 +165,7 @@ int main(int count, char** arguments) {
   }
   root = arguments[1];
   lidar_seeds();
+  imu_seeds();
   recording_seeds();
   tile_store_seeds();
   save("fuzz_toml", "config", show_config(Config{}));

@@ -58,7 +58,7 @@ pids+=("$daemon")
 wait_for 'ready:' "$work/iio.log"
 wait_for "info: barometer: .* per second from barometer $device" "$work/iio.log"
 printf 'baro,%d,0,99000,20\n' 1 2 3 >/dev/udp/127.0.0.1/17373
-wait_for 'warning: barometer/refused: baro lines refused: barometer.source is not input' "$work/iio.log"
+wait_for 'warning: barometer/refused: baro lines refused: barometer.source is not datagram' "$work/iio.log"
 rm "$work/run" # the value freezes
 wait_for "error: barometer: barometer $device: the value no longer changes" "$work/iio.log"
 stop "$daemon"

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "drivers/device/device.hpp"
+#include "drivers/xsens/settings.hpp"
+
+namespace isobar::xsens {
+
+/// @param settings validated: broken_rule() is nullptr
+[[nodiscard]] std::unique_ptr<Device<InertialReading>> make_sensor(const Settings& settings);
+
+}  // namespace isobar::xsens
