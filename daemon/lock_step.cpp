@@ -20,7 +20,8 @@ LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileStorag
       map_(settings.map, settings.T_base_lidar, storage),
       filling_(std::make_unique<Scan>()),
       queue_(kLockStepQueue),
-      has_imu_(settings.prior.has_imu) {}
+      has_imu_(settings.prior.has_imu),
+      uses_wheels_(settings.uses_wheels) {}
 
 void LockStep::continue_from(const RunStart& start, const std::filesystem::path& map_folder) {
   prior_estimator_.resume(start.datum);
@@ -49,7 +50,7 @@ void LockStep::handle(const recording::Event& event) {
       prior_estimator_.add_base_pressure(event.pressure);
       break;
     case recording::EventKind::kWheel:
-      prior_estimator_.add_wheel(event.wheel);
+      if (uses_wheels_) prior_estimator_.add_wheel(event.wheel);
       break;
   }
 }

@@ -69,6 +69,7 @@ class LockStep {
   RegisteredScan registered_;
   std::uint64_t scans_ = 0;
   bool has_imu_;
+  bool uses_wheels_;
   PriorPace pace_;  ///< without an IMU
 };
 

@@ -24,6 +24,7 @@ StageSettings stage_settings(const Config& config) {
   settings.lidar.max_range_m = config.lidar.max_range_m;
   settings.lidar.mask_start_deg = config.lidar.mask_start_deg;
   settings.lidar.mask_end_deg = config.lidar.mask_end_deg;
+  settings.uses_wheels = config.wheel.present();
   settings.prior = config.prior;
   settings.prior.has_imu = config.imu.present();
   settings.prior.T_base_imu = config.imu.mount.T_base_sensor();
@@ -57,12 +58,12 @@ Config with_sensors_of(const recording::Manifest& manifest, Config config) {
   if (manifest.imu) {
     config.imu.mount = manifest.imu->mount;
   } else {
-    config.imu.source = kNoSensor;
+    config.imu.source = ImuSource::kNone;
   }
   if (manifest.barometer) {
     config.barometer.mount = manifest.barometer->mount;
   } else {
-    config.barometer.source = kNoSensor;
+    config.barometer.source = BarometerSource::kNone;
   }
   return config;
 }

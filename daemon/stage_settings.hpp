@@ -19,6 +19,7 @@ namespace isobar {
 struct StageSettings {
   velodyne::VelodyneConfig lidar;
   std::string lidar_sender;  ///< see LidarSender
+  bool uses_wheels = true;   ///< wheel.source is not none
   PriorConfig prior;
   RegistrationConfig registration;
   MapConfig map;

@@ -72,7 +72,7 @@ TEST_CASE("a barometer with a kernel driver is proposed; other devices with a dr
   machine.add("sys/bus/iio/devices/iio:device1/in_pressure_input", "101.3\n");
   const std::string text = proposal(machine.survey());
   const Config config = parse_config(text, "c.toml");
-  CHECK(config.barometer.source == "iio");
+  CHECK(config.barometer.source == BarometerSource::kIio);
   CHECK(fs::path(config.barometer.iio.folder).filename() == "iio:device1");
   CHECK(has(text, "# Found bmp280 with a kernel driver"));
 }
@@ -101,7 +101,7 @@ TEST_CASE("a DPS310 at its address is preferred to a kernel driver, other chips 
   survey.i2c = {{"/dev/i2c-0", 0x76, false}, {"/dev/i2c-3", 0x76, true}};
   survey.iio = {{"/sys/bus/iio/devices/iio:device1", "bmp280"}};
   const Config config = parse_config(proposal(survey), "c.toml");
-  CHECK(config.barometer.source == "dps310");
+  CHECK(config.barometer.source == BarometerSource::kDps310);
   CHECK(config.barometer.dps310.bus == "/dev/i2c-3");
   CHECK(config.barometer.dps310.address == "0x76");
   CHECK(has(proposal(survey), "# Found a device that is no DPS310 at /dev/i2c-0, address 0x76."));
