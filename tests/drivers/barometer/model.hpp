@@ -28,8 +28,10 @@ class BarometerModel {
   // Faults.
   bool unplugged = false;  ///< no transaction is acknowledged
   double nak_share = 0.0;  ///< share of transactions that are not acknowledged
-  bool stops = false;      ///< conversions no longer end
-  bool frozen = false;     ///< conversions end with the bits of the last one
+  std::uint64_t lost_write =
+      0;                ///< number of a write, from 1, that is acknowledged and never arrives; 0: none
+  bool stops = false;   ///< conversions no longer end
+  bool frozen = false;  ///< conversions end with the bits of the last one
   /// During a measurement: a brown-out.
   virtual void power_up() = 0;
   /// Another device from now on, or a damaged memory.

@@ -71,6 +71,25 @@ TEST_CASE("coefficients that do not fit their checksum are refused") {
   CHECK(bench.fault() == "the coefficients do not fit their checksum");
 }
 
+TEST_CASE("a setting that does not arrive is noticed by reading it back, and written again") {
+  Settings settings;
+  settings.iir_coefficient = 7;
+  settings.temperature_oversampling = 2;
+  settings.rate_hz = 25;
+  Bmp390Bench sound(settings);
+  sound.run(2.0);
+  for (std::uint64_t lost = 1; lost <= sound.chip.writes; ++lost) {
+    Bmp390Bench bench(settings);
+    bench.chip.lost_write = lost;
+    bench.run(2.0);
+    CAPTURE(lost);
+    CHECK(bench.sensor.status().state == DeviceState::kMeasuring);
+    for (const std::uint8_t address : {kOversampling, kRate, kConfig, kPowerControl}) {
+      CHECK(bench.chip.held(address) == sound.chip.held(address));
+    }
+  }
+}
+
 TEST_CASE("no sample mixes two results, on a bus without bursts") {
   Bmp390Bench bench({}, 0, false);
   bench.late_ns = 20'000'000;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "drivers/bmp581/sensor.hpp"
 #include "tests/drivers/barometer/bench.hpp"
@@ -77,6 +78,25 @@ TEST_CASE("a chip whose memory is damaged, or never loaded, is reported") {
   CHECK(never.samples.empty());
   CHECK(never.fault() == "the memory is not loaded 0.05 s after a reset");
   CHECK(never.sensor.status().counters.starts < 12);  // the wait doubles each time
+}
+
+TEST_CASE("a setting that does not arrive is noticed by reading it back, and written again") {
+  Settings settings;
+  settings.iir_coefficient = 7;
+  settings.temperature_oversampling = 2;
+  settings.rate_hz = 25;
+  Bmp581Bench sound(settings);
+  sound.run(2.0);
+  for (std::uint64_t lost = 1; lost <= sound.chip.writes; ++lost) {
+    Bmp581Bench bench(settings);
+    bench.chip.lost_write = lost;
+    bench.run(2.0);
+    CAPTURE(lost);
+    CHECK(bench.sensor.status().state == DeviceState::kMeasuring);
+    for (const std::uint8_t address : {kDspConfig, kDspIir, kOsrConfig, kIntSource, kOdrConfig}) {
+      CHECK(bench.chip.held(address) == sound.chip.held(address));
+    }
+  }
 }
 
 TEST_CASE("no sample mixes two results, on a bus without bursts") {

@@ -50,8 +50,8 @@ void ChipModel::happen() {
     if (!trimmed()) pa *= 1.03;
     if (!frozen) newest_.pressure = static_cast<std::int32_t>(std::lround((pa - 70e3) / 40e3 * 131'072.0));
     newest_.temperature = static_cast<std::int32_t>(std::lround((temperature_c - 25.0) / 65.0 * 262'144.0));
-    if (fifo_.size() == kDepth) fifo_.pop_front();
-    fifo_.push_back(newest_);
+    if (fifo_.size() == kDepth && !overrun_keeps_oldest) fifo_.pop_front();
+    if (fifo_.size() < kDepth) fifo_.push_back(newest_);
   }
   ends_ns_ += duration_ns(1.0 / rate_hz());
 }
@@ -61,10 +61,7 @@ std::uint8_t ChipModel::fifo_byte() {
   const Result& first = fifo_.front();
   const auto word = static_cast<std::uint32_t>(fifo_at_ < 3 ? first.pressure : first.temperature);
   const auto byte = static_cast<std::uint8_t>((word & 0xFFFFFU) >> (8 * (fifo_at_ % 3)));
-  if (++fifo_at_ == 6) {
-    fifo_.pop_front();
-    fifo_at_ = 0;
-  }
+  if (++fifo_at_ == 6) fifo_at_ = 0;
   return byte;
 }
 
@@ -78,7 +75,10 @@ bool ChipModel::memory_open() const {
 
 void ChipModel::begin_read(std::uint8_t first) {
   pointer_ = first;
-  needs_dummy_ = first == 0xFA;
+  fifo_at_ = 0;
+  // The read of the dummy register ends a burst of the FIFO: the result read is gone only then.
+  if (first == 0x00 && needs_dummy_ && !fifo_.empty()) fifo_.pop_front();
+  needs_dummy_ = first == 0xFA || (needs_dummy_ && first != 0x00);
 }
 
 std::uint8_t ChipModel::next_byte() {

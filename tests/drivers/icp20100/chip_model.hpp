@@ -21,6 +21,7 @@ class ChipModel final : public test::BarometerModel {
   std::uint8_t version = 0xB2;          ///< 0x00: version A, which needs the boot sequence
   std::int64_t mode_sync_ns = 500'000;  ///< time after a change of mode in which it cannot be changed
   std::uint64_t mode_writes_lost = 0;   ///< written in that time
+  bool overrun_keeps_oldest = false;    ///< a full FIFO drops the new result; else the oldest
   bool memory_stays_busy = false;       ///< OTP_STATUS never 0
   [[nodiscard]] std::uint8_t held(std::uint8_t address) const { return registers_[address]; }
   [[nodiscard]] bool trimmed() const;
@@ -54,7 +55,7 @@ class ChipModel final : public test::BarometerModel {
   std::uint64_t results_ = 0;  ///< since the start of this mode
   std::deque<Result> fifo_;
   int fifo_at_ = 0;           ///< bytes read of the first result
-  bool needs_dummy_ = false;  ///< the FIFO was read, and nothing else since
+  bool needs_dummy_ = false;  ///< the FIFO was read, and the dummy register not since
   Result newest_;
 };
 
