@@ -37,13 +37,14 @@ inline constexpr NameTable<Role, 2> kRoleNames{{{
 
 /// [lidar]
 struct LidarSettings {
-  std::string model = "VLP-16";     ///< "VLP-16" or "HDL-32E"
+  std::string model = "VLP-16";     ///< a name of drivers/lidar_models
   std::string address = "0.0.0.0";  ///< IPv4 address on which packets are received
   std::uint16_t port = 2368;        ///< UDP port of the data packets
+  std::string calibration_file;     ///< of this sensor, see LidarConfig; empty: none
   std::string sender;               ///< IPv4 address of the lidar; empty: the first that sends
   Mount mount;                      ///< of the sensor in base_link
-  double min_range_m = 0.3;         ///< these four: see velodyne::VelodyneConfig
-  double max_range_m = 131.0;
+  double min_range_m = 0.3;         ///< these four: see LidarLimits
+  double max_range_m = 300.0;
   double mask_start_deg = 0.0;
   double mask_end_deg = 0.0;
 };

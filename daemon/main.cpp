@@ -136,7 +136,7 @@ class RobotGraph final : public Graph {
     config_ = change.running;
     stages_ = stage_settings(config_);
     const RobotScheduling scheduling = robot_scheduling(config_.realtime);
-    lidar_.configure(stages_.lidar, scheduling.lidar.deadline_ms);
+    lidar_.configure(stages_.lidar.limits, scheduling.lidar.deadline_ms);
     prior_.configure(stages_.prior, scheduling.prior.deadline_ms);
     if (change.concerns("method") || change.concerns("registration.") || change.concerns("realtime.")) {
       registration_.rebuild(stages_, scan_queue_config(config_.realtime),

@@ -24,9 +24,8 @@ std::string hex_text(std::uint8_t value) {
 }
 
 std::string sentence(const FoundLidar& lidar) {
-  const std::string name = lidar.model.empty()
-                               ? "a lidar without a driver, product id " + hex_text(lidar.product_id)
-                               : lidar.model;
+  const std::string name =
+      lidar.model.empty() ? "a lidar without a driver (" + lidar.mismatch + ")" : lidar.model;
   return name + ": " + std::to_string(std::lround(lidar.packets_per_s)) + " packets a second from " +
          lidar.sender + " to UDP port " + std::to_string(lidar.port);
 }
@@ -38,7 +37,7 @@ std::string lidar_lines(const Survey& survey) {
     out += comment("Found " + sentence(lidar) + ".");
     if (chosen == nullptr && !lidar.model.empty()) chosen = &lidar;
   }
-  if (survey.lidars.empty()) out += comment("No lidar was heard on UDP port 2368; the model is a guess.");
+  if (survey.lidars.empty()) out += comment("No lidar was heard; the model is a guess.");
   out += "lidar.model = " + quoted_toml(chosen != nullptr ? chosen->model : "VLP-16") + "\n";
   if (chosen != nullptr && survey.lidars.size() > 1) {
     out += "lidar.sender = " + quoted_toml(chosen->sender) + "\n";

@@ -8,7 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "drivers/velodyne/velodyne_decoder.hpp"
+#include "drivers/lidar/scan_assembler.hpp"
+#include "drivers/velodyne/decoder.hpp"
 
 namespace {
 
@@ -32,7 +33,7 @@ void check(const isobar::Scan& scan) {
     std::abort();
   }
   for (std::uint32_t i = 0; i < scan.point_count; ++i) {
-    if (!(std::abs(scan.points[i].x_m) < 132.0F) || scan.points[i].ring > 31) {
+    if (!(std::abs(scan.points[i].x_m) < 263.0F) || scan.points[i].ring > 31) {
       std::abort();
     }
   }
@@ -45,12 +46,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size < 1) {
     return 0;
   }
-  isobar::velodyne::VelodyneConfig config;
-  config.model = (data[0] & 1U) != 0 ? Model::kHdl32e : Model::kVlp16;
-  config.mask_end_deg = data[0];
-  static isobar::velodyne::VelodyneDecoder fresh[2] = {isobar::velodyne::VelodyneDecoder({Model::kVlp16}),
-                                                       isobar::velodyne::VelodyneDecoder({Model::kHdl32e})};
-  auto decoder = std::make_unique<isobar::velodyne::VelodyneDecoder>(fresh[data[0] & 1U]);
+  constexpr auto& kModels = isobar::velodyne::kModels;
+  const isobar::velodyne::ModelTraits& traits = *kModels[data[0] % kModels.size()];
+  isobar::LidarLimits limits;
+  limits.mask_end_deg = data[0];
+  auto assembler =
+      std::make_unique<isobar::ScanAssembler>(std::make_unique<isobar::velodyne::Decoder>(traits, limits));
   std::int64_t host_ns = 1'700'000'000'000'000'000;
   std::vector<std::uint8_t> packet;
   for (std::size_t at = 1; at + 5 <= size;) {
@@ -62,14 +63,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         static_cast<std::int64_t>(static_cast<std::uint64_t>(host_ns) + step_ns);  // any stamp, wraps around
     packet.assign(data + at + 5, data + at + 5 + length);
     if ((choices & 6U) != 0) {
-      make_valid(packet, config.model, (choices & 4U) != 0);
+      make_valid(packet, traits.model, (choices & 4U) != 0);
     }
-    if (decoder->add_packet(packet, host_ns, *scan).scan_complete) {
+    if (assembler->add_packet(packet, host_ns, *scan).scan_complete) {
       check(*scan);
     }
     at += 5 + length;
   }
-  if (decoder->flush(*scan)) {
+  if (assembler->flush(*scan)) {
     check(*scan);
   }
   return 0;

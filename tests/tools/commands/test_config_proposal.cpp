@@ -16,7 +16,7 @@
 
 #include "config/config_io.hpp"
 #include "drivers/udp/udp.hpp"
-#include "drivers/velodyne/packet_format.hpp"
+#include "tests/drivers/velodyne/packet_builder.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tools/machine_survey.hpp"
 
@@ -162,8 +162,9 @@ TEST_CASE("a lidar that sends is found with its address, model and rate") {
   Survey survey;
   std::thread sender([] {
     UdpSender out("127.0.0.1", 2368);
-    std::vector<std::uint8_t> packet(velodyne::kDataPacketBytes, 0);
-    packet[velodyne::kProductIdOffset] = 0x21;  // HDL-32E
+    test::PacketPlan plan;
+    plan.product_id = 0x28;  // VLP-32C
+    const auto packet = test::build_packet(plan);
     for (int i = 0; i < 50; ++i) {
       (void)out.send(packet);
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -177,7 +178,7 @@ TEST_CASE("a lidar that sends is found with its address, model and rate") {
   }
   REQUIRE(survey.lidars.size() == 1);
   CHECK(survey.lidars[0].sender == "127.0.0.1");
-  CHECK(survey.lidars[0].model == "HDL-32E");
+  CHECK(survey.lidars[0].model == "VLP-32C");
   CHECK(survey.lidars[0].packets_per_s > 10.0);
   const std::string text = proposal(survey);
   CHECK(parse_config(text, "c.toml").lidar.model == "HDL-32E");
@@ -186,15 +187,15 @@ TEST_CASE("a lidar that sends is found with its address, model and rate") {
 
 TEST_CASE("of two lidars the first with a driver is proposed with its address") {
   Survey survey;
-  survey.lidars = {{"10.0.0.2", 2368, "", 0x28, 1500.0}, {"10.0.0.3", 2368, "VLP-16", 0x22, 754.0}};
+  survey.lidars = {{"10.0.0.2", 2368, "", "packets of VLS-128", 1500.0}, {"10.0.0.3", 2368, "VLP-16", "", 754.0}};
   CHECK(parse_config(proposal(survey), "c.toml").lidar.sender == "10.0.0.3");
 }
 
-TEST_CASE("a lidar without a driver is named by its product id, and not proposed") {
+TEST_CASE("a lidar without a driver is named by what its packets say, and not proposed") {
   Survey survey;
-  survey.lidars = {{"10.0.0.2", 2368, "", 0x28, 1500.0}};
+  survey.lidars = {{"10.0.0.2", 2368, "", "packets of VLS-128", 1500.0}};
   const std::string text = proposal(survey);
-  CHECK(has(text, "# Found a lidar without a driver, product id 0x28: 1500 packets a second from 10.0.0.2"));
+  CHECK(has(text, "# Found a lidar without a driver (packets of VLS-128): 1500 packets a second from 10.0.0.2"));
   CHECK(parse_config(text, "c.toml").lidar.model == "VLP-16");
 }
 
