@@ -52,6 +52,13 @@ void add_dps310(dps310::Settings& dps310, std::vector<Setting>& settings) {
   s.choice("temperature_oversampling", &dps310.temperature_oversampling, powers_of_two,
            "Readings averaged in one temperature measurement. 8 at 4 Hz leave the time that 32 pressures of "
            "16 readings need.");
+  s.text("ready_chip", dps310.ready_chip, TextRule::kAny,
+         "GPIO chip of the data-ready line. isobard needs the right to open it.");
+  s.number(
+      "ready_line", &dps310.ready_line, "", -1, 511,
+      "Line of the GPIO chip that is tied to the sensor's pin SDO, its interrupt on I2C. The sensor is then "
+      "read once a measurement, and the kernel's stamp of the edge is the time of its end. -1: no line, the "
+      "sensor is polled.");
 }
 
 void add_bmp581(bmp581::Settings& bmp581, std::vector<Setting>& settings) {

@@ -8,6 +8,7 @@
 #include "drivers/bmp581/sensor.hpp"
 #include "drivers/bus/choice.hpp"
 #include "drivers/dps310/sensor.hpp"
+#include "drivers/gpio/edge_line.hpp"
 #include "drivers/icp20100/sensor.hpp"
 #include "drivers/iio/barometer.hpp"
 #include "drivers/ms5611/sensor.hpp"
@@ -31,8 +32,15 @@ PressureDevice on_bus(const Settings& settings, const SpiFormat& format, std::in
 
 constexpr std::array kDrivers{
     Driver{BarometerSource::kDps310,
-           [](const BarometerSettings& s, std::int64_t stuck_time_ns) {
-             return on_bus<dps310::Sensor>(s.dps310, dps310::kSpiFormat, stuck_time_ns);
+           [](const BarometerSettings& s, std::int64_t stuck_time_ns) -> PressureDevice {
+             std::unique_ptr<EdgeLine> line;
+             if (s.dps310.ready_line >= 0) {
+               line = std::make_unique<GpioLine>(
+                   s.dps310.ready_chip, static_cast<unsigned>(s.dps310.ready_line), GpioLine::Edges::kRising);
+             }
+             return std::make_unique<dps310::Sensor>(
+                 s.dps310, make_register_bus(s.dps310.bus, s.dps310.address, dps310::kSpiFormat),
+                 stuck_time_ns, std::move(line));
            }},
     Driver{BarometerSource::kBmp581,
            [](const BarometerSettings& s, std::int64_t stuck_time_ns) {

@@ -17,7 +17,7 @@ BarometerThread::BarometerThread(std::unique_ptr<Device<PressureSample>> device,
 void BarometerThread::loop() noexcept {
   do {
     worker_.heartbeat().beat();
-  } while (timer_.sleep_for(step()));
+  } while (timer_.sleep_for(step(), device_->file_descriptor()));
 }
 
 /// @return time until the next step [ns]

@@ -20,7 +20,7 @@ StoppableTimer::StoppableTimer()
   if (!timer_ || !stop_event_) throw ServiceError("the kernel refuses a timer: " + errno_message());
 }
 
-bool StoppableTimer::sleep_for(std::int64_t duration_ns) noexcept {
+bool StoppableTimer::sleep_for(std::int64_t duration_ns, int file_descriptor) noexcept {
   constexpr std::int64_t kNsPerSecond = 1'000'000'000;
   constexpr std::int64_t kShortestNs = 500'000;
   duration_ns = std::max(duration_ns, kShortestNs);
@@ -29,7 +29,9 @@ bool StoppableTimer::sleep_for(std::int64_t duration_ns) noexcept {
   when.it_value.tv_nsec = duration_ns % kNsPerSecond;
   timerfd_settime(timer_.get(), 0, &when, nullptr);
 
-  std::array<pollfd, 2> waits{pollfd{timer_.get(), POLLIN, 0}, pollfd{stop_event_.get(), POLLIN, 0}};
+  // poll() ignores a negative descriptor.
+  std::array<pollfd, 3> waits{pollfd{timer_.get(), POLLIN, 0}, pollfd{stop_event_.get(), POLLIN, 0},
+                              pollfd{file_descriptor, POLLIN, 0}};
   while (poll(waits.data(), waits.size(), -1) < 0 && errno == EINTR) {
   }
   std::uint64_t expirations = 0;

@@ -15,8 +15,9 @@ class StoppableTimer {
 
   /// Sleeps for `duration_ns`, but at least 0.5 ms: an owner that falls behind its own period must not keep a
   /// core from threads of lower priority. One thread.
+  /// @param file_descriptor ends the sleep when it is readable; -1: none
   /// @return false once stopped
-  [[nodiscard]] bool sleep_for(std::int64_t duration_ns) noexcept;
+  [[nodiscard]] bool sleep_for(std::int64_t duration_ns, int file_descriptor = -1) noexcept;
   /// Ends the current sleep and all later ones. Any thread.
   void stop() noexcept;
 

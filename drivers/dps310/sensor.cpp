@@ -23,10 +23,13 @@ constexpr std::int64_t to_ns(double seconds) { return static_cast<std::int64_t>(
 
 }  // namespace
 
-Sensor::Sensor(const Settings& settings, std::unique_ptr<RegisterBus> bus, std::int64_t stuck_time_ns)
+Sensor::Sensor(const Settings& settings, std::unique_ptr<RegisterBus> bus, std::int64_t stuck_time_ns,
+               std::unique_ptr<EdgeLine> ready_line)
     : PolledBarometer(place_on_bus("DPS310", settings.bus, settings.address), std::move(bus),
                       device_silence_ns(settings.pressure_rate_hz), stuck_time_ns),
       settings_(settings),
+      ready_line_(std::move(ready_line)),
+      period_ns_(1'000'000'000 / settings.pressure_rate_hz),
       poll_ns_(poll_interval_ns(settings.pressure_rate_hz)),
       pressure_time_ns_(to_ns(measurement_time_s(settings.pressure_oversampling))),
       temperature_time_ns_(to_ns(measurement_time_s(settings.temperature_oversampling))),
@@ -37,6 +40,11 @@ PolledBarometer::Outcome Sensor::start(std::int64_t now_ns) noexcept {
   if (const int error = bus().read(kProductId, {&id, 1}); error != 0) return no_answer(error);
   if (id != kDps310Id) {
     return fault(DeviceState::kWrongDevice, "the product id is not 0x10: another device");
+  }
+  if (ready_line_) {
+    if (const int error = ready_line_->open(); error != 0) {
+      return fault(DeviceState::kNoAnswer, "the data-ready line cannot be requested", error);
+    }
   }
   if (const int error = bus().write(kReset, kSoftReset); error != 0) return no_answer(error);
   piece_ = Piece::kWaitReady;
@@ -107,9 +115,10 @@ int Sensor::write_settings() noexcept {
       {kTemperatureConfig,
        static_cast<std::uint8_t>(thermometer_ | rate_and_oversampling(settings_.temperature_rate_hz,
                                                                       settings_.temperature_oversampling))},
-      {kConfig, static_cast<std::uint8_t>(
-                    (settings_.pressure_oversampling > kShiftAbove ? kShiftPressure : 0U) |
-                    (settings_.temperature_oversampling > kShiftAbove ? kShiftTemperature : 0U))},
+      {kConfig,
+       static_cast<std::uint8_t>((settings_.pressure_oversampling > kShiftAbove ? kShiftPressure : 0U) |
+                                 (settings_.temperature_oversampling > kShiftAbove ? kShiftTemperature : 0U) |
+                                 (ready_line_ ? kInterruptHigh | kInterruptPressure : 0U))},
   }};
   for (const auto& [address, value] : settings) {
     // A setting that did not arrive would give results of a wrong scale.
@@ -135,18 +144,38 @@ PolledBarometer::Outcome Sensor::first_temperature(std::int64_t now_ns) noexcept
 }
 
 PolledBarometer::Outcome Sensor::read(std::int64_t now_ns, Reading& reading) noexcept {
+  int error = ready_line_ ? read_line(now_ns) : 0;
+  if (error != 0) return fault(DeviceState::kNoAnswer, "the data-ready line cannot be read", error);
   const Ready ready = read_ready();
-  int error = ready.error;
+  error = ready.error;
   if (error == 0 && (ready.bits & kModeMask) != kModeBackground) return lost_settings();
   if (error == 0 && (ready.bits & kResultsReady) != 0) error = read_results(ready.bits);
+  const bool has_pressure = (ready.bits & kPressureReady) != 0;
+  std::uint8_t interrupts = 0;
+  if (error == 0 && has_pressure && ready_line_) error = bus().read(kInterruptStatus, {&interrupts, 1});
   if (error != 0) return problem(DeviceState::kNoAnswer, "no answer", poll_ns_, error);
   if ((ready.bits & kTemperatureReady) != 0) newest_temperature_ns_ = now_ns;
-  if ((ready.bits & kPressureReady) == 0) return wait(poll_ns_);
-  convert(now_ns, reading);
-  return result(poll_ns_);
+  if (!has_pressure) return wait(poll_ns_);
+  const bool has_edge = edge_ns_ != 0;
+  convert(now_ns, has_edge ? edge_ns_ : now_ns - poll_ns_ / 2, reading);
+  edge_ns_ = 0;
+  // The next edge comes earlier, also after a temperature; without it the result is looked for.
+  return result(has_edge ? period_ns_ + temperature_time_ns_ + poll_ns_ : poll_ns_);
 }
 
-void Sensor::convert(std::int64_t now_ns, Reading& reading) const noexcept {
+int Sensor::read_line(std::int64_t now_ns) noexcept {
+  std::array<LineEdge, EdgeLine::kQueue> edges{};
+  std::size_t count = 0;
+  const std::int64_t line_now_ns = ready_line_->now_ns();
+  if (const int error = ready_line_->read(edges, count); error != 0) return error;
+  if (count == 0) return 0;
+  const std::int64_t age_ns = line_now_ns - edges[count - 1].stamp_ns;
+  // An edge older than a measurement belongs to a result that was read without it.
+  edge_ns_ = age_ns >= 0 && age_ns < period_ns_ ? now_ns - age_ns : 0;
+  return 0;
+}
+
+void Sensor::convert(std::int64_t now_ns, std::int64_t ended_ns, Reading& reading) const noexcept {
   const Compensated value = compensate(coefficients_, raw_, scale_factor(settings_.pressure_oversampling),
                                        scale_factor(settings_.temperature_oversampling));
   reading.bits = raw_.pressure;
@@ -156,7 +185,7 @@ void Sensor::convert(std::int64_t now_ns, Reading& reading) const noexcept {
     reading.refused_state = DeviceState::kSilent;
   }
   const double noise_pa = pressure_noise_pa(settings_.pressure_oversampling);
-  reading.sample.stamp_ns = now_ns - (poll_ns_ + pressure_time_ns_) / 2;
+  reading.sample.stamp_ns = ended_ns - pressure_time_ns_ / 2;
   reading.sample.pressure_pa = value.pressure_pa;
   reading.sample.temperature_c = value.temperature_c;
   reading.sample.variance_pa2 = noise_pa * noise_pa;

@@ -16,6 +16,9 @@ struct Settings {
   int pressure_oversampling = 16;
   int temperature_rate_hz = 4;
   int temperature_oversampling = 8;
+  std::string ready_chip = "/dev/gpiochip0";
+  int ready_line =
+      -1;  ///< line of ready_chip at the sensor's pin SDO, which is its interrupt on I2C; -1: polled
 };
 
 /// Data sheet, "SPI Interface": bit 7 of the address marks a read.

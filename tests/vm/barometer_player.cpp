@@ -175,7 +175,7 @@ void show_ms5611(const char* bus) {
     stub.put(0xA0 + 2 * word, prom[word] >> 8U);
     stub.put(0xA1 + 2 * word, prom[word] & 0xFFU);
   }
-  const std::uint32_t result = ms5611::kKnownResult.temperature;
+  const std::uint32_t result = ms5611::kExampleResult.temperature;
   for (unsigned i = 0; i < 3; ++i) stub.put(i, result >> (16 - 8 * i) & 0xFFU);
 }
 

@@ -8,7 +8,7 @@ namespace isobar::ms5611 {
 
 /// C1 … C6 of the data sheet, without a CRC; see sealed().
 inline constexpr Prom kKnownProm{0x0000, 40'127, 36'924, 23'317, 23'282, 33'464, 28'312, 0x4500};
-inline constexpr RawResult kKnownResult{9'085'466, 8'569'150};
+inline constexpr RawResult kExampleResult{9'085'466, 8'569'150};
 inline constexpr double kKnownTemperatureC = 20.07;
 inline constexpr double kKnownPressurePa = 100'009.0;
 

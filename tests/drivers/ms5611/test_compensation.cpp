@@ -45,7 +45,7 @@ IntegerResult by_integers(const Prom& c, std::int64_t d1, std::int64_t d2) {
 }  // namespace
 
 TEST_CASE("the data sheet's example: 20.07 degrees C and 1000.09 mbar") {
-  const Compensated value = compensate(isobar::ms5611::kKnownProm, isobar::ms5611::kKnownResult);
+  const Compensated value = compensate(isobar::ms5611::kKnownProm, isobar::ms5611::kExampleResult);
   // The data sheet truncates to 0.01 degrees and 0.01 mbar = 1 Pa.
   CHECK(std::floor(value.temperature_c * 100.0) == 2'007.0);
   CHECK(std::floor(value.pressure_pa) == isobar::ms5611::kKnownPressurePa);
