@@ -5,6 +5,9 @@
 #include <array>
 
 #include "core/errors.hpp"
+#include "drivers/hesai/decoder.hpp"
+#include "drivers/lidar/angle_table.hpp"
+#include "drivers/robosense/decoder.hpp"
 #include "drivers/velodyne/decoder.hpp"
 
 namespace isobar {
@@ -15,11 +18,31 @@ std::unique_ptr<LidarDecoder> make_velodyne(const LidarConfig& config) {
   return std::make_unique<velodyne::Decoder>(kTraits, config.limits);
 }
 
+/// The angles of the sensor's file; none where no file is named.
+AngleTable angles_of(const LidarConfig& config, int lasers) {
+  if (config.calibration_file.empty()) return {};
+  return read_angle_file(config.calibration_file, static_cast<std::size_t>(lasers));
+}
+
+template <const hesai::ModelTraits& kTraits>
+std::unique_ptr<LidarDecoder> make_hesai(const LidarConfig& config) {
+  return std::make_unique<hesai::Decoder>(kTraits, config.limits, angles_of(config, kTraits.lasers));
+}
+
+template <const robosense::ModelTraits& kTraits>
+std::unique_ptr<LidarDecoder> make_robosense(const LidarConfig& config) {
+  return std::make_unique<robosense::Decoder>(kTraits, config.limits, angles_of(config, kTraits.lasers));
+}
+
 constexpr std::array kModels{
     LidarModel{"VLP-16", "Velodyne", 2368, 8308, false, false, &make_velodyne<velodyne::kVlp16>},
     LidarModel{"VLP-16 Hi-Res", "Velodyne", 2368, 8308, false, false, &make_velodyne<velodyne::kVlp16HiRes>},
     LidarModel{"VLP-32C", "Velodyne", 2368, 8308, false, false, &make_velodyne<velodyne::kVlp32c>},
     LidarModel{"HDL-32E", "Velodyne", 2368, 8308, false, false, &make_velodyne<velodyne::kHdl32e>},
+    LidarModel{"XT16", "Hesai", 2368, 10110, false, false, &make_hesai<hesai::kXt16>},
+    LidarModel{"XT32", "Hesai", 2368, 10110, false, false, &make_hesai<hesai::kXt32>},
+    LidarModel{"RS-LiDAR-16", "RoboSense", 6699, 7788, false, false, &make_robosense<robosense::kRs16>},
+    LidarModel{"Helios-16P", "RoboSense", 6699, 7788, false, false, &make_robosense<robosense::kHelios16p>},
 };
 
 }  // namespace

@@ -158,7 +158,8 @@ TEST_CASE("Values outside their rules are refused with file, line, column, key, 
         "c.toml:2:8: lidar.port: must be a whole number within 1 … 65535 (got 70000)");
   fails("[lidar]\nport = 1.5\n", "must be a whole number");
   fails("[lidar]\nport = \"2368\"\n", "got '2368'");
-  fails("[lidar]\nmodel = \"VLP-32C\"\n", "lidar.model: must be one of VLP-16, HDL-32E");
+  fails("[lidar]\nmodel = \"VLS-128\"\n",
+        "lidar.model: must be one of VLP-16, VLP-16 Hi-Res, VLP-32C, HDL-32E, ");
   fails("[lidar]\naddress = \"localhost\"\n", "lidar.address: must be an IPv4 address");
   fails("[lidar]\nxyz_m = [0, 0]\n", "lidar.xyz_m: must be three numbers");
   fails("[lidar]\nxyz_m = [0, 0, nan]\n", "lidar.xyz_m");
