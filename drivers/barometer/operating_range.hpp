@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Operating ranges of MEMS barometers. Narrower than the plausible ranges of core/plausibility.hpp, which hold
-// for every sensor: the chips specify no result outside.
+// Operating ranges of MEMS barometers. Narrower than the plausible ranges of core/plausibility.hpp, which
+// hold for every sensor: the chips specify no result outside.
 #pragma once
 
 #include "core/plausibility.hpp"

@@ -20,8 +20,8 @@ struct Coefficients {
 
 using CoefficientBytes = std::array<std::uint8_t, kCoefficientBytes>;
 
-/// Registers 0x31 … 0x45 (data sheet 3.11.1 table "memory map trimming coefficients"). Every input decodes; see
-/// implausibility().
+/// Registers 0x31 … 0x45 (data sheet 3.11.1 table "memory map trimming coefficients"). Every input decodes;
+/// see implausibility().
 [[nodiscard]] Coefficients decode_coefficients(const CoefficientBytes& bytes) noexcept;
 
 /// CRC-8 of the coefficients, which the chip holds in register 0x30: polynomial 0x1D, start and final
@@ -58,8 +58,8 @@ struct Compensated {
   return 1e-6 * (234 + 392 + 2'020 * pressure_oversampling + 163 + 2'020 * temperature_oversampling);
 }
 
-/// Noise of one pressure without filter [Pa rms]. The data sheet gives the one at the highest oversampling, 0.9
-/// Pa at 32 times (table 2); the others are that of fewer averaged samples.
+/// Noise of one pressure without filter [Pa rms]. The data sheet gives the one at the highest oversampling,
+/// 0.9 Pa at 32 times (table 2); the others are that of fewer averaged samples.
 [[nodiscard]] inline double pressure_noise_pa(int oversampling) noexcept {
   return 0.9 * std::sqrt(32.0 / oversampling);
 }

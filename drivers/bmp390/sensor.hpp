@@ -13,8 +13,8 @@ namespace isobar::bmp390 {
 ///   reset ──▶ ready? ──▶ coefficients, settings ──▶ normal mode
 ///
 /// The status is polled four times a measurement. A sample's stamp is the middle of pressure and temperature
-/// measurement, exact to half a poll. variance_pa2 is that without the IIR filter: a filter makes neighbouring
-/// samples alike and adds no information.
+/// measurement, exact to half a poll. variance_pa2 is that without the IIR filter: a filter makes
+/// neighbouring samples alike and adds no information.
 class Sensor final : public PolledBarometer {
  public:
   /// @param settings validated: busy_time_s() below 1

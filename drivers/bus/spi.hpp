@@ -31,8 +31,8 @@ struct SpiFrame {
 [[nodiscard]] SpiFrame spi_write_frame(const SpiFormat& format, std::uint8_t address,
                                        std::uint8_t value) noexcept;
 
-/// Device on a kernel SPI bus, /dev/spidevB.C, in SPI mode 3 at 1 MHz, which all barometers support. SPI has no
-/// acknowledgement: a missing device reads as constant bytes, and its identification fails.
+/// Device on a kernel SPI bus, /dev/spidevB.C, in SPI mode 3 at 1 MHz, which all barometers support. SPI has
+/// no acknowledgement: a missing device reads as constant bytes, and its identification fails.
 class SpiDevice final : public RegisterBus {
  public:
   /// Does not open the bus; open() does.

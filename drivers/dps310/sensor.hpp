@@ -13,9 +13,9 @@ namespace isobar::dps310 {
 ///
 ///   reset ──▶ ready? ──▶ coefficients, erratum, settings ──▶ one temperature ──▶ background measurement
 ///
-/// The ready bits are polled four times a measurement; with a data-ready line at its edges instead, and as before
-/// when none comes. A sample's stamp is the middle of the chip's averaging time, exact to half a poll, or by the
-/// kernel's stamp of the edge.
+/// The ready bits are polled four times a measurement; with a data-ready line at its edges instead, and as
+/// before when none comes. A sample's stamp is the middle of the chip's averaging time, exact to half a poll,
+/// or by the kernel's stamp of the edge.
 class Sensor final : public PolledBarometer {
  public:
   /// @param settings validated: busy_time_s() below 1

@@ -22,8 +22,8 @@ struct Edge {
 /// Counters since construction.
 struct QuadratureCounters {
   std::uint64_t edges = 0;
-  /// Edges that the kernel's queue dropped, at least: two edges of one line in the same direction have one of the
-  /// other direction between them.
+  /// Edges that the kernel's queue dropped, at least: two edges of one line in the same direction have one of
+  /// the other direction between them.
   std::uint64_t lost = 0;
   /// Lost edges whose direction is known, which were counted nevertheless.
   std::uint64_t restored = 0;
@@ -33,11 +33,12 @@ struct QuadratureCounters {
 ///
 ///   forward:  A rises (B low), B rises (A high), A falls (B high), B falls (A low)
 ///
-/// Edges come in the order of their stamps. After a lost edge the level of its line is believed wrongly until the
-/// line's next edge, and edges of the other line are counted in the wrong direction meanwhile. That next edge
-/// shows it: where the other line had two edges in between, the encoder went on in one direction, and the count
-/// is corrected; where it had none, the two edges cancel; else the direction is not known, and nothing is
-/// corrected. A run of lost edges that is even on both lines leaves no trace here: see EdgeSource::full_queues().
+/// Edges come in the order of their stamps. After a lost edge the level of its line is believed wrongly until
+/// the line's next edge, and edges of the other line are counted in the wrong direction meanwhile. That next
+/// edge shows it: where the other line had two edges in between, the encoder went on in one direction, and
+/// the count is corrected; where it had none, the two edges cancel; else the direction is not known, and
+/// nothing is corrected. A run of lost edges that is even on both lines leaves no trace here: see
+/// EdgeSource::full_queues().
 class QuadratureDecoder {
  public:
   /// Forgets the edges, keeps count and counters.
@@ -66,8 +67,9 @@ class EdgeSorter {
 
   /// False, and nothing is added, when it is full.
   bool add(const Edge& edge) noexcept;
-  /// Passes edges up to this time to `use`, oldest first, and removes them. Edges that are read after the others
-  /// can be older than those only if they are newer than the begin of the reading: that is the time to give.
+  /// Passes edges up to this time to `use`, oldest first, and removes them. Edges that are read after the
+  /// others can be older than those only if they are newer than the begin of the reading: that is the time to
+  /// give.
   template <class Use>
   void release(std::int64_t until_ns, const Use& use) noexcept {
     std::size_t used = 0;

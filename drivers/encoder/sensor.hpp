@@ -12,8 +12,9 @@
 
 namespace isobar::encoder {
 
-/// Wheel odometry from quadrature encoders. A sample is the mean twist of one period of the rate, by the kernel's
-/// stamps of the edges; its stamp is the middle of that period. Standing wheels give zeros at the same rate.
+/// Wheel odometry from quadrature encoders. A sample is the mean twist of one period of the rate, by the
+/// kernel's stamps of the edges; its stamp is the middle of that period. Standing wheels give zeros at the
+/// same rate.
 ///
 /// Edges are read at every step: the kernel holds 16 a line, so that step() must follow file_descriptor().
 /// Lost edges that are noticed, and full queues, count as `corrupt`.

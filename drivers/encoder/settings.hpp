@@ -9,8 +9,8 @@
 
 namespace isobar::encoder {
 
-/// Lines of one encoder, offsets on the chip; negative: this wheel has no encoder. Lines that are exchanged turn
-/// its direction.
+/// Lines of one encoder, offsets on the chip; negative: this wheel has no encoder. Lines that are exchanged
+/// turn its direction.
 struct EncoderLines {
   int a = -1;
   int b = -1;

@@ -85,8 +85,8 @@ PolledBarometer::Outcome Sensor::look_at_version() noexcept {
 }
 
 /// Boot sequence of version A, once after power-up (data sheet 6.5): copies the trimming from the one-time
-/// programmable memory, whose read parameters are the manufacturer's. The waits of 10 us between its steps pass
-/// during the transfers.
+/// programmable memory, whose read parameters are the manufacturer's. The waits of 10 us between its steps
+/// pass during the transfers.
 PolledBarometer::Outcome Sensor::boot() noexcept {
   constexpr std::array<std::array<std::uint8_t, 2>, 6> kReadParameters{{{kOtpMraLsb, 0x04},
                                                                         {kOtpMraMsb, 0x04},

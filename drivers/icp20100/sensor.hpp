@@ -13,9 +13,9 @@ namespace isobar::icp20100 {
 ///   standby ──▶ version A: boot sequence ──▶ settings, continuous mode ──▶ filter settled
 ///
 /// The level of the FIFO is polled four times a measurement; results that wait are read one a step. The chip
-/// has no command for a reset: standby and an empty FIFO take its place. A sample's stamp is that of its arrival
-/// less half of the filter's settling time, which is the delay of a filter with linear phase; the data sheet
-/// states no delay.
+/// has no command for a reset: standby and an empty FIFO take its place. A sample's stamp is that of its
+/// arrival less half of the filter's settling time, which is the delay of a filter with linear phase; the
+/// data sheet states no delay.
 class Sensor final : public PolledBarometer {
  public:
   /// @param stuck_time_ns see StuckWatch

@@ -13,8 +13,8 @@ namespace isobar::ms5611 {
 /// Words of the factory's memory: reserved, C1 … C6, serial number and CRC-4.
 using Prom = std::array<std::uint16_t, kPromWords>;
 
-/// CRC-4 of a memory (application note AN520): polynomial x^4 + x + 1 over the bytes before the last one. Equal to
-/// the lowest 4 bits of the last word in a sound memory.
+/// CRC-4 of a memory (application note AN520): polynomial x^4 + x + 1 over the bytes before the last one.
+/// Equal to the lowest 4 bits of the last word in a sound memory.
 [[nodiscard]] std::uint8_t crc4(const Prom& prom) noexcept;
 
 /// The rule that a memory breaks, a static text; nullptr when none. The CRC is all that identifies the chip.
@@ -32,7 +32,8 @@ struct Compensated {
 };
 
 /// Data sheet, "Pressure and temperature calculation", and below 20 degrees C "Second order temperature
-/// compensation", in floating point: the integer formulas truncate to 0.01 mbar, 8 cm. Finite for every input.
+/// compensation", in floating point: the integer formulas truncate to 0.01 mbar, 8 cm. Finite for every
+/// input.
 [[nodiscard]] Compensated compensate(const Prom& prom, const RawResult& raw) noexcept;
 
 /// The rule that a result breaks, a static text; nullptr when there is a result and it lies in the operating

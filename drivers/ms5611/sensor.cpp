@@ -13,7 +13,8 @@ namespace {
 
 /// The data sheet allows 2.8 ms for the reload of the memory after a reset.
 constexpr std::int64_t kReloadNs = 4'000'000;
-/// Added to the longest conversion, for the transfers before its command: a read before its end gives 0 and spoils it.
+/// Added to the longest conversion, for the transfers before its command: a read before its end gives 0 and
+/// spoils it.
 constexpr std::int64_t kSlackNs = 1'000'000;
 constexpr std::int64_t kShortestPauseNs = 500'000;
 

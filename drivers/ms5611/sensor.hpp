@@ -13,9 +13,9 @@ namespace isobar::ms5611 {
 ///
 ///   reset ──▶ coefficients ──▶ (coefficient unchanged? ──▶ temperature ──▶ pressure ──▶ pause) …
 ///
-/// The chip measures on command, so a sample's stamp is the middle of its conversion. It shows no state: before
-/// every measurement one word of the coefficients is read again, which a chip without a reset since its
-/// power-up answers differently.
+/// The chip measures on command, so a sample's stamp is the middle of its conversion. It shows no state:
+/// before every measurement one word of the coefficients is read again, which a chip without a reset since
+/// its power-up answers differently.
 class Sensor final : public PolledBarometer {
  public:
   /// @param settings validated: busy_time_s() below 1

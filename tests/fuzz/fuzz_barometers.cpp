@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fuzz target: the barometers on a bus that the fuzzer controls. The first byte selects the sensor; then a byte
-// per access selects an error, the fuzzer's bytes, or a sound chip's answer, which passes the checks.
+// Fuzz target: the barometers on a bus that the fuzzer controls. The first byte selects the sensor; then a
+// byte per access selects an error, the fuzzer's bytes, or a sound chip's answer, which passes the checks.
 #include <array>
 #include <cerrno>
 #include <cstdint>

@@ -156,7 +156,7 @@ Player make_player(const char* bus, const std::string& chip) {
             std::make_unique<bmp581::ChipModel>()};
   }
   if (chip == "bmp390") {
-    std::vector<std::uint8_t> constants{0x00, 0x02};
+    std::vector<std::uint8_t> constants{0x00};
     for (std::uint8_t address = 0x30; address <= 0x45; ++address) constants.push_back(address);
     return {bus,
             {0x77, constants, {0x1C, 0x1D, 0x1F, 0x1B}, 0x7E, 0xB6, 0x03, 0x60, 0x10, 0x04},

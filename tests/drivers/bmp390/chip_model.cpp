@@ -8,8 +8,8 @@ namespace isobar::bmp390 {
 
 namespace {
 
-/// CRC-8 as a division of a polynomial, bit by bit: the message, then 8 zeros; the start value inverts the first
-/// 8 bits.
+/// CRC-8 as a division of a polynomial, bit by bit: the message, then 8 zeros; the start value inverts the
+/// first 8 bits.
 std::uint8_t divided(const CoefficientBytes& bytes) {
   std::array<bool, 8 * (kCoefficientBytes + 1)> bits{};
   for (std::size_t i = 0; i < 8 * kCoefficientBytes; ++i) {

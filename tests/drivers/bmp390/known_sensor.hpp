@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coefficients of a real BMP388, which has the BMP390's memory and formulas, with a result and its compensated
-// values as published by the authors of an independent driver.
+// Coefficients of a real BMP388, which has the BMP390's memory and formulas, with a result and its
+// compensated values as published by the authors of an independent driver.
 #pragma once
 
 #include "drivers/bmp390/compensation.hpp"

@@ -12,8 +12,8 @@ constexpr std::array<double, 32> kOdrHz{240,    218.537, 199.111, 179.2, 160,   
                                         120,    110.164, 100.299, 89.6,  80,     70,      60,   50.056,
                                         45.025, 40,      35,      30,    25.005, 20,      15,   10,
                                         5,      4,       3,       2,     1,      0.5,     0.25, 0.125};
-/// Data sheet table 9: typical ODR in continuous mode by osr_p [Hz], with temperature oversamplings 1 1 1 1 1 2
-/// 4 8. Its inverse is the duration of both measurements.
+/// Data sheet table 9: typical ODR in continuous mode by osr_p [Hz], with temperature oversamplings 1 1 1 1 1
+/// 2 4 8. Its inverse is the duration of both measurements.
 constexpr std::array<double, 8> kContinuousHz{498, 374, 255, 155, 87, 46, 24, 12};
 
 }  // namespace

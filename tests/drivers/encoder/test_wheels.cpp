@@ -90,7 +90,8 @@ struct WheelBench {
     lines = made.get();
     sensor = std::make_unique<Sensor>(settings, std::move(made));
   }
-  /// Turns both wheels at constant rates [edges per second], stepping the device when edges come or it is due.
+  /// Turns both wheels at constant rates [edges per second], stepping the device when edges come or it is
+  /// due.
   void run(double seconds, double left_hz, double right_hz, std::int64_t read_every_ns = kMs) {
     const std::int64_t end_ns = lines->time_ns + static_cast<std::int64_t>(seconds * 1e9);
     std::int64_t read_ns = lines->time_ns;

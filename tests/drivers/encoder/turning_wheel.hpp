@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An encoder disc: edges of its lines as it turns. Written from the picture of the two tracks, without the decoder.
+// An encoder disc: edges of its lines as it turns. Written from the picture of the two tracks, without the
+// decoder.
 #pragma once
 
 #include <cstdint>

@@ -15,8 +15,8 @@ inline constexpr double kKnownPressurePa = 100'009.0;
 /// AN520: the CRC of this memory is 0xB.
 inline constexpr Prom kNoteProm{0x3132, 0x3334, 0x3536, 0x3738, 0x3940, 0x4142, 0x4344, 0x450B};
 
-/// CRC-4 as a division of a polynomial, bit by bit: the 15 bytes before that of the CRC, then 4 zeros, by x^4 +
-/// x + 1.
+/// CRC-4 as a division of a polynomial, bit by bit: the 15 bytes before that of the CRC, then 4 zeros, by x^4
+/// + x + 1.
 inline std::uint8_t divided_crc4(const Prom& prom) {
   constexpr std::size_t kMessage = 16 * kPromWords - 8;
   std::array<bool, kMessage + 4> bits{};

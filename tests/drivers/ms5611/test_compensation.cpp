@@ -62,8 +62,8 @@ TEST_CASE(
       const Compensated value = compensate(isobar::ms5611::kKnownProm,
                                            {static_cast<std::uint32_t>(d1), static_cast<std::uint32_t>(d2)});
       CHECK(std::abs(value.temperature_c * 100.0 - static_cast<double>(integers.temperature_centi_c)) < 2.0);
-      // The integers truncate the temperature to 0.01 degrees, from which the second order makes up to 1 Pa, and
-      // below -15 degrees up to 4 Pa.
+      // The integers truncate the temperature to 0.01 degrees, from which the second order makes up to 1 Pa,
+      // and below -15 degrees up to 4 Pa.
       const double tolerance_pa = value.temperature_c < -15.0 ? 5.0 : 2.5;
       CHECK(std::abs(value.pressure_pa - static_cast<double>(integers.pressure_pa)) < tolerance_pa);
     }
