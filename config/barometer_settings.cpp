@@ -1,32 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "config/bus_barometer_settings.hpp"
 #include "config/mount_settings.hpp"
 #include "config/section_builder.hpp"
 #include "core/plausibility.hpp"
 
 namespace isobar {
 namespace {
-
-void add_dps310(dps310::Settings& dps310, std::vector<Setting>& settings) {
-  const std::vector<std::string> powers_of_two{"1", "2", "4", "8", "16", "32", "64", "128"};
-  SectionBuilder s("barometer.dps310", UsedBy::kEveryRole, settings);
-  s.text("bus", dps310.bus, TextRule::kAny, "I2C device of the kernel. isobard needs the right to open it.")
-      .basic();
-  s.choice("address", &dps310.address, {"0x77", "0x76"},
-           "I2C address of the sensor. 0x77, or 0x76 where its pin SDO is tied to ground.")
-      .basic();
-  s.choice("pressure_rate_hz", &dps310.pressure_rate_hz, powers_of_two,
-           "Pressure measurements per second [Hz]. The sum of rate times measurement time, of pressure and "
-           "temperature, must be below 1 s; a measurement takes 3.6, 5.2, 8.4, 14.8, 27.6, 53.2, 104.4 or "
-           "206.8 ms by oversampling.");
-  s.choice("pressure_oversampling", &dps310.pressure_oversampling, powers_of_two,
-           "Readings averaged in one pressure measurement; noise 2.5, 1, 0.5, 0.4, 0.35, 0.3, 0.2 or 0.2 Pa. "
-           "16 is the largest that 32 Hz allow.");
-  s.choice("temperature_rate_hz", &dps310.temperature_rate_hz, powers_of_two,
-           "Temperature measurements per second [Hz]. 4 suffices: the chip's temperature changes slowly.");
-  s.choice("temperature_oversampling", &dps310.temperature_oversampling, powers_of_two,
-           "Readings averaged in one temperature measurement. 8 at 4 Hz leave the time that 32 pressures of "
-           "16 readings need.");
-}
 
 void add_iio_device(iio::Settings& device, SectionBuilder& section) {
   section.text("folder", device.folder, TextRule::kAny,
@@ -77,13 +56,36 @@ void add_barometer_section(BarometerSettings& barometer, std::vector<Setting>& s
            "machine is stuck: noise changes the last digit of a working one. 0: never, for converters too "
            "coarse to resolve the air's motion.");
   add_compensation_file(barometer.compensation_file, s);
-  add_dps310(barometer.dps310, settings);
+  add_bus_barometers(barometer, settings);
   add_setra278(barometer.setra278, settings);
   SectionBuilder iio("barometer.iio", UsedBy::kEveryRole, settings);
   add_iio_device(barometer.iio, iio);
 }
 
 }  // namespace
+
+int BarometerSettings::rate_hz() const noexcept {
+  switch (source) {
+    case BarometerSource::kDatagram:
+    case BarometerSource::kNone:
+      return 0;
+    case BarometerSource::kDps310:
+      return dps310.pressure_rate_hz;
+    case BarometerSource::kBmp581:
+      return bmp581.rate_hz;
+    case BarometerSource::kBmp390:
+      return bmp390.rate_hz;
+    case BarometerSource::kIcp20100:
+      return icp20100.rate_hz;
+    case BarometerSource::kMs5611:
+      return ms5611.rate_hz;
+    case BarometerSource::kSetra278:
+      return setra278.device.rate_hz;
+    case BarometerSource::kIio:
+      return iio.rate_hz;
+  }
+  return 0;
+}
 
 void add_barometer_settings(Config& config, std::vector<Setting>& settings) {
   add_barometer_section(config.barometer, settings);

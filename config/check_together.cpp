@@ -38,6 +38,14 @@ std::string busy_text(const dps310::Settings& settings) {
          " s of measuring in a second, must be below 1; lower a rate or an oversampling";
 }
 
+/// The same for sensors of one rate.
+std::string busy_text(int rate_hz, double busy_s) {
+  return std::to_string(rate_hz) + " measurements of " +
+         number_text(std::round(busy_s / rate_hz * 1e4) / 10.0) + " ms are " +
+         number_text(std::round(busy_s * 1e3) / 1e3) +
+         " s of measuring in a second, must be below 1; lower the rate or an oversampling";
+}
+
 /// Settings of the IMU's own driver, and of a barometer within it.
 void check_imu(const Config& config, const Requirements& rules) {
   const ImuSettings& imu = config.imu;
@@ -65,6 +73,15 @@ void check_sensors(const Config& config, const Requirements& rules) {
     rules.require(dps310::busy_time_s(barometer.dps310) < 1.0, "barometer.dps310.pressure_rate_hz",
                   busy_text(barometer.dps310));
   }
+  const auto require_time = [&](BarometerSource source, const char* key, int rate_hz, double busy_s) {
+    if (barometer.source == source) rules.require(busy_s < 1.0, key, busy_text(rate_hz, busy_s));
+  };
+  require_time(BarometerSource::kBmp581, "barometer.bmp581.rate_hz", barometer.bmp581.rate_hz,
+               bmp581::busy_time_s(barometer.bmp581));
+  require_time(BarometerSource::kBmp390, "barometer.bmp390.rate_hz", barometer.bmp390.rate_hz,
+               bmp390::busy_time_s(barometer.bmp390));
+  require_time(BarometerSource::kMs5611, "barometer.ms5611.rate_hz", barometer.ms5611.rate_hz,
+               ms5611::busy_time_s(barometer.ms5611));
   if (barometer.source == BarometerSource::kSetra278) {
     const char* broken = setra278::broken_rule(barometer.setra278.span);
     rules.require(broken == nullptr, "barometer.setra278", broken == nullptr ? "" : broken);

@@ -14,10 +14,14 @@
 #include "core/name_table.hpp"
 #include "core/prior/prior_config.hpp"
 #include "core/registration/registration_config.hpp"
+#include "drivers/bmp390/settings.hpp"
+#include "drivers/bmp581/settings.hpp"
 #include "drivers/dps310/settings.hpp"
+#include "drivers/icp20100/settings.hpp"
 #include "drivers/iio/settings.hpp"
 #include "drivers/vn100/settings.hpp"
 #include "drivers/xsens/settings.hpp"
+#include "drivers/ms5611/settings.hpp"
 #include "ipc/dds_config.hpp"
 
 namespace isobar {
@@ -66,9 +70,15 @@ struct BarometerSettings {
   /// Time without a change of a single bit after which a sensor of this machine is stuck [s]; 0: never.
   double stuck_time_s = 1.5;
   dps310::Settings dps310;
+  bmp581::Settings bmp581;
+  bmp390::Settings bmp390;
+  icp20100::Settings icp20100;
+  ms5611::Settings ms5611;
   iio::SetraSettings setra278;
   iio::Settings iio;
   [[nodiscard]] bool present() const { return source != BarometerSource::kNone; }
+  /// Configured rate of the sensor of this machine [Hz]; 0: the samples come another way.
+  [[nodiscard]] int rate_hz() const noexcept;
 };
 
 /// [wheel]

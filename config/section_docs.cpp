@@ -23,7 +23,12 @@ constexpr auto kDocs = std::to_array<Doc>({
      "is "
      "\"iio\"."},
     {"barometer", "The robot's barometer. A replay takes its samples and mount from the recording."},
-    {"barometer.dps310", "A DPS310 on an I2C bus of this machine; used if barometer.source is \"dps310\"."},
+    {"barometer.dps310", "A DPS310 on a bus of this machine; used if barometer.source is \"dps310\"."},
+    {"barometer.bmp581", "A BMP581 on a bus of this machine; used if barometer.source is \"bmp581\"."},
+    {"barometer.bmp390", "A BMP390 on a bus of this machine; used if barometer.source is \"bmp390\"."},
+    {"barometer.icp20100",
+     "An ICP-20100 on a bus of this machine; used if barometer.source is \"icp20100\"."},
+    {"barometer.ms5611", "An MS5611 on a bus of this machine; used if barometer.source is \"ms5611\"."},
     {"barometer.setra278",
      "A Setra 278 behind an analogue-to-digital converter with a kernel driver (industrial I/O); used if "
      "barometer.source is \"setra278\"."},

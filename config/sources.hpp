@@ -23,7 +23,11 @@ enum class ImuSource : std::uint8_t {
 enum class BarometerSource : std::uint8_t {
   kDatagram,  ///< sample datagrams by UDP
   kNone,      ///< the robot has none
-  kDps310,    ///< DPS310 or DPS368 on I2C
+  kDps310,    ///< DPS310 or DPS368 on I2C or SPI, as the four that follow
+  kBmp581,
+  kBmp390,
+  kIcp20100,
+  kMs5611,
   kSetra278,  ///< analogue transducer behind a converter of the kernel's industrial I/O
   kIio,       ///< barometer of the kernel's industrial I/O
   kImu,       ///< barometer within the IMU that this machine reads
@@ -45,10 +49,14 @@ inline constexpr NameTable<ImuSource, 6> kImuSourceNames{{{
     {ImuSource::kIio, "iio"},
 }}};
 
-inline constexpr NameTable<BarometerSource, 6> kBarometerSourceNames{{{
+inline constexpr NameTable<BarometerSource, 10> kBarometerSourceNames{{{
     {BarometerSource::kDatagram, "datagram"},
     {BarometerSource::kNone, "none"},
     {BarometerSource::kDps310, "dps310"},
+    {BarometerSource::kBmp581, "bmp581"},
+    {BarometerSource::kBmp390, "bmp390"},
+    {BarometerSource::kIcp20100, "icp20100"},
+    {BarometerSource::kMs5611, "ms5611"},
     {BarometerSource::kSetra278, "setra278"},
     {BarometerSource::kIio, "iio"},
     {BarometerSource::kImu, "imu"},

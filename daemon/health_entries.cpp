@@ -12,10 +12,8 @@ using ipc::HealthLevel;
 using ipc::HealthReport;
 
 std::int64_t barometer_period_ns(const BarometerSettings& barometer) {
-  const int rate_hz = barometer.source == BarometerSource::kDps310     ? barometer.dps310.pressure_rate_hz
-                      : barometer.source == BarometerSource::kSetra278 ? barometer.setra278.device.rate_hz
-                                                                       : barometer.iio.rate_hz;
-  return 1'000'000'000 / rate_hz;
+  const int rate_hz = barometer.rate_hz();
+  return rate_hz > 0 ? 1'000'000'000 / rate_hz : 0;
 }
 
 double per_second(std::uint64_t now, std::uint64_t before, double elapsed_s) {

@@ -52,18 +52,22 @@ std::string lidar_lines(const Survey& survey) {
 
 std::string barometer_lines(const Survey& survey) {
   std::string out = "\n";
-  const FoundI2c* dps310 = nullptr;
+  const FoundI2c* chosen = nullptr;
   for (const FoundI2c& device : survey.i2c) {
-    out += comment("Found " + std::string(device.is_dps310 ? "a DPS310" : "a device that is no DPS310") +
-                   " at " + device.bus + ", address " + hex_text(device.address) + ".");
-    if (dps310 == nullptr && device.is_dps310) dps310 = &device;
+    const bool known = device.barometer != BarometerSource::kNone;
+    const std::string what = known ? "barometer " + std::string(kBarometerSourceNames.name(device.barometer))
+                                   : "no known barometer";
+    out += comment("Found: " + what + " at " + device.bus + ", address " + hex_text(device.address) + ".");
+    if (chosen == nullptr && known) chosen = &device;
   }
   for (const FoundIio& device : survey.iio) {
     out += comment("Found " + device.name + " with a kernel driver in " + device.folder + ".");
   }
-  if (dps310 != nullptr) {
-    return out + "barometer.source = \"dps310\"\nbarometer.dps310.bus = " + quoted_toml(dps310->bus) +
-           "\nbarometer.dps310.address = " + quoted_toml(hex_text(dps310->address)) + "\n";
+  if (chosen != nullptr) {
+    const std::string name(kBarometerSourceNames.name(chosen->barometer));
+    return out + "barometer.source = " + quoted_toml(name) + "\nbarometer." + name +
+           ".bus = " + quoted_toml(chosen->bus) + "\nbarometer." + name +
+           ".address = " + quoted_toml(hex_text(chosen->address)) + "\n";
   }
   if (!survey.iio.empty()) {
     return out +

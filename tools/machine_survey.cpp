@@ -2,6 +2,7 @@
 #include "tools/machine_survey.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -9,13 +10,18 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <sstream>
 #include <system_error>
 
 #include "core/errors.hpp"
 #include "core/printable_text.hpp"
+#include "drivers/bmp390/registers.hpp"
+#include "drivers/bmp581/registers.hpp"
 #include "drivers/bus/smbus.hpp"
 #include "drivers/dps310/registers.hpp"
+#include "drivers/icp20100/registers.hpp"
 #include "drivers/lidar_models/lidar_models.hpp"
+#include "drivers/ms5611/compensation.hpp"
 #include "drivers/udp/udp.hpp"
 
 namespace isobar::tools {
@@ -44,18 +50,64 @@ std::string first_line(const fs::path& file) {
   return printable(line, 40);
 }
 
-/// Reads the product id at the addresses of the supported barometers. Reading a register changes no device.
+/// A register that tells a barometer from others, at the addresses at which it can be.
+struct Identification {
+  BarometerSource barometer;
+  std::array<std::uint8_t, 2> addresses;
+  std::uint8_t id_register;
+  std::uint8_t id;
+};
+
+constexpr std::array kIdentifications{
+    Identification{BarometerSource::kDps310, {0x76, 0x77}, dps310::kProductId, dps310::kDps310Id},
+    Identification{BarometerSource::kBmp390, {0x76, 0x77}, bmp390::kChipId, bmp390::kBmp390Id},
+    Identification{BarometerSource::kBmp581, {0x46, 0x47}, bmp581::kChipId, bmp581::kBmp581Id},
+    Identification{BarometerSource::kIcp20100, {0x63, 0x64}, icp20100::kDeviceId, icp20100::kIcp20100Id},
+};
+constexpr std::array<std::uint8_t, 2> kMs5611Addresses{0x76, 0x77};
+
+/// The MS5611 has no identification but the checksum of its memory.
+bool is_ms5611(RegisterBus& device) {
+  ms5611::Prom prom{};
+  if (!device.bursts()) return false;
+  for (std::size_t word = 0; word < prom.size(); ++word) {
+    std::array<std::uint8_t, 2> bytes{};
+    if (device.read(static_cast<std::uint8_t>(ms5611::kReadProm + 2 * word), bytes) != 0) return false;
+    prom[word] = static_cast<std::uint16_t>(bytes[0] << 8U | bytes[1]);
+  }
+  return ms5611::implausibility(prom) == nullptr;
+}
+
+bool is_one_of(const std::array<std::uint8_t, 2>& addresses, std::uint8_t address) {
+  return std::find(addresses.begin(), addresses.end(), address) != addresses.end();
+}
+
+/// Addresses of all supported barometers, ascending.
+std::vector<std::uint8_t> barometer_addresses() {
+  std::set<std::uint8_t> addresses(kMs5611Addresses.begin(), kMs5611Addresses.end());
+  for (const Identification& known : kIdentifications) {
+    addresses.insert(known.addresses.begin(), known.addresses.end());
+  }
+  return {addresses.begin(), addresses.end()};
+}
+
+std::string address_text(std::uint8_t address) {
+  std::ostringstream text;
+  text << "0x" << std::hex << int{address};
+  return text.str();
+}
+
+/// Identifies the device at an address of barometers. Reading a register changes no device.
 void probe_i2c(const std::string& bus, Survey& survey) {
-  for (const std::uint8_t address : {std::uint8_t{0x76}, std::uint8_t{0x77}}) {
+  for (const std::uint8_t address : barometer_addresses()) {
     SmbusDevice device(bus, address);
-    std::uint8_t id = 0;
+    std::uint8_t first = 0;
     int error = device.open();
-    if (error == 0) error = device.read(dps310::kProductId, {&id, 1});
+    if (error == 0) error = device.read(0, {&first, 1});
     if (error == 0) {
-      survey.i2c.push_back({bus, address, id == dps310::kDps310Id});
+      survey.i2c.push_back({bus, address, identify_barometer(device, address)});
     } else if (error == EBUSY) {
-      survey.notes.push_back(bus + ": a kernel driver holds the device at address " +
-                             (address == 0x76 ? "0x76" : "0x77"));
+      survey.notes.push_back(bus + ": a kernel driver holds the device at address " + address_text(address));
     } else if (error != ENXIO && error != EREMOTEIO && error != EIO && error != ETIMEDOUT) {
       survey.notes.push_back(bus + ": cannot be probed: " + std::strerror(error));
       return;
@@ -74,6 +126,18 @@ void find_iio(const fs::path& devices, Survey& survey) {
 }
 
 }  // namespace
+
+BarometerSource identify_barometer(RegisterBus& device, std::uint8_t address) {
+  for (const Identification& known : kIdentifications) {
+    std::uint8_t id = 0;
+    if (is_one_of(known.addresses, address) && device.read(known.id_register, {&id, 1}) == 0 &&
+        id == known.id) {
+      return known.barometer;
+    }
+  }
+  if (is_one_of(kMs5611Addresses, address) && is_ms5611(device)) return BarometerSource::kMs5611;
+  return BarometerSource::kNone;
+}
 
 void survey_devices(const fs::path& root, Survey& survey) {
   for (const std::string& name : names_in(root / "dev", {"i2c-"})) {

@@ -7,13 +7,17 @@
 #include <string>
 #include <vector>
 
+#include "config/sources.hpp"
+#include "drivers/bus/register_bus.hpp"
+
 namespace isobar::tools {
 
-/// A barometer on an I2C bus.
+/// A device on an I2C bus, at an address of a supported barometer.
 struct FoundI2c {
   std::string bus;  ///< "/dev/i2c-1"
   std::uint8_t address = 0;
-  bool is_dps310 = false;  ///< its product id says so
+  /// What its identification says; kNone: no supported barometer.
+  BarometerSource barometer = BarometerSource::kNone;
 };
 
 /// A barometer with a kernel driver.
@@ -41,9 +45,12 @@ struct Survey {
   std::vector<std::string> notes;  ///< what could not be looked at, with the reason
 };
 
-/// Looks at the devices below `root` ("/" but for tests): reads sysfs, and one register of each address at
+/// Looks at the devices below `root` ("/" but for tests): reads sysfs, and the identification of each address at
 /// which a known barometer may be.
 void survey_devices(const std::filesystem::path& root, Survey& survey);
+
+/// The supported barometer that answers at an address of an open bus, by reads alone; kNone: none.
+[[nodiscard]] BarometerSource identify_barometer(RegisterBus& device, std::uint8_t address);
 
 /// Listens to the ports of lidars.
 /// @param seconds time of listening

@@ -15,12 +15,12 @@ namespace isobar {
 namespace {
 
 /// One SMBus transaction. 0 or errno.
-int transfer(int file, char direction, std::uint8_t command, std::uint32_t size, i2c_smbus_data& data) {
+int transfer(int file, char direction, std::uint8_t command, std::uint32_t size, i2c_smbus_data* data) {
   i2c_smbus_ioctl_data arguments{};
   arguments.read_write = static_cast<std::uint8_t>(direction);
   arguments.command = command;
   arguments.size = size;
-  arguments.data = &data;
+  arguments.data = data;
   return ioctl(file, I2C_SMBUS, &arguments) < 0 ? errno : 0;
 }
 
@@ -49,6 +49,7 @@ int SmbusDevice::open() noexcept {
     close();
     return ENOTSUP;
   }
+  has_commands_ = (functions & I2C_FUNC_SMBUS_WRITE_BYTE) != 0;
   has_block_reads_ = (functions & I2C_FUNC_SMBUS_READ_I2C_BLOCK) != 0;
   if (ioctl(file_, I2C_SLAVE, static_cast<unsigned long>(address_)) < 0) {
     const int error = errno;
@@ -69,7 +70,7 @@ int SmbusDevice::read(std::uint8_t first, std::span<std::uint8_t> bytes) noexcep
 
 int SmbusDevice::read_byte(std::uint8_t address, std::uint8_t& value) noexcept {
   i2c_smbus_data data{};
-  const int error = transfer(file_, I2C_SMBUS_READ, address, I2C_SMBUS_BYTE_DATA, data);
+  const int error = transfer(file_, I2C_SMBUS_READ, address, I2C_SMBUS_BYTE_DATA, &data);
   if (error == 0) value = data.byte;
   return error;
 }
@@ -77,7 +78,7 @@ int SmbusDevice::read_byte(std::uint8_t address, std::uint8_t& value) noexcept {
 int SmbusDevice::read_block(std::uint8_t first, std::span<std::uint8_t> bytes) noexcept {
   i2c_smbus_data data{};
   data.block[0] = static_cast<std::uint8_t>(bytes.size());  // in: bytes wanted; out: bytes read
-  if (const int error = transfer(file_, I2C_SMBUS_READ, first, I2C_SMBUS_I2C_BLOCK_DATA, data); error != 0) {
+  if (const int error = transfer(file_, I2C_SMBUS_READ, first, I2C_SMBUS_I2C_BLOCK_DATA, &data); error != 0) {
     return error;
   }
   if (data.block[0] != bytes.size()) return EIO;
@@ -88,7 +89,12 @@ int SmbusDevice::read_block(std::uint8_t first, std::span<std::uint8_t> bytes) n
 int SmbusDevice::write(std::uint8_t address, std::uint8_t value) noexcept {
   i2c_smbus_data data{};
   data.byte = value;
-  return transfer(file_, I2C_SMBUS_WRITE, address, I2C_SMBUS_BYTE_DATA, data);
+  return transfer(file_, I2C_SMBUS_WRITE, address, I2C_SMBUS_BYTE_DATA, &data);
+}
+
+int SmbusDevice::command(std::uint8_t code) noexcept {
+  if (!has_commands_) return file_ < 0 ? EBADF : ENOTSUP;
+  return transfer(file_, I2C_SMBUS_WRITE, code, I2C_SMBUS_BYTE, nullptr);
 }
 
 }  // namespace isobar

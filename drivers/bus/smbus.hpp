@@ -7,8 +7,8 @@
 
 namespace isobar {
 
-/// Device on a kernel I2C bus, /dev/i2c-N. Uses SMBus byte reads and writes, and block reads if the adapter
-/// has them: i2c-stub and the simplest adapters support nothing else.
+/// Device on a kernel I2C bus, /dev/i2c-N. Uses SMBus byte reads and writes, and block reads and single bytes
+/// if the adapter has them: i2c-stub and the simplest adapters support nothing else.
 class SmbusDevice final : public RegisterBus {
  public:
   /// Does not open the bus; open() does.
@@ -20,6 +20,8 @@ class SmbusDevice final : public RegisterBus {
   int open() noexcept override;
   int read(std::uint8_t first, std::span<std::uint8_t> bytes) noexcept override;
   int write(std::uint8_t address, std::uint8_t value) noexcept override;
+  int command(std::uint8_t code) noexcept override;
+  [[nodiscard]] bool bursts() const noexcept override { return has_block_reads_; }
 
  private:
   void close() noexcept;
@@ -30,6 +32,7 @@ class SmbusDevice final : public RegisterBus {
   std::uint8_t address_;
   int file_ = -1;
   bool has_block_reads_ = false;
+  bool has_commands_ = false;
 };
 
 }  // namespace isobar

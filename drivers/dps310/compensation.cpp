@@ -3,25 +3,12 @@
 
 #include <algorithm>
 
-#include "core/plausibility.hpp"
+#include "drivers/barometer/bits.hpp"
+#include "drivers/barometer/operating_range.hpp"
 
 namespace isobar::dps310 {
 
 namespace {
-
-// Operating range of the data sheet: the chip specifies no result outside. Narrower than the plausible ranges
-// of core/plausibility.hpp, which hold for every sensor.
-constexpr PlausibleRange kOperatingPressurePa{30e3, 120e3};
-constexpr PlausibleRange kOperatingTemperatureC{-40.0, 85.0};
-static_assert(kPlausiblePressurePa.holds(kOperatingPressurePa.lowest) &&
-              kPlausiblePressurePa.holds(kOperatingPressurePa.highest));
-static_assert(kPlausibleTemperatureC.holds(kOperatingTemperatureC.lowest) &&
-              kPlausibleTemperatureC.holds(kOperatingTemperatureC.highest));
-
-/// The lowest `bits` of a word as a two's complement number.
-constexpr std::int32_t signed_field(std::uint32_t word, int bits) {
-  return static_cast<std::int32_t>(word << (32 - bits)) >> (32 - bits);
-}
 
 /// `bits` bits of a row of bytes, from bit `first` on, most significant first.
 std::int32_t field(std::span<const std::uint8_t> bytes, int first, int bits) {
@@ -77,13 +64,7 @@ Compensated compensate(const Coefficients& c, const RawResult& raw, double press
 
 const char* implausibility(const RawResult& raw, const Compensated& value) noexcept {
   if (raw.pressure == kNoResult || raw.temperature == kNoResult) return "no result in the registers";
-  if (!kOperatingTemperatureC.holds(value.temperature_c)) {
-    return "temperature outside -40 ... 85 degrees C";
-  }
-  if (!kOperatingPressurePa.holds(value.pressure_pa)) {
-    return "pressure outside 300 ... 1200 hPa";
-  }
-  return nullptr;
+  return outside_operation(value.pressure_pa, value.temperature_c);
 }
 
 }  // namespace isobar::dps310

@@ -14,6 +14,8 @@ inline constexpr std::uint8_t kPressureConfig = 0x06;     ///< PRS_CFG: rate << 
 inline constexpr std::uint8_t kTemperatureConfig = 0x07;  ///< TMP_CFG: the same, and kExternalThermometer
 inline constexpr std::uint8_t kMeasurementConfig = 0x08;  ///< MEAS_CFG: ready bits and measurement mode
 inline constexpr std::uint8_t kConfig = 0x09;             ///< CFG_REG: result shifts, FIFO, interrupts
+inline constexpr std::uint8_t kInterruptStatus =
+    0x0A;  ///< INT_STS, cleared by a read, and the interrupt line with it
 inline constexpr std::uint8_t kReset = 0x0C;
 inline constexpr std::uint8_t kProductId = 0x0D;
 inline constexpr std::uint8_t kCoefficients = 0x10;
@@ -34,7 +36,9 @@ inline constexpr std::uint8_t kModeOneTemperature = 0x02;
 inline constexpr std::uint8_t kModeBackground = 0x07;  ///< continuous pressure and temperature
 
 // Bits of CFG_REG.
-inline constexpr std::uint8_t kShiftTemperature = 0x08;  ///< required above 8 times oversampling
+inline constexpr std::uint8_t kInterruptHigh = 0x80;      ///< INT_HL: the interrupt line is active high
+inline constexpr std::uint8_t kInterruptPressure = 0x10;  ///< INT_PRS: at every new pressure
+inline constexpr std::uint8_t kShiftTemperature = 0x08;   ///< required above 8 times oversampling
 inline constexpr std::uint8_t kShiftPressure = 0x04;
 
 inline constexpr std::uint8_t kSoftReset = 0x89;  ///< RESET: soft reset and empty FIFO

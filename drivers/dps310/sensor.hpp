@@ -3,65 +3,68 @@
 
 #include <memory>
 
-#include "drivers/bus/register_bus.hpp"
-#include "drivers/device/fault_watch.hpp"
+#include "drivers/barometer/polled_barometer.hpp"
 #include "drivers/dps310/settings.hpp"
+#include "drivers/gpio/edge_line.hpp"
 
 namespace isobar::dps310 {
 
-/// DPS310 driver: a polled state machine without blocking waits, which restarts after every fault:
+/// DPS310 driver:
 ///
 ///   reset ──▶ ready? ──▶ coefficients, erratum, settings ──▶ one temperature ──▶ background measurement
-///     ▲ after a back-off: no answer, wrong device, lost settings, silent, stuck, implausible
 ///
-/// The ready bits are polled four times a measurement. A sample's stamp is the middle of the chip's averaging
-/// time, exact to half a poll.
-class Sensor final : public Device<PressureSample> {
+/// The ready bits are polled four times a measurement; with a data-ready line at its edges instead, and as
+/// before when none comes. A sample's stamp is the middle of the chip's averaging time, exact to half a poll,
+/// or by the kernel's stamp of the edge.
+class Sensor final : public PolledBarometer {
  public:
   /// @param settings validated: busy_time_s() below 1
   /// @param stuck_time_ns see StuckWatch
-  Sensor(const Settings& settings, std::unique_ptr<RegisterBus> bus, std::int64_t stuck_time_ns);
+  /// @param ready_line rises at every pressure; null: none
+  Sensor(const Settings& settings, std::unique_ptr<RegisterBus> bus, std::int64_t stuck_time_ns,
+         std::unique_ptr<EdgeLine> ready_line = nullptr);
 
-  Step step(std::int64_t now_ns) noexcept override;
-  [[nodiscard]] const DeviceStatus& status() const noexcept override { return faults_.status(); }
-  [[nodiscard]] const std::string& place() const noexcept override { return place_; }
+  [[nodiscard]] int file_descriptor() const noexcept override {
+    return ready_line_ ? ready_line_->file_descriptor() : -1;
+  }
 
  private:
-  enum class Phase : std::uint8_t { kBegin, kWaitReady, kFirstTemperature, kMeasuring };
+  enum class Piece : std::uint8_t { kWaitReady, kFirstTemperature };
   /// Result of reading the ready bits.
   struct Ready {
     int error = 0;
     std::uint8_t bits = 0;
   };
 
-  std::int64_t begin(std::int64_t now_ns) noexcept;
-  std::int64_t wait_ready(std::int64_t now_ns) noexcept;
-  std::int64_t set_up(std::int64_t now_ns) noexcept;
-  std::int64_t first_temperature(std::int64_t now_ns) noexcept;
-  void measure(std::int64_t now_ns, Step& step) noexcept;
-  void take_result(std::int64_t now_ns, Step& step) noexcept;
+  Outcome start(std::int64_t now_ns) noexcept override;
+  Outcome set_up(std::int64_t now_ns) noexcept override;
+  Outcome read(std::int64_t now_ns, Reading& reading) noexcept override;
 
+  Outcome wait_ready(std::int64_t now_ns) noexcept;
+  Outcome configure() noexcept;
+  Outcome first_temperature(std::int64_t now_ns) noexcept;
+  /// @param ended_ns of the pressure measurement, robot clock
+  void convert(std::int64_t now_ns, std::int64_t ended_ns, Reading& reading) const noexcept;
+  /// Takes the edges that wait.
+  int read_line(std::int64_t now_ns) noexcept;
   int read_coefficients(const char*& rule) noexcept;
   int apply_erratum() noexcept;
   int write_settings() noexcept;
   Ready read_ready() noexcept;
   int read_results(std::uint8_t ready) noexcept;
-  int read_raw(std::uint8_t wanted) noexcept;
-  std::int64_t no_answer(int error, std::int64_t now_ns) noexcept;
-  std::int64_t fail(DeviceState state, const char* what, std::int64_t now_ns) noexcept;
 
   Settings settings_;
-  std::unique_ptr<RegisterBus> bus_;
-  std::string place_;
+  std::unique_ptr<EdgeLine> ready_line_;
+  std::int64_t period_ns_;
   std::int64_t poll_ns_;
   std::int64_t pressure_time_ns_;
   std::int64_t temperature_time_ns_;
   std::int64_t temperature_silence_ns_;
-  FaultWatch faults_;
-  StuckWatch stuck_;
-  Phase phase_ = Phase::kBegin;
+  Piece piece_ = Piece::kWaitReady;
   std::int64_t deadline_ns_ = 0;
   std::int64_t newest_temperature_ns_ = 0;
+  std::int64_t edge_ns_ =
+      0;  ///< newest edge of the data-ready line since the last pressure, robot clock; 0: none
   Coefficients coefficients_;
   RawResult raw_;                 ///< newest pressure and newest temperature
   std::uint8_t thermometer_ = 0;  ///< thermometer of the coefficients: kExternalThermometer, or 0: the chip's

@@ -202,10 +202,17 @@ TEST_CASE("Impossible rates of a barometer are refused if that barometer is in u
   CHECK(parse_config("[barometer]\nsource = \"dps310\"\n", "c.toml").barometer.source ==
         BarometerSource::kDps310);
   fails("[barometer.dps310]\npressure_rate_hz = 30\n", "must be one of 1, 2, 4, 8, 16, 32, 64, 128");
+  fails("barometer.source = \"bmp581\"\nbarometer.bmp581.pressure_oversampling = 64\n",
+        "barometer.bmp581.rate_hz: 50 measurements of 41.4 ms are 2.07 s of measuring in a second, must be "
+        "below 1; lower the rate or an oversampling");
+  fails("barometer.source = \"ms5611\"\nbarometer.ms5611.rate_hz = 100\n", "barometer.ms5611.rate_hz: 100");
+  fails("barometer.source = \"bmp390\"\nbarometer.bmp390.rate_hz = 100\n", "barometer.bmp390.rate_hz: 100");
+  fails("barometer.bmp390.rate_hz = 60\n", "must be one of 25, 50, 100, 200");
   fails("[barometer.dps310]\naddress = \"0x78\"\n", "must be one of 0x77, 0x76");
   fails("[barometer]\nsource = \"setra278\"\n[barometer.setra278]\nlow_v = 3.0\n",
         "barometer.setra278: high_v must be above low_v");
-  fails("[barometer]\nsource = \"bmp280\"\n", "must be one of datagram, none, dps310, setra278, iio");
+  fails("[barometer]\nsource = \"bmp280\"\n",
+        "must be one of datagram, none, dps310, bmp581, bmp390, icp20100, ms5611, setra278, iio");
 }
 
 TEST_CASE("An IMU on a serial line needs a line that carries its rate, and its barometer needs the IMU") {

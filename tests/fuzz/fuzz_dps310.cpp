@@ -13,6 +13,7 @@
 
 namespace {
 
+using namespace isobar;
 using namespace isobar::dps310;
 
 class Input {

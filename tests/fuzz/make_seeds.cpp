@@ -176,6 +176,12 @@ int main(int count, char** arguments) {
        "\"TOA5\",\"X\"\r\n\"TIMESTAMP\",\"P_Avg\",\"Ta\"\r\n\"TS\",\"hPa\",\"degC\"\r\n"
        "\"2020-04-04 00:00:00\",986.5,20\r\n\"2020-04-04T00:01:00+02:00\",nan,20\r\n");
   save("fuzz_dps310", "sound", std::string(600, '\0'));
+  for (char sensor = 0; sensor < 4; ++sensor) {
+    save("fuzz_barometers", "sound" + std::to_string(sensor),
+         std::string(1, sensor) + std::string(600, '\0'));
+    save("fuzz_barometers", "free" + std::to_string(sensor),
+         std::string(1, sensor) + std::string(40, '\0') + std::string(400, '\x21'));
+  }
   save("fuzz_dps310", "free", std::string(40, '\0') + std::string(400, '\x21'));
   save(
       "fuzz_datagram", "all",

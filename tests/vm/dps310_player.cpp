@@ -12,6 +12,7 @@
 #include "drivers/bus/smbus.hpp"
 #include "tests/drivers/dps310/chip_model.hpp"
 
+using namespace isobar;
 using namespace isobar::dps310;
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;

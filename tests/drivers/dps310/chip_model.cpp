@@ -71,6 +71,11 @@ void ChipModel::finish(bool pressure) {
     if (!frozen) newest_pressure_ = raw_pressure(middle_ns);
     store(kPressureResult, newest_pressure_);
     registers_[kMeasurementConfig] |= kPressureReady;
+    // Data sheet, INT_STS: the line stays active until the status is read.
+    if ((registers_[kConfig] & 0x90) == 0x90 && (registers_[0x0A] & 0x01) == 0) {
+      registers_[0x0A] |= 0x01;
+      interrupts.push_back(now_ns_);
+    }
   } else {
     store(kTemperatureResult, raw_temperature());
     registers_[kMeasurementConfig] |= kTemperatureReady;
@@ -140,6 +145,11 @@ std::uint8_t ChipModel::value_of(std::uint8_t address) {
       return id;
     case kCoefficientSource:
       return external_thermometer ? kExternalThermometer : 0;
+    case 0x0A: {
+      const std::uint8_t status = registers_[address];
+      registers_[address] = 0;
+      return status;
+    }
     case kPressureResult + 2:
       registers_[kMeasurementConfig] &= static_cast<std::uint8_t>(~kPressureReady);
       return registers_[address];

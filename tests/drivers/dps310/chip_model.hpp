@@ -52,7 +52,8 @@ class ChipModel {
   // Outputs, read by the test.
   std::uint64_t transactions = 0;
   std::uint64_t soft_resets = 0;
-  std::set<std::int32_t> pressures;  ///< every raw pressure that was ever measured
+  std::vector<std::int64_t> interrupts;  ///< times at which the interrupt line rose, clock of the chip
+  std::set<std::int32_t> pressures;      ///< every raw pressure that was ever measured
   [[nodiscard]] std::uint8_t held(std::uint8_t address) const { return registers_[address]; }
 
   // The bus.

@@ -4,8 +4,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -21,6 +25,7 @@ namespace isobar::test::test_config_proposal {
 namespace {
 
 namespace fs = std::filesystem;
+using tools::identify_barometer;
 using tools::proposal;
 using tools::Survey;
 
@@ -96,15 +101,61 @@ TEST_CASE("serial lines that exist and GPIO chips are named; a bus that is none 
   CHECK(has(proposal(survey), "# Not looked at: " + (machine.root() / "dev/i2c-1").string()));
 }
 
-TEST_CASE("a DPS310 at its address is preferred to a kernel driver, other chips are only named") {
+TEST_CASE("a barometer at its address is preferred to a kernel driver, other chips are only named") {
   Survey survey;
-  survey.i2c = {{"/dev/i2c-0", 0x76, false}, {"/dev/i2c-3", 0x76, true}};
+  survey.i2c = {{"/dev/i2c-0", 0x76, BarometerSource::kNone}, {"/dev/i2c-3", 0x76, BarometerSource::kDps310}};
   survey.iio = {{"/sys/bus/iio/devices/iio:device1", "bmp280"}};
-  const Config config = parse_config(proposal(survey), "c.toml");
+  Config config = parse_config(proposal(survey), "c.toml");
   CHECK(config.barometer.source == BarometerSource::kDps310);
   CHECK(config.barometer.dps310.bus == "/dev/i2c-3");
   CHECK(config.barometer.dps310.address == "0x76");
-  CHECK(has(proposal(survey), "# Found a device that is no DPS310 at /dev/i2c-0, address 0x76."));
+  CHECK(has(proposal(survey), "# Found: no known barometer at /dev/i2c-0, address 0x76."));
+  survey.i2c = {{"/dev/i2c-7", 0x64, BarometerSource::kIcp20100}};
+  config = parse_config(proposal(survey), "c.toml");
+  CHECK(config.barometer.source == BarometerSource::kIcp20100);
+  CHECK(config.barometer.icp20100.bus == "/dev/i2c-7");
+  CHECK(config.barometer.icp20100.address == "0x64");
+}
+
+TEST_CASE("every barometer that a bus can have is identified, by reads alone, and other bytes are none") {
+  class Chip final : public RegisterBus {
+   public:
+    int open() noexcept override { return 0; }
+    int read(std::uint8_t first, std::span<std::uint8_t> bytes) noexcept override {
+      for (std::uint8_t& byte : bytes) byte = registers[first++];
+      return 0;
+    }
+    int write(std::uint8_t, std::uint8_t) noexcept override {
+      ++writes;
+      return 0;
+    }
+    std::array<std::uint8_t, 256> registers{};
+    int writes = 0;
+  };
+  Chip dps310;
+  dps310.registers[0x0D] = 0x10;
+  CHECK(identify_barometer(dps310, 0x77) == BarometerSource::kDps310);
+  CHECK(identify_barometer(dps310, 0x47) == BarometerSource::kNone);  // not its address
+  Chip bmp390;
+  bmp390.registers[0x00] = 0x60;
+  CHECK(identify_barometer(bmp390, 0x76) == BarometerSource::kBmp390);
+  Chip bmp581;
+  bmp581.registers[0x01] = 0x50;
+  CHECK(identify_barometer(bmp581, 0x46) == BarometerSource::kBmp581);
+  Chip icp20100;
+  icp20100.registers[0x0C] = 0x63;
+  CHECK(identify_barometer(icp20100, 0x63) == BarometerSource::kIcp20100);
+  Chip ms5611;  // the example of application note AN520
+  const std::array<std::uint8_t, 16> prom{0x31, 0x32, 0x33, 0x34, 0x35, 0x36, 0x37, 0x38,
+                                          0x39, 0x40, 0x41, 0x42, 0x43, 0x44, 0x45, 0x0B};
+  std::copy(prom.begin(), prom.end(), ms5611.registers.begin() + 0xA0);
+  CHECK(identify_barometer(ms5611, 0x77) == BarometerSource::kMs5611);
+  Chip none;
+  none.registers.fill(0xFF);
+  for (int address = 0; address < 128; ++address) {
+    CHECK(identify_barometer(none, static_cast<std::uint8_t>(address)) == BarometerSource::kNone);
+  }
+  CHECK(dps310.writes + bmp390.writes + bmp581.writes + icp20100.writes + ms5611.writes + none.writes == 0);
 }
 
 TEST_CASE("a lidar that sends is found with its address, model and rate") {
