@@ -68,6 +68,7 @@ int BarometerSettings::rate_hz() const noexcept {
   switch (source) {
     case BarometerSource::kDatagram:
     case BarometerSource::kNone:
+    case BarometerSource::kImu:  // that of the IMU
       return 0;
     case BarometerSource::kDps310:
       return dps310.pressure_rate_hz;
