@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/recording_check.hpp"
+
+#include <algorithm>
+#include <memory>
+
+#include "core/contradictions/finding_text.hpp"
+#include "core/contradictions/input_check.hpp"
+#include "core/errors.hpp"
+#include "daemon/lidar_sender.hpp"
+#include "daemon/stage_settings.hpp"
+#include "drivers/velodyne/velodyne_decoder.hpp"
+
+namespace isobar {
+
+namespace {
+
+using recording::EventKind;
+
+/// Decoder and detectors behind the reader.
+class CheckedInputs {
+ public:
+  explicit CheckedInputs(const Config& used)
+      : sender_(stage_settings(used).lidar.model, used.lidar.sender),
+        decoder_(stage_settings(used).lidar),
+        check_({.imu = used.imu.mount, .lidar = used.lidar.mount}),
+        scan_(std::make_unique<Scan>()),
+        has_imu_(used.imu.present()) {}
+
+  void handle(const recording::Event& event) {
+    switch (event.kind) {
+      case EventKind::kLidarPacket:
+        if (sender_.admits(event.packet, event.sender_ipv4, event.stamp_ns) &&
+            decoder_.add_packet(event.packet, event.stamp_ns, *scan_).scan_complete) {
+          check_.add_scan(*scan_);
+        }
+        break;
+      case EventKind::kImu:
+        if (has_imu_) check_.add_imu(event.imu);
+        break;
+      case EventKind::kPressure:
+        check_.add_pressure(event.pressure);
+        break;
+      case EventKind::kBasePressure:
+        check_.add_base_pressure(event.pressure);
+        break;
+      case EventKind::kWheel:
+        check_.add_wheel(event.wheel);
+        break;
+    }
+  }
+  void finish() {
+    if (decoder_.flush(*scan_)) check_.add_scan(*scan_);
+  }
+  [[nodiscard]] const InputCheck& check() const { return check_; }
+
+ private:
+  LidarSender sender_;
+  velodyne::VelodyneDecoder decoder_;
+  InputCheck check_;
+  std::unique_ptr<Scan> scan_;
+  bool has_imu_;
+};
+
+/// Rows that the reader refused as implausible, of a sensor whose unit no good row could tell: rates in deg/s or speeds in
+/// mm/s are beyond every range while the robot moves. One in a hundred, and twenty at least: no transport errs so often.
+void add_refused_rows(const std::vector<recording::Count>& counts, const char* stream, CheckedSensor sensor,
+                      Contradiction kind, const char* rule, Findings& findings) {
+  constexpr std::uint64_t kLeastRows = 20;
+  constexpr std::uint64_t kShare = 100;
+  const auto count_of = [&](const std::string& name) {
+    const auto found = std::find_if(counts.begin(), counts.end(),
+                                    [&](const recording::Count& count) { return count.name == name; });
+    return found == counts.end() ? recording::Count{} : *found;
+  };
+  const recording::Count refused = count_of(std::string(stream) + ": implausible rows");
+  const std::uint64_t good = count_of(std::string(stream) + ": good rows").count;
+  if (refused.count < kLeastRows || refused.count * kShare < good) return;
+  if (refused.first_message.find(rule) == std::string::npos || findings.find(kind) != nullptr) return;
+  findings.add(
+      {.kind = kind, .sensor = sensor, .confidence = 1.0, .evidence = static_cast<double>(refused.count)});
+}
+
+/// The finding that leaves no pose with gravity: wheels or a barometer without a common time are left out.
+const Finding* missing_overlap(const Findings& findings) {
+  for (const Finding& finding : findings.all()) {
+    const bool is_needed = finding.sensor == CheckedSensor::kImu || finding.sensor == CheckedSensor::kLidar;
+    if (finding.kind == Contradiction::kNoOverlap && is_needed) return &finding;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+RecordingCheck check_recording(const std::filesystem::path& recording, const Config& used,
+                               const std::function<void(double)>& progress) {
+  recording::RecordingReader reader(recording);
+  CheckedInputs inputs(used);
+  recording::Event event;
+  for (std::uint64_t events = 0; reader.next(event); ++events) {
+    inputs.handle(event);
+    if (events % 512 == 0) progress(reader.progress());
+  }
+  inputs.finish();
+  RecordingCheck out;
+  out.findings = inputs.check().find();
+  inputs.check().add_overlaps(out.findings);
+  inputs.check().add_clocks(out.findings);
+  out.counts = reader.counts();
+  if (used.imu.present()) {
+    add_refused_rows(out.counts, "imu", CheckedSensor::kImu, Contradiction::kGyroUnit,
+                     "angular rate must lie", out.findings);
+  }
+  add_refused_rows(out.counts, "wheel", CheckedSensor::kWheels, Contradiction::kWheelUnit, "wheel ",
+                   out.findings);
+  out.usable = usable_sensors(out.findings);
+  for (std::size_t i = 0; i < kCheckedSensors; ++i) {
+    out.times[i] = inputs.check().times(static_cast<CheckedSensor>(i));
+  }
+  out.warnings = reader.warnings();
+  if (reader.manifest().base_barometer) out.base_clock = reader.base_clock().reason;
+  return out;
+}
+
+recording::Manifest without_unusable(recording::Manifest manifest, const UsableSensors& usable) {
+  if (!usable.imu) manifest.imu.reset();
+  if (!usable.wheels) manifest.wheel.reset();
+  if (!usable.barometers) manifest.barometer.reset();
+  if (!usable.barometers) manifest.base_barometer.reset();
+  return manifest;
+}
+
+bool is_used(EventKind kind, const UsableSensors& usable) {
+  switch (kind) {
+    case EventKind::kLidarPacket:
+      return true;
+    case EventKind::kImu:
+      return usable.imu;
+    case EventKind::kPressure:
+    case EventKind::kBasePressure:
+      return usable.barometers;
+    case EventKind::kWheel:
+      return usable.wheels;
+  }
+  return true;
+}
+
+void refuse_clocks_apart(const RecordingCheck& check, const std::filesystem::path& recording) {
+  if (const Finding* apart = missing_overlap(check.findings)) {
+    throw DataError(recording.string() + ": " + finding_text(*apart));
+  }
+}
+
+std::vector<std::string> contradiction_texts(const RecordingCheck& check) {
+  std::vector<std::string> texts;
+  for (const Finding& finding : check.findings.all()) texts.push_back(finding_text(finding));
+  if (std::string left_out = left_out_text(check.usable); !left_out.empty())
+    texts.push_back(std::move(left_out));
+  return texts;
+}
+
+}  // namespace isobar
