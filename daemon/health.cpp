@@ -9,6 +9,7 @@
 #include "core/names.hpp"
 #include "core/stamp.hpp"
 #include "daemon/base_station_health.hpp"
+#include "daemon/contradictions.hpp"
 #include "daemon/health_entries.hpp"
 #include "daemon/health_entry.hpp"
 #include "daemon/input_health.hpp"
@@ -73,6 +74,7 @@ void HealthMonitor::fill(const StatusSnapshot& now, HealthReport& report) {
   fill_lidar(now, elapsed_s, report);
   fill_samples(now, elapsed_s, report);
   add_starts_over(report, start_over_, now.now_ns);
+  add_contradictions(report, now.contradictions);
   fill_faults(now, report);
   fill_prior(now, report);
   fill_registration(now, report);

@@ -20,6 +20,12 @@ struct InputCheck::State {
 
   StreamTimes& times_of(CheckedSensor sensor) { return times[static_cast<std::size_t>(sensor)]; }
 
+  [[nodiscard]] TurnComparisons compare() const {
+    return {.gyro_by_scans = compare_turns(gyro, scans),
+            .gyro_by_wheels = compare_turns(gyro, wheels),
+            .wheels_by_scans = compare_turns(wheels, scans)};
+  }
+
   Eigen::Vector3d lidar_rpy_deg;
   Eigen::Matrix3d R_base_imu;
   GravityCheck gravity;
@@ -68,9 +74,7 @@ void InputCheck::add_scan(const Scan& scan) {
 Findings InputCheck::find() const {
   const State& s = *state_;
   Findings findings;
-  const TurnComparisons turns{.gyro_by_scans = compare_turns(s.gyro, s.scans),
-                              .gyro_by_wheels = compare_turns(s.gyro, s.wheels),
-                              .wheels_by_scans = compare_turns(s.wheels, s.scans)};
+  const TurnComparisons turns = s.compare();
   auto mount = s.gravity.mount();
   const bool points_down = mount && s.gravity.points_down();
   // The gyro turns as the others do: its axes are right, and with them the mount.
@@ -95,6 +99,15 @@ void InputCheck::add_clocks(Findings& findings) const {
 }
 
 void InputCheck::add_overlaps(Findings& findings) const { add_missing_overlaps(state_->times, findings); }
+
+bool InputCheck::full() const { return state_->gyro.full() || state_->scans.full(); }
+
+bool InputCheck::turns_known() const {
+  const TurnComparisons turns = state_->compare();
+  return verdict_on(turns.gyro_by_scans) != TurnVerdict::kUnclear ||
+         verdict_on(turns.gyro_by_wheels) != TurnVerdict::kUnclear ||
+         verdict_on(turns.wheels_by_scans) != TurnVerdict::kUnclear;
+}
 
 const StreamTimes& InputCheck::times(CheckedSensor sensor) const { return state_->times_of(sensor); }
 

@@ -45,6 +45,10 @@ class InputCheck {
   void add_clocks(Findings& findings) const;
   /// Streams without a common time. For whole recordings: of a live run, a sensor may come later than another goes.
   void add_overlaps(Findings& findings) const;
+  /// Twenty minutes are over: later samples add nothing.
+  [[nodiscard]] bool full() const;
+  /// Two of the sensors that feel turns have been compared.
+  [[nodiscard]] bool turns_known() const;
   [[nodiscard]] const StreamTimes& times(CheckedSensor sensor) const;
 
  private:

@@ -14,9 +14,9 @@ namespace {
 constexpr int kWindowCells = 10;
 // 6 deg in a second: noise of scans and of wheels is a tenth of it.
 constexpr double kLeastTurnRad = 0.1;
-// A way that scans measure to a tenth, and a turn that does not bend it.
+// A way that scans measure to a tenth, and a turn in which a lever arm that is wrong by 0.1 m moves by less than a third of it.
 constexpr double kLeastWayM = 0.1;
-constexpr double kMostTurnRad = 0.15;
+constexpr double kMostTurnRad = 0.3;
 // Change of speed in a second that stands out from vibration and bumps.
 constexpr double kLeastChangeMS = 0.15;
 constexpr int kLeastChanges = 8;

@@ -21,7 +21,7 @@ struct TurnRatio {
 /// which of both errs.
 TurnRatio compare_turns(const MotionSeries& sensor, const MotionSeries& reference);
 
-/// Way of the wheels against that of the scans, where the robot goes straight.
+/// Way of the wheels against that of the scans, where the robot goes nearly straight.
 struct WayRatio {
   double ratio = 0.0;        ///< wheels over scans
   double angle_rad = 0.0;    ///< direction of the scans' way against the wheels', counter-clockwise

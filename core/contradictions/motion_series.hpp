@@ -40,6 +40,7 @@ class MotionSeries {
   void add_rate(std::int64_t stamp_ns, const PlanarStep& rate_per_s);
 
   [[nodiscard]] bool empty() const { return cells_.empty(); }
+  [[nodiscard]] bool full() const { return cells_.size() == kCapacity; }
   /// Number of the first cell since the epoch, and that after the last.
   [[nodiscard]] std::int64_t first() const { return first_; }
   [[nodiscard]] std::int64_t end() const { return first_ + static_cast<std::int64_t>(cells_.size()); }
