@@ -125,7 +125,10 @@ void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, He
   for (std::size_t kind = 0; kind < datagram::kKinds; ++kind) {
     const double rate_hz = per_second(now.prior.samples[kind], last_.prior.samples[kind], elapsed_s);
     const auto which = static_cast<datagram::Kind>(kind);
-    if (which == datagram::Kind::kImu && !config_.imu.present()) {
+    if (which == datagram::Kind::kImu && !usable_sensors(now.contradictions).imu) {
+      add_entry(report, kNames[kind], HealthLevel::kWarning,
+                "samples come and are not used: see the contradictions", rate_hz);
+    } else if (which == datagram::Kind::kImu && !config_.imu.present()) {
       add_absent(report, kNames[kind], "imu.source", now.prior.samples[kind]);
     } else if (which == datagram::Kind::kPressure && !config_.barometer.present()) {
       add_absent(report, kNames[kind], "barometer.source", now.samples.refused_pressure);

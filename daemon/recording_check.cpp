@@ -2,6 +2,7 @@
 #include "daemon/recording_check.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "core/contradictions/finding_text.hpp"
@@ -81,6 +82,25 @@ void add_refused_rows(const std::vector<recording::Count>& counts, const char* s
       {.kind = kind, .sensor = sensor, .confidence = 1.0, .evidence = static_cast<double>(refused.count)});
 }
 
+/// Files that begin and end apart by the same: what a clock that is off looks like, and what a recorder that was started and
+/// stopped apart may look like. For a robot whose turns tell nothing.
+void add_shifted_files(const RecordingCheck& check, std::vector<std::string>& notes) {
+  constexpr double kLeastShiftS = 1.0;
+  constexpr double kSameShiftS = 0.3;
+  const StreamTimes& lidar = check.times[static_cast<std::size_t>(CheckedSensor::kLidar)];
+  for (const CheckedSensor sensor :
+       {CheckedSensor::kImu, CheckedSensor::kBarometer, CheckedSensor::kWheels}) {
+    const StreamTimes& times = check.times[static_cast<std::size_t>(sensor)];
+    if (times.count() < 2 || lidar.count() < 2 || overlap_s(times, lidar) < 0.0) continue;
+    const double begin_s = seconds_between(lidar.first_ns(), times.first_ns());
+    const double end_s = seconds_between(lidar.last_ns(), times.last_ns());
+    if (std::abs(begin_s) < kLeastShiftS || std::abs(begin_s - end_s) > kSameShiftS) continue;
+    notes.push_back(std::string(kCheckedSensorNames.name(sensor)) + ": begins and ends " +
+                    clock_difference_text(begin_s) + (begin_s < 0.0 ? " before" : " after") +
+                    " the lidar: is its clock off by that?");
+  }
+}
+
 /// The finding that leaves no pose with gravity: wheels or a barometer without a common time are left out.
 const Finding* missing_overlap(const Findings& findings) {
   for (const Finding& finding : findings.all()) {
@@ -117,6 +137,7 @@ RecordingCheck check_recording(const std::filesystem::path& recording, const Con
   for (std::size_t i = 0; i < kCheckedSensors; ++i) {
     out.times[i] = inputs.check().times(static_cast<CheckedSensor>(i));
   }
+  if (out.findings.empty()) add_shifted_files(out, out.notes);
   out.warnings = reader.warnings();
   if (reader.manifest().base_barometer) out.base_clock = reader.base_clock().reason;
   return out;
@@ -156,6 +177,7 @@ std::vector<std::string> contradiction_texts(const RecordingCheck& check) {
   for (const Finding& finding : check.findings.all()) texts.push_back(finding_text(finding));
   if (std::string left_out = left_out_text(check.usable); !left_out.empty())
     texts.push_back(std::move(left_out));
+  texts.insert(texts.end(), check.notes.begin(), check.notes.end());
   return texts;
 }
 

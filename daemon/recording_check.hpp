@@ -23,6 +23,7 @@ struct RecordingCheck {
   AllStreamTimes times;  ///< by CheckedSensor, robot clock; the lidar's are scans
   std::string base_clock;
   std::vector<std::string> warnings;     ///< of the manifest
+  std::vector<std::string> notes;        ///< what is no evidence, but worth a look
   std::vector<recording::Count> counts;  ///< of the reader
 };
 

@@ -81,6 +81,7 @@ void run_check(const CheckOptions& options) {
   print_overlaps(check);
   std::printf("\n");
   for (const std::string& warning : check.warnings) std::printf("note: %s\n", warning.c_str());
+  for (const std::string& note : check.notes) std::printf("note: %s\n", note.c_str());
   if (!check.base_clock.empty()) std::printf("base station clock: %s\n", check.base_clock.c_str());
   for (const Finding& finding : check.findings.all()) {
     std::printf("contradiction: %s\n", finding_text(finding).c_str());

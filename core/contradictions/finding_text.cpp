@@ -2,28 +2,32 @@
 #include "core/contradictions/finding_text.hpp"
 
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <string_view>
+#include <system_error>
 
 namespace isobar {
 
 namespace {
 
-// printf, whose format the compiler checks.
-[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...) {  // NOLINT(cert-dcl50-cpp)
-  std::array<char, 256> text{};
-  std::va_list values;  // NOLINT(cppcoreguidelines-pro-type-vararg): as the next three
-  va_start(values, format);
-  std::vsnprintf(text.data(), text.size(), format, values);
-  va_end(values);
-  return text.data();
+std::string number_text(double value, std::chars_format format, int precision) {
+  std::array<char, 64> text{};
+  // + 0.0: no "-0".
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value + 0.0, format, precision);
+  return end.ec == std::errc() ? std::string(text.data(), end.ptr) : "?";
+}
+std::string fixed(double value, int decimals) {
+  return number_text(value, std::chars_format::fixed, decimals);
+}
+/// With so many significant digits, without trailing zeros.
+std::string general(double value, int digits) {
+  return number_text(value, std::chars_format::general, digits);
 }
 
 std::string would_fit_text(const char* key, const std::array<double, 3>& rpy_deg) {
-  // + 0.0: no "-0".
-  return formatted("%s = [%g, %g, %g] would fit", key, rpy_deg[0] + 0.0, rpy_deg[1] + 0.0, rpy_deg[2] + 0.0);
+  return std::string(key) + " = [" + general(rpy_deg[0], 6) + ", " + general(rpy_deg[1], 6) + ", " +
+         general(rpy_deg[2], 6) + "] would fit";
 }
 
 const char* noun(CheckedSensor sensor) {
@@ -40,12 +44,12 @@ std::string gravity_text(const Finding& finding) {
   if (finding.measured > 135.0) {
     return "gravity points up: " + mount + ", or the accelerations have the wrong sign";
   }
-  return formatted("gravity points to the side, %.0f deg from down: ", finding.measured) + mount;
+  return "gravity points to the side, " + fixed(finding.measured, 0) + " deg from down: " + mount;
 }
 
 std::string times_text(double ratio) {
   const double size = std::abs(ratio);
-  return size >= 9.5 ? formatted("%.0f times", size) : formatted("%.2g times", size);
+  return (size >= 9.5 ? fixed(size, 0) : general(size, 2)) + " times";
 }
 
 std::string gyro_unit_text(const Finding& finding) {
@@ -74,9 +78,9 @@ std::string wheel_unit_text(const Finding& finding) {
     if (off < nearest) nearest = off;
   }
   const std::string seen = "the wheels go " + times_text(finding.measured) + " as fast as the scans: ";
-  return seen + (best != nullptr ? formatted("are they in %s?", best)
-                                 : formatted("are unit and radius right? %.3g times their speed would fit",
-                                             finding.remedy[0]));
+  return seen + (best != nullptr ? "are they in " + std::string(best) + "?"
+                                 : "are unit and radius right? " + general(finding.remedy[0], 3) +
+                                       " times their speed would fit");
 }
 
 std::string wheel_turn_unit_text(const Finding& finding) {
@@ -86,9 +90,9 @@ std::string wheel_turn_unit_text(const Finding& finding) {
 }
 
 std::string lidar_yaw_text(const Finding& finding) {
-  return formatted("the scans move %.0f deg to the %s of where the wheels go: ", std::abs(finding.measured),
-                   finding.measured > 0.0 ? "left" : "right") +
-         would_fit_text("lidar.rpy_deg", finding.remedy);
+  return "the scans move " + fixed(std::abs(finding.measured), 0) + " deg to the " +
+         (finding.measured > 0.0 ? "left" : "right") +
+         " of where the wheels go: " + would_fit_text("lidar.rpy_deg", finding.remedy);
 }
 
 std::string clock_hint(double difference_s) {
@@ -109,11 +113,11 @@ std::string clock_hint(double difference_s) {
 std::string clock_text(const Finding& finding) {
   const bool in_common = finding.kind != Contradiction::kNoOverlap;
   const std::string lead =
-      formatted("the clock of the %s is %s", noun(finding.sensor), in_common ? "" : "about ");
+      std::string("the clock of the ") + noun(finding.sensor) + " is " + (in_common ? "" : "about ");
   const char* direction = finding.measured < 0.0 ? " behind" : " ahead of";
   const bool lidar_alone = !in_common && finding.sensor == CheckedSensor::kLidar;
   const std::string other =
-      lidar_alone ? " those of the other sensors" : formatted(" that of the %s", noun(finding.other));
+      lidar_alone ? " those of the other sensors" : std::string(" that of the ") + noun(finding.other);
   return lead + clock_difference_text(finding.measured) + direction + other +
          (in_common
               ? std::string(", as their turns show")
@@ -126,11 +130,11 @@ std::string clock_text(const Finding& finding) {
 std::string clock_difference_text(double difference_s) {
   const double size = std::abs(difference_s);
   constexpr double kDayS = 86'400.0;
-  if (size < 120.0) return formatted("%.1f s", size);
-  if (size >= 10.0 * kDayS) return formatted("%.0f days", size / kDayS);
+  if (size < 120.0) return fixed(size, 1) + " s";
+  if (size >= 10.0 * kDayS) return fixed(size / kDayS, 0) + " days";
   const auto whole = static_cast<long long>(std::llround(size));
-  if (whole < 3600) return formatted("%lld min %lld s", whole / 60, whole % 60);
-  return formatted("%lld h %lld min %lld s", whole / 3600, whole / 60 % 60, whole % 60);
+  const std::string rest = std::to_string(whole / 60 % 60) + " min " + std::to_string(whole % 60) + " s";
+  return whole < 3600 ? rest : std::to_string(whole / 3600) + " h " + rest;
 }
 
 std::string finding_text(const Finding& finding) {
@@ -138,15 +142,15 @@ std::string finding_text(const Finding& finding) {
     case Contradiction::kImuMount:
       return gravity_text(finding);
     case Contradiction::kAccelUnit:
-      return formatted("gravity is %.2f instead of 9.81: is the acceleration in g, not in m/s^2?",
-                       finding.measured);
+      return "gravity is " + fixed(finding.measured, 2) +
+             " instead of 9.81: is the acceleration in g, not in m/s^2?";
     case Contradiction::kAccelNegated:
       return "gravity points up, but the gyro turns the right way: are the accelerations negated?";
     case Contradiction::kGyroUnit:
       return gyro_unit_text(finding);
     case Contradiction::kGyroMirrored:
-      return formatted("the gyro turns against the %s: is its z axis negated, or are its axes left-handed?",
-                       turner(finding.other));
+      return std::string("the gyro turns against the ") + turner(finding.other) +
+             ": is its z axis negated, or are its axes left-handed?";
     case Contradiction::kLidarMirrored:
       return "the scans turn against gyro and wheels: is the lidar upside down (180 deg more of roll)?";
     case Contradiction::kLidarYaw:
@@ -163,10 +167,8 @@ std::string finding_text(const Finding& finding) {
     case Contradiction::kWheelTurnUnit:
       return wheel_turn_unit_text(finding);
     case Contradiction::kBarometersSwapped:
-      return formatted(
-          "the base station's pressure moves by %.0f Pa while the robot's stands: exchange barometer and "
-          "base_barometer",
-          finding.measured);
+      return "the base station's pressure moves by " + fixed(finding.measured, 0) +
+             " Pa while the robot's stands: exchange barometer and base_barometer";
     case Contradiction::kClocksApart:
     case Contradiction::kNoOverlap:
       return clock_text(finding);

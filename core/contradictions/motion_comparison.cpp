@@ -6,14 +6,15 @@
 #include <cmath>
 #include <complex>
 #include <cstdlib>
+#include <span>
 
 namespace isobar {
 
 namespace {
 
 constexpr int kWindowCells = 10;
-// 6 deg in a second: noise of scans and of wheels is a tenth of it.
-constexpr double kLeastTurnRad = 0.1;
+// 2 deg in a second: noise of scans and of wheels is a tenth of it.
+constexpr double kLeastTurnRad = 0.04;
 // A way that scans measure to a tenth, and a turn in which a lever arm that is wrong by 0.1 m moves by less than a third of it.
 constexpr double kLeastWayM = 0.1;
 constexpr double kMostTurnRad = 0.3;
@@ -107,7 +108,7 @@ namespace {
 
 constexpr std::int64_t kSearchCells = 600;
 constexpr std::int64_t kZeroCells = 3;
-constexpr std::int64_t kPeakCells = 20;
+constexpr double kPeakShare = 0.5;
 
 /// Turns of all known cells: their squares and their sum without sign.
 struct TurnEnergy {
@@ -137,6 +138,22 @@ double product_at(const MotionSeries& sensor, const MotionSeries& reference, std
   return sum;
 }
 
+/// The largest value beside the peak at `peak`, which reaches to where the values fall below half of it on either side.
+double best_outside_peak(std::span<const double> at, std::int64_t peak) {
+  const auto size = static_cast<std::int64_t>(at.size());
+  if (peak < 0 || peak >= size) return 0.0;
+  const auto value = [&at](std::int64_t i) { return at[static_cast<std::size_t>(i)]; };
+  std::int64_t begin = peak;
+  std::int64_t end = peak;
+  while (begin >= 0 && value(begin) >= kPeakShare * value(peak)) --begin;
+  while (end < size && value(end) >= kPeakShare * value(peak)) ++end;
+  double best = 0.0;
+  for (std::int64_t i = 0; i < size; ++i) {
+    if (i <= begin || i >= end) best = std::max(best, value(i));
+  }
+  return best;
+}
+
 }  // namespace
 
 TurnLag find_turn_lag(const MotionSeries& sensor, const MotionSeries& reference, std::int64_t centre_cells) {
@@ -156,11 +173,7 @@ TurnLag find_turn_lag(const MotionSeries& sensor, const MotionSeries& reference,
     out.correlation = correlation;
     out.lag_cells = lag;
   }
-  for (std::int64_t i = 0; i < static_cast<std::int64_t>(at.size()); ++i) {
-    const std::int64_t lag = centre_cells + i - kSearchCells;
-    if (std::abs(lag - out.lag_cells) > kPeakCells)
-      out.second = std::max(out.second, at[static_cast<std::size_t>(i)]);
-  }
+  out.second = best_outside_peak(at, out.lag_cells - centre_cells + kSearchCells);
   for (std::int64_t lag = -kZeroCells; lag <= kZeroCells; ++lag) {
     out.at_zero = std::max(out.at_zero, scale * product_at(sensor, reference, lag));
   }

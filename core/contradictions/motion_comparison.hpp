@@ -17,7 +17,7 @@ struct TurnRatio {
   int windows = 0;
 };
 
-/// Windows in which the reference turns by 0.1 rad or more. The ratio is that of the rms turns: it does not need to know
+/// Windows in which the reference turns by 0.04 rad or more. The ratio is that of the rms turns: it does not need to know
 /// which of both errs.
 TurnRatio compare_turns(const MotionSeries& sensor, const MotionSeries& reference);
 
@@ -40,7 +40,7 @@ struct TurnLag {
   std::int64_t lag_cells = 0;  ///< clock of the sensor minus that of the reference, in cells of 0.1 s
   double correlation = 0.0;    ///< at that lag
   double at_zero = 0.0;        ///< the best without a lag, within 0.3 s
-  double second = 0.0;         ///< the best farther than 2 s from that lag
+  double second = 0.0;         ///< the best outside of its peak, which reaches down to the half
   double turned_rad = 0.0;     ///< the smaller of both sensors' turns
 };
 /// Searches a minute either way around `centre_cells`. 12 ms for twenty minutes.

@@ -81,6 +81,21 @@ TEST_CASE("a clock that is apart by 0.6 s to 40 s is told with its offset") {
   }
 }
 
+TEST_CASE("one long turn tells the clock, too: its beginning") {
+  const auto one_turn = [](double clock_s) {
+    MotionSeries series;
+    for (int i = 0; i < 2000; ++i) {
+      const double t = 0.02 * i;
+      series.add_rate(kStart + static_cast<std::int64_t>((t + clock_s) * 1e9), {t < 8.0 ? 0.0 : 0.3, 0, 0});
+    }
+    return series;
+  };
+  Findings findings;
+  add_clock_findings({one_turn(-18.0), MotionSeries(), one_turn(0.0)}, all_spans(-18.0, 0.0), findings);
+  REQUIRE(findings.all().size() == 1);
+  CHECK(findings.all()[0].measured == doctest::Approx(-18.0).epsilon(0.01));
+}
+
 TEST_CASE("where IMU and wheels are apart from the lidar alike, the lidar's clock is off") {
   const Findings findings = clock_findings(18.0, 18.0);
   REQUIRE(findings.all().size() == 1);
