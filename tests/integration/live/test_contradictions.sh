@@ -12,7 +12,7 @@ trap finish EXIT
 fail() { echo "FAILED: $*"; for log in "$work"/*.log; do echo "--- $log"; tail -n 30 "$log"; done; exit 1; }
 ok() { echo "ok: $*"; }
 
-"$isobar" simulate stairs-demo --seed 5 --short --stop-after 14 --out "$work/drive" >"$work/simulate.log" 2>&1
+"$isobar" simulate stairs-demo --seed 3 --stop-after 18 --out "$work/drive" >"$work/simulate.log" 2>&1
 "$isobar" config show --sensors-of "$work/drive" >"$work/drive.toml"
 
 # run NAME AWK   plays the drive with changed columns of imu.csv: t, gyro x y z, acceleration x y z
