@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "config/retired_words.hpp"
 #include "config/setting_rules.hpp"
 
 namespace isobar {
@@ -82,7 +83,10 @@ class Assign {
     std::string value = *node_.value<std::string>();
     const bool fits =
         setting_.choices.empty() ? keeps_rule(setting_.text_rule, value) : is_choice(setting_, value);
-    if (!fits) fail();
+    if (!fits) {
+      const std::string_view remedy = retired_remedy(setting_.key, value);
+      place_.fail_with_value(rule_text(setting_) + (remedy.empty() ? "" : "; " + std::string(remedy)));
+    }
     return value;
   }
 

@@ -46,11 +46,11 @@ void check_sensors(const Config& config, const Requirements& rules) {
   const BarometerSettings& barometer = config.barometer;
   rules.require(barometer.present() || config.role == Role::kRobot, "barometer.source",
                 "must not be \"none\": a base station measures air pressure");
-  if (barometer.source == "dps310") {
+  if (barometer.source == BarometerSource::kDps310) {
     rules.require(dps310::busy_time_s(barometer.dps310) < 1.0, "barometer.dps310.pressure_rate_hz",
                   busy_text(barometer.dps310));
   }
-  if (barometer.source == "setra278") {
+  if (barometer.source == BarometerSource::kSetra278) {
     const char* broken = setra278::broken_rule(barometer.setra278.span);
     rules.require(broken == nullptr, "barometer.setra278", broken == nullptr ? "" : broken);
   }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "config/sources.hpp"
 #include "core/estimates.hpp"
 #include "core/geometry.hpp"
 #include "core/map/map_config.hpp"
@@ -32,32 +33,28 @@ inline constexpr NameTable<Role, 2> kRoleNames{{{
 
 /// [lidar]
 struct LidarSettings {
-  std::string model = "VLP-16";     ///< "VLP-16" or "HDL-32E"
+  std::string model = "VLP-16";     ///< a name of drivers/lidar_models
   std::string address = "0.0.0.0";  ///< IPv4 address on which packets are received
   std::uint16_t port = 2368;        ///< UDP port of the data packets
+  std::string calibration_file;     ///< of this sensor, see LidarConfig; empty: none
   std::string sender;               ///< IPv4 address of the lidar; empty: the first that sends
   Mount mount;                      ///< of the sensor in base_link
-  double min_range_m = 0.3;         ///< these four: see velodyne::VelodyneConfig
-  double max_range_m = 131.0;
+  double min_range_m = 0.3;         ///< these four: see LidarLimits
+  double max_range_m = 300.0;
   double mask_start_deg = 0.0;
   double mask_end_deg = 0.0;
 };
 
-/// Source of a sensor that this robot does not have.
-inline constexpr const char* kNoSensor = "none";
-
 /// [imu]
 struct ImuSettings {
-  std::string source = "input";  ///< "input": datagrams, or DDS; "none": no IMU
+  ImuSource source = ImuSource::kDatagram;
   Mount mount;
-  [[nodiscard]] bool present() const { return source != kNoSensor; }
+  [[nodiscard]] bool present() const { return source != ImuSource::kNone; }
 };
 
 /// [barometer]
 struct BarometerSettings {
-  /// Source of the samples: "input", datagrams; "none": no barometer; "dps310", "setra278", "iio": a sensor of
-  /// this machine, which isobard reads itself; datagrams of the barometer are then refused.
-  std::string source = "input";
+  BarometerSource source = BarometerSource::kDatagram;
   Mount mount;  ///< position of the pressure port in base_link; the rotation is not used
   /// Calibration file to load into PriorConfig::compensation; empty after loading.
   std::string compensation_file;
@@ -66,7 +63,13 @@ struct BarometerSettings {
   dps310::Settings dps310;
   iio::SetraSettings setra278;
   iio::Settings iio;
-  [[nodiscard]] bool present() const { return source != kNoSensor; }
+  [[nodiscard]] bool present() const { return source != BarometerSource::kNone; }
+};
+
+/// [wheel]
+struct WheelSettings {
+  WheelSource source = WheelSource::kDatagram;
+  [[nodiscard]] bool present() const { return source != WheelSource::kNone; }
 };
 
 /// [base_barometer]
@@ -128,6 +131,7 @@ struct Config {
   LidarSettings lidar;
   ImuSettings imu;
   BarometerSettings barometer;
+  WheelSettings wheel;
   BaseBarometerSettings base_barometer;
   InputSettings input;
   OutputSettings output;

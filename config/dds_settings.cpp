@@ -49,8 +49,8 @@ void add_topics(dds::TopicNames& names, std::vector<Setting>& settings) {
   name("tf_static", names.tf_static, "Name of the fixed transforms, without ros_namespace.");
   name("registered_scan", names.registered_scan, "Name of the registered scan, a cloud in base_link.");
   name("map_cloud", names.map_cloud, "Name of the map's points. Not \"map\", where Nav2 expects a grid.");
-  name("imu", names.imu, "Name of the IMU's samples, with dds.receive_sensors.");
-  name("wheel", names.wheel, "Name of the wheels' odometry, with dds.receive_sensors.");
+  name("imu", names.imu, "Name of the IMU's samples, received where imu.source is \"dds\".");
+  name("wheel", names.wheel, "Name of the wheels' odometry, received where wheel.source is \"dds\".");
 }
 
 void add_frames(dds::DdsConfig& dds, SectionBuilder& s) {
@@ -89,9 +89,6 @@ void add_inputs(dds::DdsConfig& dds, SectionBuilder& s) {
          "Name of a second base station, against which a faulty first one is noticed. Empty: none.");
   s.flag("receive_base_pressure", dds.receive_base_pressure,
          "Receive the base stations' pressure over DDS. true: base stations publish it there.");
-  s.flag("receive_sensors", dds.receive_sensors,
-         "Receive the robot's own sensors from the topics imu/data and wheel/odom, for robots whose drivers "
-         "are ROS 2 nodes. false: a sensor must not reach isobard in two ways.");
 }
 
 void add_propagator(PosePropagatorConfig& propagator, std::vector<Setting>& settings) {

@@ -32,6 +32,7 @@ constexpr auto kDocs = std::to_array<Doc>({
      "Calibration of a barometer, written by `isobar calibrate`: p_cal = sum of c_ij u^i v^j, "
      "u = (p - pressure_centre_pa) / pressure_scale_pa, v = (t - temperature_centre_c) / "
      "temperature_scale_c."},
+    {"wheel", "The wheels' odometry. A replay takes its samples from the recording."},
     {"base_barometer",
      "The base station's barometer, for a base station that does not compensate its samples itself."},
     {"base_barometer.compensation",

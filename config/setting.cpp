@@ -61,7 +61,10 @@ std::vector<Setting> settings_of(Config& config) {
        .used_by = UsedBy::kRobot,
        .audience = Audience::kBasic,
        .apply = Apply::kStage});
-  add_sensor_settings(config, settings);
+  add_lidar_settings(config.lidar, settings);
+  add_imu_settings(config.imu, settings);
+  add_barometer_settings(config, settings);
+  add_wheel_settings(config.wheel, settings);
   add_service_settings(config, settings);
   add_black_box_settings(config.black_box, settings);
   add_dds_settings(config.dds, settings);

@@ -53,7 +53,8 @@ enum class UsedBy : std::uint8_t {
 struct Setting {
   using Target = std::variant<double*, int*, std::uint16_t*, std::uint32_t*, std::size_t*, bool*,
                               std::string*, Eigen::Vector3d*, std::vector<int>*, std::vector<double>*, Role*,
-                              Method*, AirTemperatureMode*, CompensationModel*, Matcher*>;
+                              Method*, AirTemperatureMode*, CompensationModel*, Matcher*, ImuSource*,
+                              BarometerSource*, WheelSource*>;
 
   std::string key;  ///< with its section, "registration.max_range_m"
   Target target;
@@ -88,7 +89,10 @@ std::vector<Setting> settings_of(Config& config);
 std::string_view section_doc(std::string_view section);
 
 // The parts of the table, by the code that the settings belong to.
-void add_sensor_settings(Config& config, std::vector<Setting>& settings);
+void add_lidar_settings(LidarSettings& lidar, std::vector<Setting>& settings);
+void add_imu_settings(ImuSettings& imu, std::vector<Setting>& settings);
+void add_barometer_settings(Config& config, std::vector<Setting>& settings);
+void add_wheel_settings(WheelSettings& wheel, std::vector<Setting>& settings);
 void add_compensation_settings(const std::string& section, UsedBy used_by, CompensationConfig& compensation,
                                std::vector<Setting>& settings);
 void add_service_settings(Config& config, std::vector<Setting>& settings);

@@ -5,6 +5,7 @@
 
 #include "config/assign_value.hpp"
 #include "config/nearest_key.hpp"
+#include "config/retired_words.hpp"
 
 namespace isobar {
 
@@ -45,6 +46,7 @@ void TomlLoader::load_unknown(const TomlPlace& place, const std::string& key) {
     return setting.key.starts_with(key + ".");
   });
   if (!is_section) {
+    if (const auto remedy = retired_remedy(key); !remedy.empty()) place.fail(std::string(remedy));
     const std::string nearest = nearest_key(settings_, key);
     place.fail(nearest.empty() ? "unknown key" : "unknown key; did you mean " + nearest + "?");
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/barometer_source.hpp"
 
-#include "core/errors.hpp"
 #include "drivers/bus/smbus.hpp"
 #include "drivers/dps310/sensor.hpp"
 #include "drivers/iio/barometer.hpp"
@@ -11,17 +10,21 @@ namespace {
 
 std::unique_ptr<Device<PressureSample>> make_device(const BarometerSettings& settings) {
   const auto stuck_time_ns = static_cast<std::int64_t>(settings.stuck_time_s * 1e9);
-  if (settings.source == "input" || !settings.present()) return nullptr;
-  if (settings.source == "dps310") {
-    const std::uint8_t address = settings.dps310.address == "0x76" ? 0x76 : 0x77;
-    return std::make_unique<dps310::Sensor>(
-        settings.dps310, std::make_unique<SmbusDevice>(settings.dps310.bus, address), stuck_time_ns);
+  switch (settings.source) {
+    case BarometerSource::kDatagram:
+    case BarometerSource::kNone:
+      return nullptr;
+    case BarometerSource::kDps310:
+      return std::make_unique<dps310::Sensor>(
+          settings.dps310,
+          std::make_unique<SmbusDevice>(settings.dps310.bus, settings.dps310.address == "0x76" ? 0x76 : 0x77),
+          stuck_time_ns);
+    case BarometerSource::kSetra278:
+      return std::make_unique<iio::Barometer>(settings.setra278, stuck_time_ns);
+    case BarometerSource::kIio:
+      return std::make_unique<iio::Barometer>(settings.iio, stuck_time_ns);
   }
-  if (settings.source == "setra278") {
-    return std::make_unique<iio::Barometer>(settings.setra278, stuck_time_ns);
-  }
-  if (settings.source == "iio") return std::make_unique<iio::Barometer>(settings.iio, stuck_time_ns);
-  throw ConfigError("barometer.source: \"" + settings.source + "\" has no driver");
+  return nullptr;
 }
 
 }  // namespace

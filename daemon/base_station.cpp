@@ -20,8 +20,9 @@ BaseStationGraph::BaseStationGraph(const Config& config, const std::string& conf
       description_(config, configuration),
       station_(config.prior.altimeter, config.prior.compensation, scheduling_.station),
       barometer_(make_barometer_thread(config.barometer, scheduling_.barometer)),
-      input_(config.input.address, config.input.port, {.barometer = barometer_ == nullptr, .others = false},
-             config.input.senders, scheduling_.input) {
+      input_(config.input.address, config.input.port,
+             {.barometer = barometer_ == nullptr, .base_station_only = true}, config.input.senders,
+             scheduling_.input) {
   // Start order: consumers first.
   workers_.add(station_.worker());
   workers_.add(input_.worker());

@@ -18,7 +18,7 @@ constexpr std::array<const char*, kCheckedSensors> kEntryNames{"lidar", "imu", "
 }  // namespace
 
 Config without_unusable(Config config, const UsableSensors& usable) {
-  if (!usable.imu) config.imu.source = kNoSensor;
+  if (!usable.imu) config.imu.source = ImuSource::kNone;
   return config;
 }
 

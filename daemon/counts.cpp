@@ -6,7 +6,7 @@
 
 namespace isobar {
 
-std::vector<files::RunCount> counts_of(const velodyne::VelodyneCounters& counters,
+std::vector<files::RunCount> counts_of(const LidarCounters& counters,
                                        const std::string& wrong_model_message) {
   return {
       {"lidar packets", counters.packets, ""},
@@ -19,7 +19,7 @@ std::vector<files::RunCount> counts_of(const velodyne::VelodyneCounters& counter
       {"lidar packets reordered", counters.reordered, ""},
       {"lidar packets too late", counters.too_late, ""},
       {"lidar packets lost", counters.lost, ""},
-      {"lidar position packets", counters.position, ""},
+      {"lidar packets without points", counters.no_points, ""},
       {"lidar clock steps", counters.clock_steps, ""},
       {"lidar returns", counters.returns, ""},
       {"lidar scans", counters.scans, ""},

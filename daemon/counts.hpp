@@ -9,14 +9,13 @@
 #include "core/time/base_station_stream.hpp"
 #include "drivers/datagram/datagram.hpp"
 #include "drivers/device/device.hpp"
-#include "drivers/velodyne/velodyne_decoder.hpp"
+#include "drivers/lidar/scan_assembler.hpp"
 #include "run/files/run_output.hpp"
 #include "run/tile_store/file_tile_store.hpp"
 
 namespace isobar {
 
-std::vector<files::RunCount> counts_of(const velodyne::VelodyneCounters& counters,
-                                       const std::string& wrong_model_message);
+std::vector<files::RunCount> counts_of(const LidarCounters& counters, const std::string& wrong_model_message);
 std::vector<files::RunCount> counts_of(const PriorCounters& counters);
 std::vector<files::RunCount> counts_of(const datagram::Counters& counters);
 /// Counters of the base station that sends datagrams.

@@ -27,10 +27,11 @@ using ipc::HealthReport;
 /// Inputs that may deliver samples of this kind.
 std::string input_of(const Config& config, datagram::Kind kind) {
   using datagram::Kind;
-  const bool by_dds = kind == Kind::kBasePressure
-                          ? config.dds.receive_base_pressure
-                          : config.dds.receive_sensors && (kind == Kind::kImu || kind == Kind::kWheel);
-  return "UDP port " + std::to_string(config.input.port) + (by_dds ? " or over DDS" : "");
+  const bool by_dds = (kind == Kind::kImu && config.imu.source == ImuSource::kDds) ||
+                      (kind == Kind::kWheel && config.wheel.source == WheelSource::kDds);
+  if (by_dds) return "DDS";
+  const bool both = kind == Kind::kBasePressure && config.dds.receive_base_pressure;
+  return "UDP port " + std::to_string(config.input.port) + (both ? " or over DDS" : "");
 }
 
 std::string lost_text(const RegistrationStatus& registration) {
@@ -129,9 +130,11 @@ void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, He
       add_entry(report, kNames[kind], HealthLevel::kWarning,
                 "samples come and are not used: see the contradictions", rate_hz);
     } else if (which == datagram::Kind::kImu && !config_.imu.present()) {
-      add_absent(report, kNames[kind], "imu.source", now.prior.samples[kind]);
+      add_absent(report, kNames[kind], "imu.source", now.prior.samples[kind] + now.samples.refused[kind]);
     } else if (which == datagram::Kind::kPressure && !config_.barometer.present()) {
-      add_absent(report, kNames[kind], "barometer.source", now.samples.refused_pressure);
+      add_absent(report, kNames[kind], "barometer.source", now.samples.refused[kind]);
+    } else if (which == datagram::Kind::kWheel && !config_.wheel.present()) {
+      add_absent(report, kNames[kind], "wheel.source", now.samples.refused[kind]);
     } else if (which == datagram::Kind::kPressure && now.barometer.present) {
       add_barometer_device(report, config_.barometer, now.barometer, last_.barometer, now.now_ns, rate_hz);
     } else if (which == datagram::Kind::kBasePressure) {

@@ -15,9 +15,9 @@ namespace {
 
 /// Sampling period of a barometer attached to this machine.
 std::int64_t period_ns(const BarometerSettings& barometer) {
-  const int rate_hz = barometer.source == "dps310"     ? barometer.dps310.pressure_rate_hz
-                      : barometer.source == "setra278" ? barometer.setra278.device.rate_hz
-                                                       : barometer.iio.rate_hz;
+  const int rate_hz = barometer.source == BarometerSource::kDps310     ? barometer.dps310.pressure_rate_hz
+                      : barometer.source == BarometerSource::kSetra278 ? barometer.setra278.device.rate_hz
+                                                                       : barometer.iio.rate_hz;
   return 1'000'000'000 / rate_hz;
 }
 
@@ -122,8 +122,15 @@ void add_input(HealthReport& report, const SampleThreadStatus& now, const Sample
   add_count(report, "input/refused", counters.malformed + counters.implausible + counters.unknown_kind,
             earlier.malformed + earlier.implausible + earlier.unknown_kind,
             "lines malformed or implausible, refused");
-  add_count(report, "barometer/refused", now.refused_pressure, before.refused_pressure,
-            "baro lines refused: barometer.source is not input");
+  constexpr auto kWords = std::to_array<std::array<const char*, 2>>({
+      {"imu/refused", "imu lines refused: imu.source is not datagram"},
+      {"barometer/refused", "baro lines refused: barometer.source is not datagram"},
+      {"base_station/refused", "base lines refused"},
+      {"wheels/refused", "wheel lines refused: wheel.source is not datagram"},
+  });
+  for (std::size_t kind = 0; kind < kWords.size(); ++kind) {
+    add_count(report, kWords[kind][0], now.refused[kind], before.refused[kind], kWords[kind][1]);
+  }
   add_count(report, "input/not_of_this_role", now.not_of_this_role, before.not_of_this_role,
             "IMU, wheel and base samples, which a base station does not use");
   add_count(report, "input/unsigned_base", now.unsigned_base, before.unsigned_base,

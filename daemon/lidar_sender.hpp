@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/lidar/lidar_decoder.hpp"
 #include "drivers/udp/sender_lock.hpp"
-#include "drivers/velodyne/data_packet.hpp"
 
 namespace isobar {
 
@@ -19,21 +19,21 @@ inline constexpr double kFastestScanHz = 25.0;
 class LidarSender {
  public:
   /// @param sender configured IPv4 address; empty: the first sender of a data packet of this model
-  LidarSender(velodyne::Model model, const std::string& sender)
-      : model_(model), lock_(sender.empty() ? std::vector<std::uint32_t>{} : std::vector{ipv4_of(sender)}) {}
+  explicit LidarSender(const std::string& sender)
+      : lock_(sender.empty() ? std::vector<std::uint32_t>{} : std::vector{ipv4_of(sender)}) {}
 
+  /// @param decoder of the configured model
   /// @param stamp_ns time of arrival, robot clock
   /// @return false for a data packet of another lidar. Anything that is no data packet of this model passes,
   ///         for the decoder to count; it makes no sender known.
-  bool admits(std::span<const std::uint8_t> payload, std::uint32_t ipv4, std::int64_t stamp_ns) noexcept {
-    velodyne::DataPacket packet;
-    if (velodyne::read_packet(payload, model_, packet) != velodyne::DecodeStatus::kOk) return true;
+  bool admits(const LidarDecoder& decoder, std::span<const std::uint8_t> payload, std::uint32_t ipv4,
+              std::int64_t stamp_ns) noexcept {
+    if (!decoder.is_data(payload)) return true;
     return lock_.admits({ipv4, 0}, stamp_ns);
   }
   [[nodiscard]] const SenderStatus& status() const noexcept { return lock_.status(); }
 
  private:
-  velodyne::Model model_;
   SenderLock lock_;
 };
 

@@ -6,11 +6,10 @@
 
 namespace isobar {
 
-LidarThread::LidarThread(const velodyne::VelodyneConfig& config, const LidarSettings& lidar,
-                         ThreadSettings settings)
+LidarThread::LidarThread(const LidarConfig& config, const LidarSettings& lidar, ThreadSettings settings)
     : receiver_(lidar.address, lidar.port),
-      sender_(config.model, lidar.sender),
-      decoder_(config),
+      sender_(lidar.sender),
+      assembler_(make_lidar_decoder(config)),
       publisher_(ipc::topics::kLidarScan),
       deadline_(settings.deadline_ms),
       worker_(std::move(settings), receiver_, [this] { loop(); }) {}
@@ -33,14 +32,15 @@ void LidarThread::loop() noexcept {
 
 void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
   changes_.take([this](const Change& change) {
-    decoder_.set_limits(change.config);
+    assembler_.set_limits(change.limits);
     deadline_.set_limit(change.deadline_ms);
   });
-  if (!sender_.admits(datagram.payload, datagram.sender.ipv4, datagram.stamp_ns)) return;
+  if (!sender_.admits(assembler_.decoder(), datagram.payload, datagram.sender.ipv4, datagram.stamp_ns))
+    return;
   draft_status_.last_packet_ns = datagram.stamp_ns;
   tap_.add(datagram);
   Scan& scan = loaned_ != nullptr ? *loaned_ : spare_scan_;
-  if (decoder_.add_packet(datagram.payload, datagram.stamp_ns, scan).scan_complete) publish_scan();
+  if (assembler_.add_packet(datagram.payload, datagram.stamp_ns, scan).scan_complete) publish_scan();
 }
 
 void LidarThread::publish_scan() noexcept {
@@ -68,13 +68,13 @@ void LidarThread::pause() noexcept {
 }
 
 void LidarThread::report() noexcept {
-  if (decoder_.counters().wrong_model > draft_status_.counters.wrong_model) {
+  if (assembler_.counters().wrong_model > draft_status_.counters.wrong_model) {
     auto& message = draft_status_.wrong_model_message;
-    decoder_.wrong_model_message().copy(message.data(), message.size() - 1);
+    assembler_.decoder().mismatch().copy(message.data(), message.size() - 1);
   }
-  draft_status_.counters = decoder_.counters();
+  draft_status_.counters = assembler_.counters();
   draft_status_.sender = sender_.status();
-  draft_status_.clock_jumped_ns = decoder_.clock_jumped_ns();
+  draft_status_.clock_jumped_ns = assembler_.clock_jumped_ns();
   draft_status_.punctuality = deadline_.status();
   draft_status_.dropped_by_kernel = receiver_.dropped_by_kernel();
   status_.put(draft_status_);

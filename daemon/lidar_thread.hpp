@@ -14,15 +14,16 @@
 #include "daemon/packet_tap.hpp"
 #include "daemon/seq_lock.hpp"
 #include "daemon/worker.hpp"
+#include "drivers/lidar/scan_assembler.hpp"
+#include "drivers/lidar_models/lidar_models.hpp"
 #include "drivers/udp/udp.hpp"
-#include "drivers/velodyne/velodyne_decoder.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar {
 
 /// Status of the lidar thread.
 struct LidarStatus {
-  velodyne::VelodyneCounters counters;
+  LidarCounters counters;
   std::uint64_t dropped_by_kernel = 0;
   std::uint64_t scans_without_memory = 0;  ///< complete scans dropped for want of a chunk in shared memory
   std::int64_t last_packet_ns = 0;         ///< robot clock; 0: none yet
@@ -37,8 +38,8 @@ struct LidarStatus {
 /// Decodes the lidar's UDP packets and publishes scans.
 class LidarThread {
  public:
-  /// @throws ServiceError when the port may not be used; an address or port that is not there yet is waited for
-  LidarThread(const velodyne::VelodyneConfig& config, const LidarSettings& lidar, ThreadSettings settings);
+  /// @throws ConfigError for a calibration file that cannot be used; ServiceError when the port may not be used; an address or port that is not there yet is waited for
+  LidarThread(const LidarConfig& config, const LidarSettings& lidar, ThreadSettings settings);
   ~LidarThread();
   LidarThread(const LidarThread&) = delete;
   LidarThread& operator=(const LidarThread&) = delete;
@@ -46,8 +47,8 @@ class LidarThread {
   [[nodiscard]] Worker& worker() noexcept { return worker_; }
   /// Changes the range and the masked sector of the returns, and the deadline, from the next packet on. Main
   /// thread, as collect().
-  void configure(const velodyne::VelodyneConfig& config, double deadline_ms) {
-    changes_.offer(std::make_unique<Change>(Change{config, deadline_ms}));
+  void configure(const LidarLimits& limits, double deadline_ms) {
+    changes_.offer(std::make_unique<Change>(Change{limits, deadline_ms}));
   }
   void collect() { changes_.collect(); }
 
@@ -58,7 +59,7 @@ class LidarThread {
 
  private:
   struct Change {
-    velodyne::VelodyneConfig config;
+    LidarLimits limits;
     double deadline_ms;
   };
   void loop() noexcept;
@@ -69,7 +70,7 @@ class LidarThread {
 
   UdpReceiver receiver_;
   LidarSender sender_;
-  velodyne::VelodyneDecoder decoder_;
+  ScanAssembler assembler_;
   ipc::Publisher<Scan> publisher_;
   Scan* loaned_ = nullptr;
   Scan

@@ -13,14 +13,15 @@ constexpr ScanQueueConfig kLockStepQueue{.reach_ns = 0, .wait_ns = 1, .admission
 }  // namespace
 
 LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileStorage* storage)
-    : sender_(settings.lidar.model, settings.lidar_sender),
-      decoder_(settings.lidar),
+    : sender_(settings.lidar_sender),
+      assembler_(make_lidar_decoder(settings.lidar)),
       prior_estimator_(settings.prior),
       registration_(settings.registration, settings.method, settings.T_base_lidar, sink),
       map_(settings.map, settings.T_base_lidar, storage),
       filling_(std::make_unique<Scan>()),
       queue_(kLockStepQueue),
-      has_imu_(settings.prior.has_imu) {}
+      has_imu_(settings.prior.has_imu),
+      uses_wheels_(settings.uses_wheels) {}
 
 void LockStep::continue_from(const RunStart& start, const std::filesystem::path& map_folder) {
   prior_estimator_.resume(start.datum);
@@ -49,21 +50,21 @@ void LockStep::handle(const recording::Event& event) {
       prior_estimator_.add_base_pressure(event.pressure);
       break;
     case recording::EventKind::kWheel:
-      prior_estimator_.add_wheel(event.wheel);
+      if (uses_wheels_) prior_estimator_.add_wheel(event.wheel);
       break;
   }
 }
 
 void LockStep::finish() {
-  if (decoder_.flush(*filling_)) queue_scan();
+  if (assembler_.flush(*filling_)) queue_scan();
   clock_ns_ += kLockStepQueue.wait_ns;
   register_admissible();
   map_.store_all();
 }
 
 void LockStep::take_packet(const recording::Event& event) {
-  if (!sender_.admits(event.packet, event.sender_ipv4, event.stamp_ns)) return;
-  if (decoder_.add_packet(event.packet, event.stamp_ns, *filling_).scan_complete) {
+  if (!sender_.admits(assembler_.decoder(), event.packet, event.sender_ipv4, event.stamp_ns)) return;
+  if (assembler_.add_packet(event.packet, event.stamp_ns, *filling_).scan_complete) {
     queue_scan();
     register_admissible();
   }

@@ -20,7 +20,7 @@
 #include "daemon/run_start.hpp"
 #include "daemon/scan_queue.hpp"
 #include "daemon/stage_settings.hpp"
-#include "drivers/velodyne/velodyne_decoder.hpp"
+#include "drivers/lidar/scan_assembler.hpp"
 #include "run/recording/recording_reader.hpp"
 
 namespace isobar {
@@ -39,7 +39,7 @@ class LockStep {
   /// Registers the waiting scans and stores the tiles in memory. Call once, at the end.
   void finish();
 
-  [[nodiscard]] const velodyne::VelodyneDecoder& decoder() const { return decoder_; }
+  [[nodiscard]] const ScanAssembler& assembler() const { return assembler_; }
   [[nodiscard]] const SenderStatus& lidar_sender() const { return sender_.status(); }
   [[nodiscard]] const PriorEstimator& prior_estimator() const { return prior_estimator_; }
   [[nodiscard]] LocalMap& map() { return map_; }
@@ -57,7 +57,7 @@ class LockStep {
   void register_admissible();
 
   LidarSender sender_;
-  velodyne::VelodyneDecoder decoder_;
+  ScanAssembler assembler_;
   PriorEstimator prior_estimator_;
   RegistrationStage registration_;
   LocalMap map_;
@@ -69,6 +69,7 @@ class LockStep {
   RegisteredScan registered_;
   std::uint64_t scans_ = 0;
   bool has_imu_;
+  bool uses_wheels_;
   PriorPace pace_;  ///< without an IMU
 };
 

@@ -65,7 +65,9 @@ class RobotGraph final : public Graph {
         prior_(stages_.prior, scheduling_.prior),
         barometer_(make_barometer_thread(config.barometer, scheduling_.barometer)),
         samples_(config.input.address, config.input.port,
-                 {.barometer = barometer_ == nullptr && config.barometer.present(),
+                 {.imu = config.imu.source == ImuSource::kDatagram,
+                  .barometer = config.barometer.source == BarometerSource::kDatagram,
+                  .wheel = config.wheel.source == WheelSource::kDatagram,
                   .unsigned_base = config.dds.keys_directory.empty()},
                  config.input.senders, scheduling_.inertial),
         lidar_(stages_.lidar, config.lidar, scheduling_.lidar),
@@ -140,7 +142,7 @@ class RobotGraph final : public Graph {
     config_ = change.running;
     stages_ = stage_settings(without_unusable(config_, usable_));
     const RobotScheduling scheduling = robot_scheduling(config_.realtime);
-    lidar_.configure(stages_.lidar, scheduling.lidar.deadline_ms);
+    lidar_.configure(stages_.lidar.limits, scheduling.lidar.deadline_ms);
     if (usable_ == UsableSensors{}) {
       prior_.configure(stages_.prior, scheduling.prior.deadline_ms);
     } else {

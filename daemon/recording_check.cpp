@@ -10,7 +10,8 @@
 #include "core/errors.hpp"
 #include "daemon/lidar_sender.hpp"
 #include "daemon/stage_settings.hpp"
-#include "drivers/velodyne/velodyne_decoder.hpp"
+#include "drivers/lidar/scan_assembler.hpp"
+#include "drivers/lidar_models/lidar_models.hpp"
 
 namespace isobar {
 
@@ -22,17 +23,18 @@ using recording::EventKind;
 class CheckedInputs {
  public:
   explicit CheckedInputs(const Config& used)
-      : sender_(stage_settings(used).lidar.model, used.lidar.sender),
-        decoder_(stage_settings(used).lidar),
+      : sender_(used.lidar.sender),
+        assembler_(make_lidar_decoder(stage_settings(used).lidar)),
         check_({.imu = used.imu.mount, .lidar = used.lidar.mount}),
         scan_(std::make_unique<Scan>()),
-        has_imu_(used.imu.present()) {}
+        has_imu_(used.imu.present()),
+        has_wheels_(used.wheel.present()) {}
 
   void handle(const recording::Event& event) {
     switch (event.kind) {
       case EventKind::kLidarPacket:
-        if (sender_.admits(event.packet, event.sender_ipv4, event.stamp_ns) &&
-            decoder_.add_packet(event.packet, event.stamp_ns, *scan_).scan_complete) {
+        if (sender_.admits(assembler_.decoder(), event.packet, event.sender_ipv4, event.stamp_ns) &&
+            assembler_.add_packet(event.packet, event.stamp_ns, *scan_).scan_complete) {
           check_.add_scan(*scan_);
         }
         break;
@@ -46,21 +48,22 @@ class CheckedInputs {
         check_.add_base_pressure(event.pressure);
         break;
       case EventKind::kWheel:
-        check_.add_wheel(event.wheel);
+        if (has_wheels_) check_.add_wheel(event.wheel);
         break;
     }
   }
   void finish() {
-    if (decoder_.flush(*scan_)) check_.add_scan(*scan_);
+    if (assembler_.flush(*scan_)) check_.add_scan(*scan_);
   }
   [[nodiscard]] const InputCheck& check() const { return check_; }
 
  private:
   LidarSender sender_;
-  velodyne::VelodyneDecoder decoder_;
+  ScanAssembler assembler_;
   InputCheck check_;
   std::unique_ptr<Scan> scan_;
   bool has_imu_;
+  bool has_wheels_;
 };
 
 /// Rows that the reader refused as implausible, of a sensor whose unit no good row could tell: rates in deg/s or speeds in

@@ -91,7 +91,7 @@ std::vector<files::RunCount> collect_counts(const recording::RecordingReader& re
     counts.push_back({count.name, count.count, count.first_message});
   }
   run_counts::append(counts,
-                     counts_of(pipeline.decoder().counters(), pipeline.decoder().wrong_model_message()));
+                     counts_of(pipeline.assembler().counters(), pipeline.assembler().decoder().mismatch()));
   counts.push_back({"lidar packets of another sender", pipeline.lidar_sender().refused, ""});
   run_counts::append(counts, counts_of(pipeline.prior_estimator().counters()));
   counts.push_back({"map cells seen through", pipeline.map().seen_through_count(), ""});
@@ -174,9 +174,9 @@ void add_contradictions(const std::vector<std::string>& texts, std::vector<files
 void refuse_empty_run(const ReplaySummary& summary, const LockStep& pipeline,
                       const std::filesystem::path& recording) {
   if (summary.scans > 0) return;
-  const auto& lidar = pipeline.decoder().counters();
+  const auto& lidar = pipeline.assembler().counters();
   std::string why = "no lidar scan could be decoded: ";
-  if (lidar.wrong_model > 0) why += pipeline.decoder().wrong_model_message() + "; ";
+  if (lidar.wrong_model > 0) why += pipeline.assembler().decoder().mismatch() + "; ";
   why += refusals(summary.counts);
   throw DataError(recording.string() + ": " + why);
 }

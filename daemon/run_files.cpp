@@ -27,10 +27,10 @@ std::vector<files::RunCount> counts_of_threads(const StatusSnapshot& last) {
   for (std::size_t kind = 0; kind < datagram::kKinds; ++kind) {
     counts.push_back(
         {std::string(kNames[kind]) + " lines of another sender", last.samples.senders[kind].refused, ""});
+    counts.push_back({std::string(kNames[kind]) + " lines refused", last.samples.refused[kind], ""});
   }
   counts.push_back({"sample datagrams of senders not allowed", last.samples.not_allowed, ""});
   if (last.barometer.present) run_counts::append(counts, counts_of(last.barometer.device.counters));
-  counts.push_back({"baro lines refused", last.samples.refused_pressure, ""});
   run_counts::append(counts, counts_of(last.prior.counters));
   counts.push_back({"imu samples of the other path", last.prior.imu_path.refused, ""});
   counts.push_back({"wheel samples of the other path", last.prior.wheel_path.refused, ""});

@@ -46,9 +46,13 @@ bool SampleInput::next(datagram::Sample& sample) noexcept {
 datagram::Admission SampleInput::admission(const datagram::Sample& sample,
                                            datagram::LineStatus status) noexcept {
   using datagram::Admission;
-  const bool is_barometer = sample.kind == datagram::Kind::kPressure;
-  if (!(is_barometer ? takes_.barometer : takes_.others)) {
-    ++(is_barometer ? status_.refused_pressure : status_.not_of_this_role);
+  if (takes_.base_station_only && sample.kind != datagram::Kind::kPressure) {
+    ++status_.not_of_this_role;
+    return Admission::kSkip;
+  }
+  if (const std::array takes{takes_.imu, takes_.barometer, true, takes_.wheel};
+      !takes[static_cast<std::size_t>(sample.kind)]) {
+    ++status_.refused[static_cast<std::size_t>(sample.kind)];
     return Admission::kSkip;
   }
   if (sample.kind == datagram::Kind::kBasePressure) {

@@ -19,7 +19,8 @@ namespace isobar {
 struct SampleInputStatus {
   datagram::Counters counters;
   std::uint64_t clock_steps = 0;  ///< times that a sender's clock was set, other than with the system clock
-  std::uint64_t refused_pressure = 0;  ///< pressure datagrams while this machine reads the barometer itself
+  /// Samples whose source is not `datagram`, by Kind.
+  std::array<std::uint64_t, datagram::kKinds> refused{};
   std::uint64_t not_of_this_role = 0;  ///< IMU, wheel and base samples received by a base station
   std::uint64_t unsigned_base = 0;     ///< base samples while dds.keys_directory is set
   std::uint64_t not_allowed = 0;       ///< datagrams of senders that input.senders does not name
@@ -39,10 +40,12 @@ struct SampleInputStatus {
 ///     while (input.next(sample)) { … }
 class SampleInput {
  public:
-  /// Kinds of samples that are used; others are refused and counted.
+  /// Kinds of samples that are used, those with the source `datagram`; others are refused and counted.
   struct Takes {
-    bool barometer = true;  ///< false where a BarometerThread writes the barometer topic
-    bool others = true;     ///< false on a base station
+    bool imu = true;
+    bool barometer = true;
+    bool wheel = true;
+    bool base_station_only = false;  ///< this machine is a base station: its own barometer, nothing else
     /// Base-station pressure, which in a datagram is not signed; false where dds.keys_directory is set.
     bool unsigned_base = true;
   };

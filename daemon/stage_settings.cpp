@@ -7,23 +7,16 @@
 
 namespace isobar {
 
-namespace {
-
-velodyne::Model model_of(const LidarSettings& lidar) {
-  if (const velodyne::ModelTraits* traits = velodyne::find_model(lidar.model)) return traits->model;
-  throw ConfigError("lidar.model: must be \"VLP-16\" or \"HDL-32E\" (got \"" + lidar.model + "\")");
-}
-
-}  // namespace
-
 StageSettings stage_settings(const Config& config) {
   StageSettings settings;
-  settings.lidar.model = model_of(config.lidar);
+  settings.lidar.model = config.lidar.model;
+  settings.lidar.calibration_file = config.lidar.calibration_file;
   settings.lidar_sender = config.lidar.sender;
-  settings.lidar.min_range_m = config.lidar.min_range_m;
-  settings.lidar.max_range_m = config.lidar.max_range_m;
-  settings.lidar.mask_start_deg = config.lidar.mask_start_deg;
-  settings.lidar.mask_end_deg = config.lidar.mask_end_deg;
+  settings.lidar.limits.min_range_m = config.lidar.min_range_m;
+  settings.lidar.limits.max_range_m = config.lidar.max_range_m;
+  settings.lidar.limits.mask_start_deg = config.lidar.mask_start_deg;
+  settings.lidar.limits.mask_end_deg = config.lidar.mask_end_deg;
+  settings.uses_wheels = config.wheel.present();
   settings.prior = config.prior;
   settings.prior.has_imu = config.imu.present();
   settings.prior.T_base_imu = config.imu.mount.T_base_sensor();
@@ -46,9 +39,9 @@ TileStoreLimits map_limits(const Config& config) {
 
 Config with_sensors_of(const recording::Manifest& manifest, Config config) {
   if (!manifest.lidar) throw DataError("recording.toml: no [lidar]: there is nothing to register");
-  if (velodyne::find_model(manifest.lidar->model) == nullptr) {
+  if (find_lidar_model(manifest.lidar->model) == nullptr) {
     throw DataError("recording.toml: lidar.model: \"" + printable(manifest.lidar->model) +
-                    "\" has no driver; there are VLP-16 and HDL-32E");
+                    "\" has no driver; there are " + lidar_model_list());
   }
   config.lidar.model = manifest.lidar->model;
   config.lidar.port = manifest.lidar->port;
@@ -57,12 +50,12 @@ Config with_sensors_of(const recording::Manifest& manifest, Config config) {
   if (manifest.imu) {
     config.imu.mount = manifest.imu->mount;
   } else {
-    config.imu.source = kNoSensor;
+    config.imu.source = ImuSource::kNone;
   }
   if (manifest.barometer) {
     config.barometer.mount = manifest.barometer->mount;
   } else {
-    config.barometer.source = kNoSensor;
+    config.barometer.source = BarometerSource::kNone;
   }
   return config;
 }

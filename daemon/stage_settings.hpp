@@ -9,7 +9,7 @@
 #include "core/map/local_map.hpp"
 #include "core/prior/prior_estimator.hpp"
 #include "core/registration/registration.hpp"
-#include "drivers/velodyne/velodyne_decoder.hpp"
+#include "drivers/lidar_models/lidar_models.hpp"
 #include "run/recording/manifest.hpp"
 #include "run/tile_store/file_tile_store.hpp"
 
@@ -17,8 +17,9 @@ namespace isobar {
 
 /// Settings of all stages.
 struct StageSettings {
-  velodyne::VelodyneConfig lidar;
+  LidarConfig lidar;
   std::string lidar_sender;  ///< see LidarSender
+  bool uses_wheels = true;   ///< wheel.source is not none
   PriorConfig prior;
   RegistrationConfig registration;
   MapConfig map;

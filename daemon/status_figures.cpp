@@ -48,11 +48,11 @@ std::array<std::uint64_t, datagram::kKinds> rejected(const StatusSnapshot& now) 
   for (std::size_t verdict = 0; verdict < base.samples.size(); ++verdict) {
     if (verdict != static_cast<std::size_t>(BaseVerdict::kAccepted)) base_refused += base.samples[verdict];
   }
-  const std::uint64_t pressure_refused = used.pressure_bad_value + used.pressure_bad_time +
-                                         now.barometer.device.counters.implausible +
-                                         now.samples.refused_pressure;
-  return {used.imu_bad_value + used.imu_bad_time, pressure_refused, base_refused,
-          used.wheel_bad_value + used.wheel_bad_time};
+  const std::uint64_t pressure_refused =
+      used.pressure_bad_value + used.pressure_bad_time + now.barometer.device.counters.implausible;
+  const auto& refused = now.samples.refused;
+  return {used.imu_bad_value + used.imu_bad_time + refused[0], pressure_refused + refused[1],
+          base_refused + refused[2], used.wheel_bad_value + used.wheel_bad_time + refused[3]};
 }
 
 void add_samples(const StatusSnapshot& now, const StatusSnapshot& before, double elapsed_s,
@@ -157,7 +157,8 @@ void fill_station_figures(const StationSnapshot& now, const StationSnapshot& bef
   barometer.jitter_ms = jitter_ms(now.station.pace);
   barometer.samples = now.station.samples;
   barometer.lost = now.input.counters.lost[static_cast<std::size_t>(Kind::kPressure)];
-  barometer.rejected = now.barometer.device.counters.implausible + now.input.refused_pressure +
+  barometer.rejected = now.barometer.device.counters.implausible +
+                       now.input.refused[static_cast<std::size_t>(Kind::kPressure)] +
                        now.input.counters.malformed + now.input.counters.implausible;
   barometer.dropped = now.station.dropped_samples + now.station.samples_without_memory;
 }

@@ -77,8 +77,6 @@ struct DdsConfig {
   std::string keys_directory;
   /// Receive the base stations' pressure over DDS.
   bool receive_base_pressure = true;
-  /// Receive the robot's own sensors from imu/data and wheel/odom, for robots whose drivers are ROS 2 nodes.
-  bool receive_sensors = false;
   /// Smoothing of the registration's corrections in the odom frame.
   PosePropagatorConfig propagator;
 };

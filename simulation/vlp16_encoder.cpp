@@ -15,9 +15,8 @@ void put_u16(Vlp16Bytes& bytes, std::size_t at, std::uint32_t value) {
 
 std::uint32_t azimuth_counts(double azimuth_rad) {
   const double turns = azimuth_rad / (2.0 * std::numbers::pi);
-  const auto counts =
-      static_cast<std::uint32_t>(std::lround((turns - std::floor(turns)) * velodyne::kFullTurn));
-  return counts % velodyne::kFullTurn;
+  const auto counts = static_cast<std::uint32_t>(std::lround((turns - std::floor(turns)) * kFullTurn));
+  return counts % kFullTurn;
 }
 
 }  // namespace
@@ -36,7 +35,7 @@ Vlp16Bytes encode(const Vlp16Packet& packet) {
       const LaserReturn& measured = packet.returns[cycle][laser];
       const std::size_t channel = (cycle % 2) * Vlp16Packet::kLasers + laser;
       const std::size_t at = block + kBlockHeaderBytes + kChannelBytes * channel;
-      const double counts = std::round(measured.distance_m / kDistanceUnitM);
+      const double counts = std::round(measured.distance_m / velodyne::kVlp16.distance_unit_m);
       if (!(counts >= 1.0 && counts <= 65535.0)) continue;
       put_u16(bytes, at, static_cast<std::uint32_t>(counts));
       bytes[at + 2] = measured.reflectivity;

@@ -24,9 +24,8 @@ std::string hex_text(std::uint8_t value) {
 }
 
 std::string sentence(const FoundLidar& lidar) {
-  const std::string name = lidar.model.empty()
-                               ? "a lidar without a driver, product id " + hex_text(lidar.product_id)
-                               : lidar.model;
+  const std::string name =
+      lidar.model.empty() ? "a lidar without a driver (" + lidar.mismatch + ")" : lidar.model;
   return name + ": " + std::to_string(std::lround(lidar.packets_per_s)) + " packets a second from " +
          lidar.sender + " to UDP port " + std::to_string(lidar.port);
 }
@@ -38,7 +37,7 @@ std::string lidar_lines(const Survey& survey) {
     out += comment("Found " + sentence(lidar) + ".");
     if (chosen == nullptr && !lidar.model.empty()) chosen = &lidar;
   }
-  if (survey.lidars.empty()) out += comment("No lidar was heard on UDP port 2368; the model is a guess.");
+  if (survey.lidars.empty()) out += comment("No lidar was heard; the model is a guess.");
   out += "lidar.model = " + quoted_toml(chosen != nullptr ? chosen->model : "VLP-16") + "\n";
   if (chosen != nullptr && survey.lidars.size() > 1) {
     out += "lidar.sender = " + quoted_toml(chosen->sender) + "\n";
@@ -46,8 +45,9 @@ std::string lidar_lines(const Survey& survey) {
   out += "lidar.port = " + std::to_string(chosen != nullptr ? chosen->port : 2368) + "\n";
   out += comment("Origin [m] and roll, pitch, yaw [deg] of the sensors in base_link: measure them.");
   out += "lidar.xyz_m = [0.0, 0.0, 0.0]\nlidar.rpy_deg = [0.0, 0.0, 0.0]\nimu.xyz_m = [0.0, 0.0, 0.0]\n";
-  return out + comment("input: its samples are expected as datagrams; none: this robot has no IMU.") +
-         "imu.source = \"input\"\n";
+  return out +
+         comment("datagram: its samples come by UDP; dds: from a ROS 2 topic; none: this robot has no IMU.") +
+         "imu.source = \"datagram\"\n";
 }
 
 std::string barometer_lines(const Survey& survey) {
@@ -72,7 +72,7 @@ std::string barometer_lines(const Survey& survey) {
   }
   out += comment("No barometer was found (I2C buses: " + listed(survey.i2c_buses) +
                  "); its samples are expected as datagrams. Without a barometer: none.");
-  return out + "barometer.source = \"input\"\n";
+  return out + "barometer.source = \"datagram\"\n";
 }
 
 }  // namespace
@@ -84,7 +84,9 @@ std::string proposal(const Survey& survey) {
   out += "role = \"robot\"\n" + lidar_lines(survey) + barometer_lines(survey);
   out += "\n" + comment("Trajectory and map. Empty: no files are written.");
   out += "output.directory = \"/var/lib/isobar/run\"\n\n";
-  out += comment("IMU and wheels come as datagrams to UDP port 7373, or from ROS 2 (dds.receive_sensors).");
+  out += comment(
+      "IMU and wheels come as datagrams to UDP port 7373; from ROS 2 topics with imu.source and wheel.source "
+      "\"dds\".");
   out += comment("Serial lines: " + listed(survey.serial) + ". GPIO chips: " + listed(survey.gpio) + ".");
   for (const std::string& note : survey.notes) out += comment("Not looked at: " + note);
   return with_end_mark(out);

@@ -7,14 +7,16 @@
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <memory>
+#include <set>
 #include <system_error>
 
 #include "core/errors.hpp"
 #include "core/printable_text.hpp"
 #include "drivers/bus/smbus.hpp"
 #include "drivers/dps310/registers.hpp"
+#include "drivers/lidar_models/lidar_models.hpp"
 #include "drivers/udp/udp.hpp"
-#include "drivers/velodyne/packet_format.hpp"
 
 namespace isobar::tools {
 namespace {
@@ -90,37 +92,89 @@ void survey_devices(const fs::path& root, Survey& survey) {
   }
 }
 
-void survey_lidars(double seconds, Survey& survey) {
-  constexpr std::uint16_t kDataPort = 2368;
-  std::map<std::uint32_t, FoundLidar> found;  // by sender
-  std::size_t others = 0;
-  try {
-    UdpReceiver receiver("0.0.0.0", kDataPort);
-    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-    while (std::chrono::steady_clock::now() < end) {
-      ReceivedDatagram datagram;
-      if (receiver.receive(datagram, 100) != UdpReceiver::Status::kDatagram) continue;
-      if (datagram.payload.size() != velodyne::kDataPacketBytes) {
-        ++others;
-        continue;
+namespace {
+
+/// A port at which lidars send, and the models that may.
+class LidarPort {
+ public:
+  /// @throws ServiceError when this user may not use the port
+  explicit LidarPort(std::uint16_t port) : receiver_("0.0.0.0", port), port_(port) {
+    for (const LidarModel& model : lidar_models()) {
+      if (model.port != port || model.needs_calibration) continue;
+      LidarConfig config;
+      config.model = model.name;
+      decoders_.push_back(make_lidar_decoder(config));
+    }
+  }
+
+  /// Takes the datagrams that wait, at most `timeout_ms` without one.
+  void listen(int timeout_ms) {
+    ReceivedDatagram datagram;
+    while (receiver_.receive(datagram, timeout_ms) == UdpReceiver::Status::kDatagram) {
+      timeout_ms = 0;
+      Heard& heard = heard_[datagram.sender.ipv4];
+      ++heard.packets;
+      for (const auto& decoder : decoders_) {
+        PacketColumns packet;
+        const DecodeStatus status = decoder->read(datagram.payload, packet);
+        if (status == DecodeStatus::kOk) ++heard.of_model[std::string(decoder->model())];
+        if (status == DecodeStatus::kWrongModel) heard.mismatch = decoder->mismatch();
       }
-      FoundLidar& lidar = found[datagram.sender.ipv4];
-      lidar.packets_per_s += 1.0 / seconds;
-      lidar.product_id = datagram.payload[velodyne::kProductIdOffset];
     }
-    if (const std::string waits = receiver.waiting_for(); !waits.empty()) survey.notes.push_back(waits);
-  } catch (const ServiceError& error) {
-    survey.notes.emplace_back(error.what());
   }
-  if (others > 0) survey.notes.push_back("UDP port 2368: datagrams that are no Velodyne packets");
-  for (auto& [sender, lidar] : found) {
-    lidar.sender = ipv4_text(sender);
-    lidar.port = kDataPort;
-    for (const char* model : {"VLP-16", "HDL-32E"}) {
-      if (velodyne::product_name(lidar.product_id) == model) lidar.model = model;
+
+  void report(double seconds, Survey& survey) const {
+    if (const std::string waits = receiver_.waiting_for(); !waits.empty()) survey.notes.push_back(waits);
+    for (const auto& [sender, heard] : heard_) {
+      FoundLidar lidar;
+      lidar.sender = ipv4_text(sender);
+      lidar.port = port_;
+      lidar.packets_per_s = static_cast<double>(heard.packets) / seconds;
+      std::size_t most = 0;
+      for (const auto& [model, packets] : heard.of_model) {
+        if (packets > most) lidar.model = model;
+        most = std::max(most, packets);
+      }
+      lidar.mismatch = heard.mismatch;
+      if (lidar.model.empty() && lidar.mismatch.empty()) {
+        survey.notes.push_back("UDP port " + std::to_string(port_) + ": datagrams of " + lidar.sender +
+                               " that no driver knows");
+      } else {
+        survey.lidars.push_back(lidar);
+      }
     }
-    survey.lidars.push_back(lidar);
   }
+
+ private:
+  struct Heard {
+    std::size_t packets = 0;
+    std::map<std::string, std::size_t> of_model;
+    std::string mismatch;
+  };
+  UdpReceiver receiver_;
+  std::uint16_t port_;
+  std::vector<std::unique_ptr<LidarDecoder>> decoders_;
+  std::map<std::uint32_t, Heard> heard_;  // by sender
+};
+
+}  // namespace
+
+void survey_lidars(double seconds, Survey& survey) {
+  std::set<std::uint16_t> numbers;
+  for (const LidarModel& model : lidar_models()) numbers.insert(model.port);
+  std::vector<std::unique_ptr<LidarPort>> ports;
+  for (const std::uint16_t number : numbers) {
+    try {
+      ports.push_back(std::make_unique<LidarPort>(number));
+    } catch (const ServiceError& error) {
+      survey.notes.emplace_back(error.what());
+    }
+  }
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (!ports.empty() && std::chrono::steady_clock::now() < end) {
+    for (const auto& port : ports) port->listen(10);
+  }
+  for (const auto& port : ports) port->report(seconds, survey);
 }
 
 }  // namespace isobar::tools

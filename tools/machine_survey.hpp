@@ -26,8 +26,8 @@ struct FoundIio {
 struct FoundLidar {
   std::string sender;  ///< IPv4 address
   std::uint16_t port = 0;
-  std::string model;  ///< by its product id: "VLP-16"; empty: unknown
-  std::uint8_t product_id = 0;
+  std::string model;     ///< "VLP-16"; empty: none with a driver
+  std::string mismatch;  ///< what its packets say, where no model fits
   double packets_per_s = 0.0;
 };
 

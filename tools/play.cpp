@@ -6,6 +6,7 @@
 
 #include "core/errors.hpp"
 #include "daemon/lidar_sender.hpp"
+#include "drivers/lidar_models/lidar_models.hpp"
 #include "drivers/datagram/datagram.hpp"
 #include "run/files/text_file.hpp"
 #include "run/recording/recording_reader.hpp"
@@ -48,11 +49,6 @@ void write_shifted_reference(const PlayOptions& options, const recording::Manife
   file.close();
 }
 
-velodyne::Model lidar_model(const recording::Manifest& manifest) {
-  const velodyne::ModelTraits* traits = velodyne::find_model(manifest.lidar->model);
-  return traits != nullptr ? traits->model : velodyne::Model::kVlp16;
-}
-
 void play(const PlayOptions& options) {
   recording::RecordingReader reader(options.recording);
   if (!reader.manifest().lidar) throw DataError(options.recording.string() + ": has no [lidar] to play");
@@ -65,11 +61,15 @@ void play(const PlayOptions& options) {
   if (!options.reference_out.empty()) write_shifted_reference(options, reader.manifest(), shift_ns);
 
   // Played packets all come from this program: a second lidar in the recording could not be told apart.
-  LidarSender sender(lidar_model(reader.manifest()), reader.manifest().lidar->sender);
+  LidarConfig lidar;
+  lidar.model = reader.manifest().lidar->model;
+  const auto decoder = make_lidar_decoder(lidar);
+  LidarSender sender(reader.manifest().lidar->sender);
   Progress progress("playing");
   do {
     const bool is_packet = event.kind == recording::EventKind::kLidarPacket;
-    const bool is_played = !is_packet || sender.admits(event.packet, event.sender_ipv4, event.stamp_ns);
+    const bool is_played =
+        !is_packet || sender.admits(*decoder, event.packet, event.sender_ipv4, event.stamp_ns);
     if (is_played) (void)player.send_when_due(event);
     progress.update(reader.progress());
   } while (reader.next(event));

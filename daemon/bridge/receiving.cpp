@@ -34,10 +34,8 @@ Receiving::Receiving(dds_entity_t participant, dds_entity_t of_stations, const S
       stations_.push_back(std::make_unique<StationInput>(of_stations, config, config.second_base_station, 1));
     }
   }
-  if (config.receive_sensors && !settings.is_base_station) {
-    open(imu_, dds::topics::kImu, config.topics.imu, ipc::topics::kImu);
-    open(wheel_, dds::topics::kWheel, config.topics.wheel, ipc::topics::kWheel);
-  }
+  if (settings.receives_imu) open(imu_, dds::topics::kImu, config.topics.imu, ipc::topics::kImu);
+  if (settings.receives_wheel) open(wheel_, dds::topics::kWheel, config.topics.wheel, ipc::topics::kWheel);
   // Not of a participant: such a wait set would refuse the readers of the other one.
   waitset_ = dds::checked(dds_create_waitset(DDS_CYCLONEDDS_HANDLE), "wait set");
   stop_ = dds::checked(dds_create_guardcondition(participant), "guard condition");

@@ -13,12 +13,13 @@ namespace isobar::bridge {
 
 namespace {
 
-/// Keys and values of the settings that the bridge uses: [dds], the role and the sensors' mounts.
+/// Keys and values of the settings that the bridge uses: [dds], the role, the sensors' sources and mounts.
 std::string used_values(Config config) {
   std::string text;
   for (const Setting& setting : settings_of(config)) {
     const std::string name = setting.name();
-    if (setting.key.starts_with("dds.") || name == "role" || name == "xyz_m" || name == "rpy_deg") {
+    if (setting.key.starts_with("dds.") || name == "role" || name == "source" || name == "xyz_m" ||
+        name == "rpy_deg") {
       text += setting.key + " = " + value_text(setting) + "\n";
     }
   }
@@ -60,6 +61,8 @@ Settings settings_of(Config config, const Options& options) {
   Settings settings;
   settings.values = used_values(config);
   settings.is_base_station = config.role == Role::kBaseStation;
+  settings.receives_imu = !settings.is_base_station && config.imu.source == ImuSource::kDds;
+  settings.receives_wheel = !settings.is_base_station && config.wheel.source == WheelSource::kDds;
   settings.dds = config.dds;
   if (settings.is_base_station && config.dds.node_name == dds::DdsConfig{}.node_name) {
     settings.dds.node_name += "_" + config.dds.base_station;

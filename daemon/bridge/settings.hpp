@@ -26,7 +26,9 @@ struct Options {
 /// Settings of the bridge, from the configuration, the command line and the environment.
 struct Settings {
   bool is_base_station = false;
-  dds::DdsConfig dds;  ///< frames with their prefix, domain_id >= 0
+  bool receives_imu = false;    ///< imu.source is dds
+  bool receives_wheel = false;  ///< wheel.source is dds
+  dds::DdsConfig dds;           ///< frames with their prefix, domain_id >= 0
   dds::SensorMounts mounts;
   Environment environment;
   std::string values;  ///< all values that the bridge uses, as text: equal settings have equal texts

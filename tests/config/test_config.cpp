@@ -52,8 +52,12 @@ struct Change {
   void operator()(std::vector<double>* v) const { *v = {1.5, -1.0 / 3.0}; }
   template <typename Integer>
   void operator()(Integer* v) const {
-    *v = !setting.choices.empty() ? static_cast<Integer>(std::stoi(setting.choices.back()))
-                                  : static_cast<Integer>(*v > setting.lowest ? *v - 1 : *v + 1);
+    if constexpr (std::is_enum_v<Integer>) {
+      *v = static_cast<Integer>(setting.choices.size() - 1);
+    } else {
+      *v = !setting.choices.empty() ? static_cast<Integer>(std::stoi(setting.choices.back()))
+                                    : static_cast<Integer>(*v > setting.lowest ? *v - 1 : *v + 1);
+    }
   }
 };
 
@@ -154,7 +158,8 @@ TEST_CASE("Values outside their rules are refused with file, line, column, key, 
         "c.toml:2:8: lidar.port: must be a whole number within 1 … 65535 (got 70000)");
   fails("[lidar]\nport = 1.5\n", "must be a whole number");
   fails("[lidar]\nport = \"2368\"\n", "got '2368'");
-  fails("[lidar]\nmodel = \"VLP-32C\"\n", "lidar.model: must be one of VLP-16, HDL-32E");
+  fails("[lidar]\nmodel = \"VLS-128\"\n",
+        "lidar.model: must be one of VLP-16, VLP-16 Hi-Res, VLP-32C, HDL-32E, ");
   fails("[lidar]\naddress = \"localhost\"\n", "lidar.address: must be an IPv4 address");
   fails("[lidar]\nxyz_m = [0, 0]\n", "lidar.xyz_m: must be three numbers");
   fails("[lidar]\nxyz_m = [0, 0, nan]\n", "lidar.xyz_m");
@@ -181,7 +186,9 @@ TEST_CASE("A robot may have no IMU and no barometer; a base station has a barome
   CHECK(Config{}.imu.present());
   fails("role = \"base-station\"\n[barometer]\nsource = \"none\"",
         "barometer.source: must not be \"none\": a base station measures air pressure");
-  fails("[imu]\nsource = \"off\"", "imu.source: must be one of input, none");
+  fails("[imu]\nsource = \"off\"", "imu.source: must be one of datagram, dds, none");
+  fails("[imu]\nsource = \"input\"", "(got 'input')");
+  fails("[dds]\nreceive_sensors = true\n", "dds.receive_sensors: replaced by imu.source = \"dds\"");
 }
 
 TEST_CASE("Impossible rates of a barometer are refused if that barometer is in use") {
@@ -192,12 +199,13 @@ TEST_CASE("Impossible rates of a barometer are refused if that barometer is in u
         "3.4 s of "
         "measuring in a second, must be below 1");
   CHECK(parse_config(greedy, "c.toml").barometer.dps310.pressure_oversampling == 64);
-  CHECK(parse_config("[barometer]\nsource = \"dps310\"\n", "c.toml").barometer.source == "dps310");
+  CHECK(parse_config("[barometer]\nsource = \"dps310\"\n", "c.toml").barometer.source ==
+        BarometerSource::kDps310);
   fails("[barometer.dps310]\npressure_rate_hz = 30\n", "must be one of 1, 2, 4, 8, 16, 32, 64, 128");
   fails("[barometer.dps310]\naddress = \"0x78\"\n", "must be one of 0x77, 0x76");
   fails("[barometer]\nsource = \"setra278\"\n[barometer.setra278]\nlow_v = 3.0\n",
         "barometer.setra278: high_v must be above low_v");
-  fails("[barometer]\nsource = \"bmp280\"\n", "must be one of input, none, dps310, setra278, iio");
+  fails("[barometer]\nsource = \"bmp280\"\n", "must be one of datagram, none, dps310, setra278, iio");
 }
 
 TEST_CASE("A base station is configured in three lines, and only the keys it uses are shown") {
@@ -247,7 +255,7 @@ TEST_CASE("Basic settings are shown first, and with --basic alone") {
     CHECK(all.find("\n" + setting.key + " = ") != std::string::npos);
     basic_settings += is_basic ? 1 : 0;
   }
-  CHECK(basic_settings == 16);
+  CHECK(basic_settings == 17);
   CHECK_NOTHROW(parse_config(basic, "c.toml"));
 }
 

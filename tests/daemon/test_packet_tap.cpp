@@ -9,7 +9,8 @@
 
 #include "daemon/input_tap.hpp"
 #include "daemon/packet_tap.hpp"
-#include "drivers/velodyne/velodyne_decoder.hpp"
+#include "drivers/lidar/scan_assembler.hpp"
+#include "drivers/lidar_models/lidar_models.hpp"
 #include "ipc/shared_memory.hpp"
 #include "tests/drivers/velodyne/packet_builder.hpp"
 #include "tests/support/allocation_count.hpp"
@@ -44,7 +45,7 @@ class Traffic {
 /// Time to decode one packet after `tap` has had it, over all packets [ns].
 template <class Tap>
 double round_ns(const Traffic& traffic, const Tap& tap) {
-  static velodyne::VelodyneDecoder decoder({});
+  static ScanAssembler decoder(make_lidar_decoder({}));
   static const auto scan = std::make_unique<Scan>();
   const auto begin = std::chrono::steady_clock::now();
   for (int i = 0; i < kPackets; ++i) {

@@ -130,7 +130,8 @@ TEST_CASE("a robot without a base station is well if it is configured so, and wa
 
 TEST_CASE("an IMU or a barometer that is configured away is none and not missed; one that is configured is") {
   Config config;
-  config.imu.source = config.barometer.source = kNoSensor;
+  config.imu.source = ImuSource::kNone;
+  config.barometer.source = BarometerSource::kNone;
   StatusSnapshot status = working(kStart, true);
   status.prior.samples[0] = status.prior.samples[1] = 0;
   status.prior.last_sample_ns[0] = status.prior.last_sample_ns[1] = 0;

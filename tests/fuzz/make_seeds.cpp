@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Writes generated seed inputs for every fuzz target into the given folder.
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -11,6 +12,8 @@
 #include "config/config_io.hpp"
 #include "run/recording/recording_writer.hpp"
 #include "run/tile_store/file_tile_store.hpp"
+#include "tests/drivers/hesai/packet_builder.hpp"
+#include "tests/drivers/robosense/packet_builder.hpp"
 #include "tests/drivers/velodyne/packet_builder.hpp"
 
 namespace {
@@ -38,17 +41,50 @@ test::PacketPlan plan_of(int n, std::uint8_t product_id, std::uint8_t mode) {
   return plan;
 }
 
-void velodyne_seeds() {
-  for (const std::uint8_t product_id : {0x22, 0x21}) {
+/// Five packets for the model of this number in fuzz_lidar.
+template <class MakePacket>
+void lidar_seed(int model, const std::string& name, const MakePacket& packet_of) {
+  std::string stream(1, static_cast<char>(model));
+  for (int n = 0; n < 5; ++n) {
+    const std::vector<std::uint8_t> packet = packet_of(n);
+    stream += '\0';  // option byte
+    stream += static_cast<char>(packet.size() & 0xFFU);
+    stream += static_cast<char>(packet.size() >> 8U);
+    stream.append(2, '\0');
+    stream.append(packet.begin(), packet.end());
+  }
+  save("fuzz_lidar", name, stream);
+}
+
+void lidar_seeds() {
+  constexpr std::array<std::uint8_t, 4> kProductIds{0x22, 0x24, 0x28, 0x21};
+  for (int model = 0; model < 4; ++model) {
     for (const std::uint8_t mode : {0x37, 0x39}) {
-      std::string stream(1, static_cast<char>(product_id & 1U));
-      for (int n = 0; n < 5; ++n) {
-        const auto packet = test::build_packet(plan_of(n, product_id, mode));
-        stream += std::string("\0\xB6\x04\0\0", 5);  // option byte 0; payload of 1206 (0x04B6) bytes
-        stream.append(packet.begin(), packet.end());
-      }
-      save("fuzz_velodyne", std::to_string(product_id) + "-" + std::to_string(mode), stream);
+      const std::uint8_t id = kProductIds[static_cast<std::size_t>(model)];
+      lidar_seed(model, std::to_string(id) + "-" + std::to_string(mode),
+                 [&](int n) { return test::build_packet(plan_of(n, id, mode)); });
     }
+  }
+  for (const int lasers : {16, 32}) {
+    lidar_seed(lasers == 16 ? 4 : 5, "hesai-" + std::to_string(lasers), [&](int n) {
+      test::HesaiPlan plan;
+      plan.lasers = lasers;
+      plan.microsecond = static_cast<std::uint32_t>(n) * 400;
+      plan.first_azimuth_deg = 359.0 + 1.44 * n;
+      return test::build_packet(plan);
+    });
+  }
+  for (const bool is_helios : {false, true}) {
+    lidar_seed(is_helios ? 7 : 6, is_helios ? "helios" : "rs16", [&](int n) {
+      if (n == 2)
+        return test::build_helios_difop({15, 13, 11, 9, 7, 5, 3, 1, -1, -3, -5, -7, -9, -11, -13, -15}, {},
+                                        0);
+      test::RobosensePlan plan;
+      plan.is_helios = is_helios;
+      plan.time_us += n * 1'333;
+      plan.first_azimuth_deg = 355.0 + 4.8 * n;
+      return test::build_packet(plan);
+    });
   }
 }
 
@@ -108,7 +144,7 @@ int main(int count, char** arguments) {
     return 64;
   }
   root = arguments[1];
-  velodyne_seeds();
+  lidar_seeds();
   recording_seeds();
   tile_store_seeds();
   save("fuzz_toml", "config", show_config(Config{}));

@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "core/geometry.hpp"
-#include "drivers/velodyne/velodyne_decoder.hpp"
+#include "drivers/lidar/scan_assembler.hpp"
+#include "drivers/velodyne/decoder.hpp"
 #include "simulation/route.hpp"
 
 namespace isobar::test::test_lidar_model {
@@ -51,7 +52,7 @@ std::vector<double> wall_errors(const LidarErrors& errors, double seconds, PoseT
   const World room = make_room();
   const Trajectory drive = make_drive();
   const LidarModel lidar(room, drive, kMount.T_base_sensor(), errors, 1);
-  const auto decoder = std::make_unique<velodyne::VelodyneDecoder>(velodyne::VelodyneConfig{});
+  const auto decoder = std::make_unique<ScanAssembler>(std::make_unique<velodyne::Decoder>(velodyne::kVlp16));
   const auto scan = std::make_unique<Scan>();
   std::vector<double> result;
   const auto measure = [&] {

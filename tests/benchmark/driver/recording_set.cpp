@@ -26,7 +26,10 @@ constexpr std::size_t kMaxWaitingScans = 4;
 class RecordingPass {
  public:
   RecordingPass(const StageSettings& settings, ScanSink& sink)
-      : sink_(sink), decoder_(settings.lidar), priors_(settings.prior), filling_(std::make_unique<Scan>()) {}
+      : sink_(sink),
+        decoder_(make_lidar_decoder(settings.lidar)),
+        priors_(settings.prior),
+        filling_(std::make_unique<Scan>()) {}
 
   void handle(const recording::Event& event) {
     events_.push_back({event, {}, nullptr, 0.0});
@@ -118,7 +121,7 @@ class RecordingPass {
   }
 
   ScanSink& sink_;
-  velodyne::VelodyneDecoder decoder_;
+  ScanAssembler decoder_;
   PriorEstimator priors_;
   std::vector<Buffered> events_;
   std::size_t packets_ = 0;

@@ -44,7 +44,8 @@ void Sender::play(const std::filesystem::path& recording, std::uint16_t lidar_po
   (void)apply_to_this_thread({"sender", kPriority, {}});  // without rights: ordinary scheduling
   recording::RecordingReader reader(recording);
   // The decoder identifies the packet that closes a scan.
-  velodyne::VelodyneDecoder decoder(stage_settings(with_sensors_of(reader.manifest(), Config{})).lidar);
+  ScanAssembler decoder(
+      make_lidar_decoder(stage_settings(with_sensors_of(reader.manifest(), Config{})).lidar));
   const auto scan = std::make_unique<Scan>();
   tools::Player player("127.0.0.1", lidar_port, datagram::kDefaultPort);
   recording::Event event;

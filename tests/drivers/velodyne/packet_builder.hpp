@@ -16,7 +16,8 @@ struct PacketPlan {
   std::uint8_t return_mode = 0x37;
   std::uint32_t timestamp_us = 0;
   double first_azimuth_deg = 0.0;
-  double step_deg = 0.2;  // from firing block to firing block
+  double step_deg = 0.2;               // from firing block to firing block
+  std::vector<double> azimuths_deg{};  // of the blocks, where they do not follow from these two
   /// Distance in units of 2 mm by block and channel.
   std::function<std::uint16_t(int, int)> distance = [](int, int) { return std::uint16_t{2'500}; };
 };
@@ -29,7 +30,9 @@ inline std::vector<std::uint8_t> build_packet(const PacketPlan& plan) {
   };
   for (int block = 0; block < 12; ++block) {
     const int firing = plan.return_mode == 0x39 ? block / 2 : block;
-    const double azimuth_deg = std::fmod(plan.first_azimuth_deg + firing * plan.step_deg, 360.0);
+    const double azimuth_deg = plan.azimuths_deg.empty()
+                                   ? std::fmod(plan.first_azimuth_deg + firing * plan.step_deg, 360.0)
+                                   : plan.azimuths_deg[static_cast<std::size_t>(block)];
     bytes.push_back(0xFF);
     bytes.push_back(0xEE);
     put16(static_cast<unsigned>(std::lround(azimuth_deg * 100.0)) % 36'000U);

@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
-#include "drivers/velodyne/velodyne_decoder.hpp"
 #include "tests/drivers/velodyne/packet_builder.hpp"
+#include "tests/drivers/velodyne/velodyne_stream.hpp"
 
 namespace isobar::test::test_decoder {
 
@@ -17,9 +17,8 @@ namespace {
 
 using test::build_packet;
 using test::PacketPlan;
-using velodyne::DecodeStatus;
-using velodyne::VelodyneConfig;
-using velodyne::VelodyneDecoder;
+using test::VelodyneConfig;
+using test::VelodyneStream;
 
 constexpr std::int64_t kHostStart = 1'700'000'000'000'000'000;
 constexpr double kRad = 3.14159265358979323846 / 180.0;
@@ -61,7 +60,7 @@ struct Run {
     }
     return sum;
   }
-  VelodyneDecoder decoder;
+  VelodyneStream decoder;
   std::unique_ptr<Scan> scan;
   std::vector<std::unique_ptr<Scan>> done;
 };
@@ -287,14 +286,13 @@ TEST_CASE("Broken packets are refused and counted by kind, and do not affect oth
   run.finish();
   CHECK(run.points() == 100U * 12 * 32);
   const auto& counters = run.decoder.counters();
-  CHECK(counters.truncated + counters.position == 100);
+  CHECK(counters.truncated + counters.no_points == 100);
   CHECK(counters.oversized == 100);
   CHECK(counters.garbage == 300);
   CHECK(counters.wrong_model == 100);
   CHECK(counters.duplicated == 100);
   CHECK(counters.lost == 0);
-  CHECK(run.decoder.wrong_model_message() ==
-        "packets of VLP-32C (product id 0x28), but VLP-16 is configured");
+  CHECK(run.decoder.decoder().mismatch() == "packets of VLP-32C (product id 0x28), but VLP-16 is configured");
 }
 
 TEST_CASE("Swapped packets are decoded, also across two revolutions, and do not count as lost") {

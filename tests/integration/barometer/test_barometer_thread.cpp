@@ -71,7 +71,7 @@ struct Rig {
   }
   static Config config() {
     Config config;
-    config.barometer.source = "dps310";
+    config.barometer.source = BarometerSource::kDps310;
     return config;
   }
   /// Number of samples received within `time`.

@@ -255,7 +255,7 @@ class WheelNode {
 };
 
 TEST_CASE("of two nodes that write the wheels' topic the first is used, the other one when that has ended") {
-  Robot robot("[dds]\nreceive_sensors = true\n");
+  Robot robot("imu.source = \"dds\"\nwheel.source = \"dds\"\n");
   auto driver = std::make_unique<WheelNode>(robot.participant(), 1.0);
   robot.wheels_for(2s);
   const WheelNode rogue(robot.participant(), 9.0);

@@ -52,7 +52,7 @@ run alone --without imu --without wheels --without barometer --without base
 registered alone 90 0.3
 
 # The same robot, but an IMU is configured.
-sed 's/^imu.source = .*/imu.source = "input"/' "$work/wheels.toml" >"$work/silent.toml"
+sed 's/^imu.source = .*/imu.source = "datagram"/' "$work/wheels.toml" >"$work/silent.toml"
 run silent --without imu
 grep -q 'imu: nothing received yet' "$work/silent.log" || fail "a configured IMU that is silent is not missed"
 ok "an IMU that is configured and silent is missed"

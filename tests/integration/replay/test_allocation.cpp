@@ -21,7 +21,7 @@ TEST_CASE("the allocation counter works") {
 TEST_CASE("after start-up decoder, prior and registration allocate nothing") {
   recording::RecordingReader reader(short_drive());
   const StageSettings settings = stage_settings(with_sensors_of(reader.manifest(), Config{}));
-  velodyne::VelodyneDecoder decoder(settings.lidar);
+  ScanAssembler decoder(make_lidar_decoder(settings.lidar));
   PriorEstimator prior_estimator(settings.prior);
   Registration registration(settings.registration, settings.method, settings.T_base_lidar);
   LocalMap map(settings.map, settings.T_base_lidar);

@@ -11,7 +11,8 @@
 #include "core/errors.hpp"
 #include "daemon/recording_check.hpp"
 #include "daemon/stage_settings.hpp"
-#include "drivers/velodyne/velodyne_decoder.hpp"
+#include "drivers/lidar/scan_assembler.hpp"
+#include "drivers/lidar_models/lidar_models.hpp"
 #include "simulation/simulate.hpp"
 #include "tests/integration/replay/recordings.hpp"
 
@@ -64,7 +65,7 @@ void check_no_finding_at_any_time(const std::filesystem::path& recording) {
   recording::RecordingReader reader(recording);
   const Config used = with_sensors_of(reader.manifest(), {});
   InputCheck check({.imu = used.imu.mount, .lidar = used.lidar.mount});
-  velodyne::VelodyneDecoder decoder(stage_settings(used).lidar);
+  ScanAssembler assembler(make_lidar_decoder(stage_settings(used).lidar));
   const auto scan = std::make_unique<Scan>();
   recording::Event event;
   std::int64_t judged_ns = 0;
@@ -74,7 +75,7 @@ void check_no_finding_at_any_time(const std::filesystem::path& recording) {
     if (event.kind == recording::EventKind::kPressure) check.add_pressure(event.pressure);
     if (event.kind == recording::EventKind::kBasePressure) check.add_base_pressure(event.pressure);
     if (event.kind == recording::EventKind::kLidarPacket &&
-        decoder.add_packet(event.packet, event.stamp_ns, *scan).scan_complete) {
+        assembler.add_packet(event.packet, event.stamp_ns, *scan).scan_complete) {
       check.add_scan(*scan);
     }
     if (event.stamp_ns - judged_ns < 1'000'000'000) continue;

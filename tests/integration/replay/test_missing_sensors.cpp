@@ -80,7 +80,7 @@ TEST_CASE("a robot registers its scans with any of its sensors missing, and says
 
 TEST_CASE("a configuration without an IMU leaves that of a recording unused") {
   Config config;
-  config.imu.source = kNoSensor;
+  config.imu.source = ImuSource::kNone;
   const std::filesystem::path out = fresh_folder("unused-imu");
   const ReplaySummary summary =
       replay(copy_with(short_drive(), "with-imu", {}, {}), config, out, [](double) {});

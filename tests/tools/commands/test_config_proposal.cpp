@@ -12,7 +12,7 @@
 
 #include "config/config_io.hpp"
 #include "drivers/udp/udp.hpp"
-#include "drivers/velodyne/packet_format.hpp"
+#include "tests/drivers/velodyne/packet_builder.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tools/machine_survey.hpp"
 
@@ -59,7 +59,7 @@ TEST_CASE("a machine with nothing gets a file of ten lines that says what was no
   const std::string text = proposal(Machine().survey());
   CHECK_NOTHROW(parse_config(text, "c.toml"));
   CHECK(settings_in(text) <= 10);
-  CHECK(has(text, "# No lidar was heard on UDP port 2368"));
+  CHECK(has(text, "# No lidar was heard"));
   CHECK(has(text, "# No barometer was found (I2C buses: none)"));
   CHECK(has(text, "# Serial lines: none. GPIO chips: none."));
 }
@@ -72,7 +72,7 @@ TEST_CASE("a barometer with a kernel driver is proposed; other devices with a dr
   machine.add("sys/bus/iio/devices/iio:device1/in_pressure_input", "101.3\n");
   const std::string text = proposal(machine.survey());
   const Config config = parse_config(text, "c.toml");
-  CHECK(config.barometer.source == "iio");
+  CHECK(config.barometer.source == BarometerSource::kIio);
   CHECK(fs::path(config.barometer.iio.folder).filename() == "iio:device1");
   CHECK(has(text, "# Found bmp280 with a kernel driver"));
 }
@@ -101,7 +101,7 @@ TEST_CASE("a DPS310 at its address is preferred to a kernel driver, other chips 
   survey.i2c = {{"/dev/i2c-0", 0x76, false}, {"/dev/i2c-3", 0x76, true}};
   survey.iio = {{"/sys/bus/iio/devices/iio:device1", "bmp280"}};
   const Config config = parse_config(proposal(survey), "c.toml");
-  CHECK(config.barometer.source == "dps310");
+  CHECK(config.barometer.source == BarometerSource::kDps310);
   CHECK(config.barometer.dps310.bus == "/dev/i2c-3");
   CHECK(config.barometer.dps310.address == "0x76");
   CHECK(has(proposal(survey), "# Found a device that is no DPS310 at /dev/i2c-0, address 0x76."));
@@ -111,8 +111,9 @@ TEST_CASE("a lidar that sends is found with its address, model and rate") {
   Survey survey;
   std::thread sender([] {
     UdpSender out("127.0.0.1", 2368);
-    std::vector<std::uint8_t> packet(velodyne::kDataPacketBytes, 0);
-    packet[velodyne::kProductIdOffset] = 0x21;  // HDL-32E
+    test::PacketPlan plan;
+    plan.product_id = 0x28;  // VLP-32C
+    const auto packet = test::build_packet(plan);
     for (int i = 0; i < 50; ++i) {
       (void)out.send(packet);
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -126,24 +127,24 @@ TEST_CASE("a lidar that sends is found with its address, model and rate") {
   }
   REQUIRE(survey.lidars.size() == 1);
   CHECK(survey.lidars[0].sender == "127.0.0.1");
-  CHECK(survey.lidars[0].model == "HDL-32E");
+  CHECK(survey.lidars[0].model == "VLP-32C");
   CHECK(survey.lidars[0].packets_per_s > 10.0);
   const std::string text = proposal(survey);
-  CHECK(parse_config(text, "c.toml").lidar.model == "HDL-32E");
+  CHECK(parse_config(text, "c.toml").lidar.model == "VLP-32C");
   CHECK(has(text, "packets a second from 127.0.0.1 to UDP port 2368"));
 }
 
 TEST_CASE("of two lidars the first with a driver is proposed with its address") {
   Survey survey;
-  survey.lidars = {{"10.0.0.2", 2368, "", 0x28, 1500.0}, {"10.0.0.3", 2368, "VLP-16", 0x22, 754.0}};
+  survey.lidars = {{"10.0.0.2", 2368, "", "packets of VLS-128", 1500.0}, {"10.0.0.3", 2368, "VLP-16", "", 754.0}};
   CHECK(parse_config(proposal(survey), "c.toml").lidar.sender == "10.0.0.3");
 }
 
-TEST_CASE("a lidar without a driver is named by its product id, and not proposed") {
+TEST_CASE("a lidar without a driver is named by what its packets say, and not proposed") {
   Survey survey;
-  survey.lidars = {{"10.0.0.2", 2368, "", 0x28, 1500.0}};
+  survey.lidars = {{"10.0.0.2", 2368, "", "packets of VLS-128", 1500.0}};
   const std::string text = proposal(survey);
-  CHECK(has(text, "# Found a lidar without a driver, product id 0x28: 1500 packets a second from 10.0.0.2"));
+  CHECK(has(text, "# Found a lidar without a driver (packets of VLS-128): 1500 packets a second from 10.0.0.2"));
   CHECK(parse_config(text, "c.toml").lidar.model == "VLP-16");
 }
 

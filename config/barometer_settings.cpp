@@ -1,52 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "config/mount_settings.hpp"
 #include "config/section_builder.hpp"
 #include "core/plausibility.hpp"
 
 namespace isobar {
 namespace {
-
-constexpr double kMaxLeverM = 100.0;
-
-void add_position(SectionBuilder& section, Mount& mount, const char* doc) {
-  section.number("xyz_m", &mount.xyz_m, "m", -kMaxLeverM, kMaxLeverM, doc).basic();
-}
-
-void add_rotation(SectionBuilder& section, Mount& mount) {
-  section
-      .number("rpy_deg", &mount.rpy_deg, "deg", -360.0, 360.0,
-              "Roll, pitch and yaw of the sensor in base_link, about the fixed axes x, y, z. 0: its axes are "
-              "parallel to base_link's.")
-      .basic();
-}
-
-void add_lidar(LidarSettings& lidar, std::vector<Setting>& settings) {
-  SectionBuilder s("lidar", UsedBy::kRobot, settings);
-  s.choice("model", &lidar.model, {"VLP-16", "HDL-32E"},
-           "Model of the lidar. Packets of any other model are refused.")
-      .basic();
-  s.text("address", lidar.address, TextRule::kIpv4,
-         "IPv4 address on which packets are received. 0.0.0.0: every interface.");
-  s.number("port", &lidar.port, "", 1, 65'535,
-           "UDP port of the data packets. 2368 is the lidar's factory setting.")
-      .basic();
-  s.text(
-      "sender", lidar.sender, TextRule::kIpv4OrEmpty,
-      "IPv4 address of the lidar. Packets of other senders are refused and counted. Empty: the first sender "
-      "heard is used; another one takes over after 5 s of its silence.");
-  add_position(s, lidar.mount, "Origin of the lidar in base_link. 0: at the origin of base_link.");
-  add_rotation(s, lidar.mount);
-  s.applies(Apply::kLive);
-  s.number("min_range_m", &lidar.min_range_m, "m", 0.0, 10.0,
-           "Shortest range; the driver drops nearer returns, which come from housing and mount. 0 keeps "
-           "all.");
-  s.number("max_range_m", &lidar.max_range_m, "m", 1.0, 131.0,
-           "Longest range; the driver drops farther returns. 131 keeps all: a packet holds 16 bits of 2 mm.");
-  s.number("mask_start_deg", &lidar.mask_start_deg, "deg", 0.0, 360.0,
-           "Start of the masked sector, in which the lidar sees the robot itself: clockwise from above, 0 in "
-           "front, across 0 if the end is smaller. Equal start and end mask nothing.");
-  s.number("mask_end_deg", &lidar.mask_end_deg, "deg", 0.0, 360.0,
-           "End of the masked sector; equal to mask_start_deg, nothing is masked.");
-}
 
 void add_dps310(dps310::Settings& dps310, std::vector<Setting>& settings) {
   const std::vector<std::string> powers_of_two{"1", "2", "4", "8", "16", "32", "64", "128"};
@@ -100,14 +58,13 @@ void add_compensation_file(std::string& file, SectionBuilder& section) {
                "the folder of this configuration. Empty: none.");
 }
 
-void add_barometer(BarometerSettings& barometer, std::vector<Setting>& settings) {
+void add_barometer_section(BarometerSettings& barometer, std::vector<Setting>& settings) {
   SectionBuilder s("barometer", UsedBy::kEveryRole, settings);
   s.choice(
-       "source", &barometer.source, {"input", kNoSensor, "dps310", "setra278", "iio"},
-       "Source of the barometer's samples. input: datagrams. none: this robot has no barometer; its height "
-       "is the lidar's. dps310, setra278, iio: a sensor of this "
-       "machine, which isobard reads itself, set up in the section of that name; datagrams of the "
-       "barometer are then refused.")
+       "source", &barometer.source, kBarometerSourceNames.names(),
+       "Source of the barometer's samples; those of any other source are refused. datagram: sample datagrams "
+       "by UDP. none: this robot has no barometer; its height is the lidar's. Any other word: a sensor of "
+       "this machine, which isobard reads itself, set up in the section of that name.")
       .basic();
   s.used_by(UsedBy::kRobot);
   add_position(s, barometer.mount,
@@ -127,18 +84,8 @@ void add_barometer(BarometerSettings& barometer, std::vector<Setting>& settings)
 
 }  // namespace
 
-void add_sensor_settings(Config& config, std::vector<Setting>& settings) {
-  add_lidar(config.lidar, settings);
-  SectionBuilder imu("imu", UsedBy::kRobot, settings);
-  imu.choice(
-         "source", &config.imu.source, {"input", kNoSensor},
-         "Source of the IMU's samples. input: datagrams, or DDS with dds.receive_sensors. none: this robot "
-         "has no IMU; scans are registered as 6-DOF from the wheels or the last motion, and roll, pitch and "
-         "height drift with the way.")
-      .basic();
-  add_position(imu, config.imu.mount, "Origin of the IMU in base_link. 0: at the origin of base_link.");
-  add_rotation(imu, config.imu.mount);
-  add_barometer(config.barometer, settings);
+void add_barometer_settings(Config& config, std::vector<Setting>& settings) {
+  add_barometer_section(config.barometer, settings);
   add_compensation_settings("barometer.compensation", UsedBy::kEveryRole, config.prior.compensation,
                             settings);
   SectionBuilder base("base_barometer", UsedBy::kRobot, settings);
