@@ -48,6 +48,9 @@ TEST_CASE("a robot that rides, weather that both feel, and doors contradict noth
   CHECK_FALSE(find_swapped_barometers(series_of(1, still), series_of(2, door)));
   CHECK_FALSE(find_swapped_barometers(series_of(1, ride), series_of(2, ride)));
   CHECK_FALSE(find_swapped_barometers(series_of(1, still), PressureSeconds()));
+  // A base in a van that climbs with the robot, further than it.
+  CHECK_FALSE(
+      find_swapped_barometers(series_of(1, [](double t) { return 0.5 * ride(t); }), series_of(2, ride)));
 }
 
 }  // namespace isobar::test::test_barometer_swap
