@@ -9,6 +9,7 @@
 #include "core/names.hpp"
 #include "core/stamp.hpp"
 #include "daemon/base_station_health.hpp"
+#include "daemon/contradictions.hpp"
 #include "daemon/health_entries.hpp"
 #include "daemon/health_entry.hpp"
 #include "daemon/imu_source.hpp"
@@ -76,6 +77,7 @@ void HealthMonitor::fill(const StatusSnapshot& now, HealthReport& report) {
   fill_lidar(now, elapsed_s, report);
   fill_samples(now, elapsed_s, report);
   add_starts_over(report, start_over_, now.now_ns);
+  add_contradictions(report, now.contradictions);
   fill_faults(now, report);
   fill_prior(now, report);
   fill_registration(now, report);
@@ -132,7 +134,10 @@ void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, He
   for (std::size_t kind = 0; kind < datagram::kKinds; ++kind) {
     const double rate_hz = per_second(now.prior.samples[kind], last_.prior.samples[kind], elapsed_s);
     const auto which = static_cast<datagram::Kind>(kind);
-    if (which == datagram::Kind::kImu && !config_.imu.present()) {
+    if (which == datagram::Kind::kImu && !usable_sensors(now.contradictions).imu) {
+      add_entry(report, kNames[kind], HealthLevel::kWarning,
+                "samples come and are not used: see the contradictions", rate_hz);
+    } else if (which == datagram::Kind::kImu && !config_.imu.present()) {
       add_absent(report, kNames[kind], "imu.source", now.prior.samples[kind] + now.samples.refused[kind]);
     } else if (which == datagram::Kind::kPressure && !config_.barometer.present()) {
       add_absent(report, kNames[kind], "barometer.source", now.samples.refused[kind]);

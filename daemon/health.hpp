@@ -7,6 +7,7 @@
 #include <string>
 
 #include "config/config.hpp"
+#include "core/contradictions/finding.hpp"
 #include "daemon/device_thread.hpp"
 #include "daemon/lidar_thread.hpp"
 #include "daemon/map_thread.hpp"
@@ -33,6 +34,7 @@ struct StatusSnapshot {
   OutputStatus output;
   std::string lidar_waits_for{};  ///< see UdpReceiver::waiting_for()
   std::string samples_wait_for{};
+  Findings contradictions{};
 };
 
 class StageTimes;

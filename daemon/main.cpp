@@ -20,7 +20,9 @@
 #include "daemon/base_station.hpp"
 #include "daemon/black_box.hpp"
 #include "daemon/broker_patience.hpp"
+#include "daemon/check_thread.hpp"
 #include "daemon/configuration.hpp"
+#include "daemon/contradictions.hpp"
 #include "daemon/graph.hpp"
 #include "daemon/health.hpp"
 #include "daemon/imu_source.hpp"
@@ -71,6 +73,8 @@ class RobotGraph final : public Graph {
                   .unsigned_base = config.dds.keys_directory.empty()},
                  config.input.senders, scheduling_.inertial),
         lidar_(stages_.lidar, config.lidar, scheduling_.lidar),
+        check_({.imu = config.imu.mount, .lidar = config.lidar.mount}, config.imu.present(),
+               scheduling_.check),
         output_(files_.checkpoint_file().empty()
                     ? nullptr
                     : std::make_unique<OutputThread>(
@@ -82,6 +86,7 @@ class RobotGraph final : public Graph {
     // continue without it.
     if (black_box_) black_box_->add_to(workers_);
     if (output_) workers_.add(output_->worker(), Watch::kNo);
+    workers_.add(check_.worker(), Watch::kNo);
     workers_.add(map_.worker());
     workers_.add(registration_.worker());
     workers_.add(prior_.worker());
@@ -116,7 +121,8 @@ class RobotGraph final : public Graph {
             map_.status(),
             output_ ? output_->status() : OutputStatus{},
             lidar_.waiting_for(),
-            samples_.waiting_for()};
+            samples_.waiting_for(),
+            check_.findings()};
   }
 
   [[nodiscard]] WorkerGroup& workers() override { return workers_; }
@@ -140,22 +146,27 @@ class RobotGraph final : public Graph {
   [[nodiscard]] Apply apply_of(const Setting& setting) const override { return setting.apply; }
   void apply(const ConfigChange& change) override {
     config_ = change.running;
-    stages_ = stage_settings(config_);
+    stages_ = stage_settings(without_unusable(config_, usable_));
     const RobotScheduling scheduling = robot_scheduling(config_.realtime);
     lidar_.configure(stages_.lidar.limits, scheduling.lidar.deadline_ms);
-    prior_.configure(stages_.prior, scheduling.prior.deadline_ms);
+    if (usable_ == UsableSensors{}) {
+      prior_.configure(stages_.prior, scheduling.prior.deadline_ms);
+    } else {
+      prior_.leave_out(stages_.prior, usable_, scheduling.prior.deadline_ms);
+    }
     if (change.concerns("method") || change.concerns("registration.") || change.concerns("realtime.")) {
       registration_.rebuild(stages_, scan_queue_config(config_.realtime),
                             scheduling.registration.deadline_ms);
     }
     map_.configure(stages_.map, config_.output.cloud_interval_s, scheduling.map.deadline_ms);
-    monitor_.configure(config_);
+    monitor_.configure(without_unusable(config_, usable_));
     description_.publish(config_);
   }
   void collect() override {
     if (monitor_.input_starts_over(lidar_.status(), samples_.status(), prior_.status())) {
       registration_.begin_new_frame(NewFrameReason::kInputStartsOver);
     }
+    leave_out(usable_sensors(check_.findings()));
     lidar_.collect();
     prior_.collect();
     registration_.collect();
@@ -163,7 +174,20 @@ class RobotGraph final : public Graph {
   }
 
  private:
+  /// Goes on, in a new map frame, without what contradicts: the map so far may be turned by it.
+  void leave_out(const UsableSensors& usable) {
+    if (usable == usable_) return;
+    usable_ = usable;
+    stages_ = stage_settings(without_unusable(config_, usable_));
+    const RobotScheduling scheduling = robot_scheduling(config_.realtime);
+    prior_.leave_out(stages_.prior, usable_, scheduling.prior.deadline_ms);
+    registration_.rebuild(stages_, scan_queue_config(config_.realtime), scheduling.registration.deadline_ms);
+    registration_.begin_new_frame(NewFrameReason::kContradiction);
+    monitor_.configure(without_unusable(config_, usable_));
+  }
+
   Config config_;
+  UsableSensors usable_;  ///< the sensors that the stages use
   StageSettings stages_;
   RobotScheduling scheduling_;
   ipc::Broker broker_;
@@ -177,6 +201,7 @@ class RobotGraph final : public Graph {
   std::unique_ptr<BarometerThread> barometer_;
   SampleThread samples_;
   LidarThread lidar_;
+  CheckThread check_;
   std::unique_ptr<OutputThread> output_;
   HealthMonitor monitor_;
   WorkerGroup workers_;  ///< last: stops all threads before the stages are destroyed

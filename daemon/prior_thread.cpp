@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <numeric>
+#include <utility>
 
 #include "daemon/message_loop.hpp"
 #include "daemon/start_over.hpp"
@@ -53,25 +54,42 @@ ipc::Received<Sample> PriorThread::take(ipc::Subscriber<Sample>& from, datagram:
   return sample;
 }
 
+void PriorThread::leave_out(const PriorConfig& config, const UsableSensors& usable, double deadline_ms) {
+  auto estimator = std::make_unique<PriorEstimator>(config);
+  estimator->resume(status().datum);
+  changes_.offer(std::make_unique<Change>(Change{config, deadline_ms, std::move(estimator), usable}));
+}
+
+// Swaps, so that the main thread frees the estimate that was in use.
+void PriorThread::obey(Change& change) noexcept {
+  deadline_.set_limit(change.deadline_ms);
+  if (change.estimator == nullptr) {
+    estimator_.configure(change.config);
+    return;
+  }
+  std::swap(estimator_, *change.estimator);
+  has_imu_ = change.config.has_imu;
+  usable_ = change.usable;
+}
+
 // Slow sensors first: a measurement older than an IMU sample contributes to that sample's prior.
 void PriorThread::drain() noexcept {
-  changes_.take([this](const Change& change) {
-    estimator_.configure(change.config);
-    deadline_.set_limit(change.deadline_ms);
-  });
+  changes_.take([this](Change& change) { obey(change); });
   using datagram::Kind;
   while (const auto sample = take(base_barometer_, Kind::kBasePressure)) {
     const std::size_t station = sample->station;
     if (station >= base_paths_.size()) continue;  // of another build
     const bool is_used = base_paths_[station].check(*sample);
     draft_status_.base_paths[station] = base_paths_[station].status();
-    if (!is_used) continue;
+    if (!is_used || !usable_.barometers) continue;
     draft_status_.base_stations[station].add(sample->stamp_ns);
     estimator_.add_base_pressure(*sample);
   }
-  while (const auto sample = take(barometer_, Kind::kPressure)) estimator_.add_pressure(*sample);
+  while (const auto sample = take(barometer_, Kind::kPressure)) {
+    if (usable_.barometers) estimator_.add_pressure(*sample);
+  }
   while (const auto sample = take(wheel_, Kind::kWheel)) {
-    if (wheel_path_.check(*sample)) estimator_.add_wheel(*sample);
+    if (wheel_path_.check(*sample) && usable_.wheels) estimator_.add_wheel(*sample);
   }
   drain_imu();
   if (!has_imu_) advance(RobotClock::now_ns());

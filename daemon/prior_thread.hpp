@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/contradictions/finding.hpp"
 #include "core/prior/prior_estimator.hpp"
 #include "core/prior/prior_pace.hpp"
 #include "core/time/cadence.hpp"
@@ -55,8 +56,11 @@ class PriorThread {
   /// Changes the deadline and the settings that PriorEstimator::configure() takes, from the next round on. Main
   /// thread, as collect().
   void configure(const PriorConfig& config, double deadline_ms) {
-    changes_.offer(std::make_unique<Change>(Change{config, deadline_ms}));
+    changes_.offer(std::make_unique<Change>(Change{config, deadline_ms, nullptr, {}}));
   }
+  /// Goes on without the sensors that are not usable, with an estimate that has never heard them. Main thread.
+  /// @param config PriorConfig::has_imu as usable.imu
+  void leave_out(const PriorConfig& config, const UsableSensors& usable, double deadline_ms);
   void collect() { changes_.collect(); }
 
   [[nodiscard]] PriorStatus status() const noexcept { return status_.get(); }
@@ -65,7 +69,10 @@ class PriorThread {
   struct Change {
     PriorConfig config;
     double deadline_ms;
+    std::unique_ptr<PriorEstimator> estimator;  ///< replaces the one in use; null: none does
+    UsableSensors usable;                       ///< with it
   };
+  void obey(Change& change) noexcept;
   void loop() noexcept;
   [[nodiscard]] std::chrono::nanoseconds poll() const noexcept;
   void drain() noexcept;
@@ -77,6 +84,7 @@ class PriorThread {
   void describe(const Prior& prior) noexcept;
 
   bool has_imu_;
+  UsableSensors usable_;
   PriorEstimator estimator_;
   PriorPace pace_;  ///< without an IMU
   std::array<PathChoice, 2> base_paths_{

@@ -32,17 +32,19 @@ struct PoseSummary {
 
 /// Why a map frame was begun.
 enum class NewFrameReason : std::uint8_t {
-  kNone,            ///< the first of the run, or the continued one
-  kPlaceUnknown,    ///< a continued run does not find its place in its map
-  kCommand,         ///< somebody asked for it
-  kInputStartsOver  ///< the sensors' clock has jumped back: another recording is played
+  kNone,             ///< the first of the run, or the continued one
+  kPlaceUnknown,     ///< a continued run does not find its place in its map
+  kCommand,          ///< somebody asked for it
+  kInputStartsOver,  ///< the sensors' clock has jumped back: another recording is played
+  kContradiction     ///< a sensor contradicts the configuration or the others, and is left out from here on
 };
 
-inline constexpr NameTable<NewFrameReason, 4> kNewFrameReasonNames{{{
+inline constexpr NameTable<NewFrameReason, 5> kNewFrameReasonNames{{{
     {NewFrameReason::kNone, "none"},
     {NewFrameReason::kPlaceUnknown, "the place is not that of the map"},
     {NewFrameReason::kCommand, "on command"},
     {NewFrameReason::kInputStartsOver, "the input started over"},
+    {NewFrameReason::kContradiction, "a sensor was left out: its samples contradict the others"},
 }}};
 
 /// Status of the registration thread.

@@ -14,6 +14,7 @@
 #include "daemon/counts.hpp"
 #include "daemon/lock_step.hpp"
 #include "daemon/missing_sensors.hpp"
+#include "daemon/recording_check.hpp"
 #include "daemon/stage_settings.hpp"
 #include "run/recording/recording_reader.hpp"
 
@@ -23,6 +24,8 @@ namespace {
 
 /// Scans from which on their rate is judged.
 constexpr std::uint64_t kMinScansForRate = 20;
+/// Share of the progress that the check of the inputs takes.
+constexpr double kCheckShare = 0.1;
 
 /// Writes the poses; counts the scans whose registration fell back to a method with fewer inputs than the
 /// configured one.
@@ -162,6 +165,11 @@ std::string refusals(const std::vector<files::RunCount>& counts) {
   return text.empty() ? "the file contains no packets" : text;
 }
 
+/// The contradictions in the status of the run.
+void add_contradictions(const std::vector<std::string>& texts, std::vector<files::RunCount>& counts) {
+  for (const std::string& text : texts) counts.push_back({"contradiction", 1, text});
+}
+
 /// A recording without a decodable scan is an error, not an empty trajectory.
 void refuse_empty_run(const ReplaySummary& summary, const LockStep& pipeline,
                       const std::filesystem::path& recording) {
@@ -179,11 +187,18 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
                      const std::filesystem::path& out, const std::function<void(double)>& progress) {
   const auto started = std::chrono::steady_clock::now();
   recording::RecordingReader reader(recording);
-  const Config used = with_sensors_of(reader.manifest(), config);
+  // Before the first pose: what the whole recording contradicts is left out of the run from its start.
+  const RecordingCheck check = check_recording(recording, with_sensors_of(reader.manifest(), config),
+                                               [&](double fraction) { progress(kCheckShare * fraction); });
+  refuse_clocks_apart(check, recording);
+  const recording::Manifest manifest = without_unusable(reader.manifest(), check.usable);
+  const Config used = with_sensors_of(manifest, config);
   ReplaySummary summary;
   summary.warnings = reader.warnings();
-  warn_of_missing_sensors(reader.manifest(), used, summary);
-  if (reader.manifest().base_barometer) summary.base_clock = reader.base_clock().reason;
+  const std::vector<std::string> contradictions = contradiction_texts(check);
+  summary.warnings.insert(summary.warnings.end(), contradictions.begin(), contradictions.end());
+  warn_of_missing_sensors(manifest, used, summary);
+  if (manifest.base_barometer) summary.base_clock = reader.base_clock().reason;
 
   files::RunOutput output(out);
   output.write_settings(show_config(used));
@@ -197,8 +212,8 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   for (std::uint64_t events = 0; reader.next(event); ++events) {
     first_ns = std::min(first_ns, event.stamp_ns);
     last_ns = std::max(last_ns, event.stamp_ns);
-    pipeline.handle(event);
-    if (events % 512 == 0) progress(reader.progress());
+    if (is_used(event.kind, check.usable)) pipeline.handle(event);
+    if (events % 512 == 0) progress(kCheckShare + (1.0 - kCheckShare) * reader.progress());
   }
   pipeline.finish();
   output.flush();
@@ -212,9 +227,10 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   summary.recorded_s = last_ns > first_ns ? seconds_between(first_ns, last_ns) : 0.0;
   summary.counts = collect_counts(reader, pipeline);
   run_counts::append(summary.counts, map_counts);
-  warn_of_scans_without(reader.manifest(), used.imu.present(), sink, summary);
+  add_contradictions(contradictions, summary.counts);
+  warn_of_scans_without(manifest, used.imu.present(), sink, summary);
   warn_of_two_lidars(pipeline, used.lidar.port, summary);
-  warn_of_unusable_sensors(reader.manifest(), used, pipeline, summary);
+  warn_of_unusable_sensors(manifest, used, pipeline, summary);
   output.write_counters(summary.counts);
   if (used.method == Method::kAdaptive) {
     output.write_mounts(mounts_file_text(sink.last().mount, used.lidar.mount.rpy_deg));

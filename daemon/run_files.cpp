@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/run_files.hpp"
+#include "daemon/contradictions.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -144,6 +145,7 @@ void RunFiles::close(const StatusSnapshot& last) {
   if (maps_.current() != nullptr) {
     do_or_log([&] { run_counts::append(counts, counts_of_map(*maps_.current(), *output_)); });
   }
+  add_contradictions(counts, last.contradictions);
   counts.push_back({"poses not written", output_->dropped_lines(), ""});
   do_or_log([&] { output_->write_counters(counts); });
   if (last.registration.effective_method == Method::kAdaptive) {

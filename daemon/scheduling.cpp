@@ -15,6 +15,7 @@ RobotScheduling robot_scheduling(const RealtimeSettings& realtime) {
        realtime.registration_deadline_ms},
       {"map", 0, realtime.map_cpus, realtime.map_deadline_ms},
       {"output", 0, {}},
+      {"check", 0, realtime.map_cpus},
   };
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `isobar`: the command-line tool. Exit codes: 0, 64 usage, 65 data, 69 service, 78 configuration.
+// `isobar`: the command-line tool. Exit codes: 0, 1 `check` has findings, 64 usage, 65 data, 69 service, 78 configuration.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>

@@ -12,11 +12,13 @@ void add_all_commands(CLI::App& app) {
   app.name("isobar");
   app.description(
       "Isobar: lidar localisation whose height comes from air pressure.\n"
-      "Exit codes: 0 done, 64 usage, 65 bad data, 69 service unavailable, 78 bad configuration.");
+      "Exit codes: 0 done, 1 `check` found contradictions, 64 usage, 65 bad data, 69 service unavailable, 78 "
+      "bad configuration.");
   app.require_subcommand(1);
   app.set_version_flag("--version", version_line("isobar"));
   app.get_formatter()->column_width(32);
   add_simulate_command(app);
+  add_check_command(app);
   add_replay_command(app);
   add_evaluate_command(app);
   add_experiment_command(app);

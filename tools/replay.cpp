@@ -40,7 +40,8 @@ void print_summary(const ReplaySummary& summary, const std::filesystem::path& ou
   for (const std::string& warning : summary.warnings) std::printf("note: %s\n", warning.c_str());
   if (!summary.base_clock.empty()) std::printf("base station clock: %s\n", summary.base_clock.c_str());
   for (const files::RunCount& count : summary.counts) {
-    if (count.count == 0 || is_ordinary(count.name)) continue;
+    if (count.count == 0 || is_ordinary(count.name) || count.name == "contradiction")
+      continue;  // a note already
     std::printf("counted: %s: %llu%s%s\n", count.name.c_str(), static_cast<unsigned long long>(count.count),
                 count.first_message.empty() ? "" : "; first: ", count.first_message.c_str());
   }

@@ -79,6 +79,7 @@ const std::map<std::string, Names> kMayIncludeInCore{
     {"core/time", {}},
     {"core/altitude", {}},
     {"core/calibration", {"core/altitude", "core/statistics"}},
+    {"core/contradictions", {}},
     {"core/map", {}},
     {"core/prior", {"core/altitude"}},
     {"core/mounts", {"core/prior"}},
