@@ -47,7 +47,7 @@ int GpioLines::open() noexcept {
 }
 
 int GpioLines::level(std::uint8_t encoder, Line line, bool& high) noexcept {
-  const auto& asked = lines_[2U * encoder + static_cast<std::size_t>(line)];
+  const auto& asked = lines_[std::size_t{2} * encoder + static_cast<std::size_t>(line)];
   return asked ? asked->level(high) : EBADF;
 }
 

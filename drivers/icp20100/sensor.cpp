@@ -143,7 +143,7 @@ PolledBarometer::Outcome Sensor::configure(std::int64_t now_ns) noexcept {
   if (error == 0) error = bus().write(kInterruptMask, kAll);
   if (error == 0) error = bus().write(kInterruptStatus, kAll);
   if (error != 0) return no_answer(error);
-  deadline_ns_ = now_ns + kBusyTimeoutNs + 2 * kSettlingResults * period_ns_;
+  deadline_ns_ = now_ns + kBusyTimeoutNs + std::int64_t{2} * kSettlingResults * period_ns_;
   return select(running_mode(), Piece::kSettle, kSettlingResults * period_ns_);
 }
 
