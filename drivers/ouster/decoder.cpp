@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 namespace isobar::ouster {
@@ -176,31 +177,30 @@ std::uint32_t Decoder::decode_column(const std::uint8_t* column, std::uint16_t t
   return written;
 }
 
+/// Short texts: the status shows 119 characters.
 std::string Decoder::mismatch() const {
-  const std::string& file = metadata_.file;
-  const std::string profile(metadata_.profile->name);
+  const std::string file = std::filesystem::path(metadata_.file).filename().string();
   switch (fault_) {
     case Fault::kSize:
-      return "packets of " + std::to_string(other_bytes_) + " bytes (" + formats_of_size(other_bytes_) +
-             "), but " + file + " says " + std::to_string(layout_.packet_bytes()) + " (" + profile +
-             " with " + std::to_string(layout_.pixels()) + " beams, " + std::to_string(layout_.columns()) +
-             " columns a packet)";
+      return "packets of " + std::to_string(other_bytes_) + " bytes, but " + file + " says " +
+             std::to_string(layout_.packet_bytes()) + " (" + std::to_string(layout_.pixels()) + " beams, " +
+             std::string(layout_.profile().name) + "); theirs: " + formats_of_size(other_bytes_);
     case Fault::kHeader:
-      return "packets with the header of the functional safety firmware, but " + file + " says " + profile;
+      return "packets with the header of functional safety, but " + file + " says " +
+             std::string(layout_.profile().name);
     case Fault::kSerial:
       return "packets of the sensor with serial number " + std::to_string(other_header_.serial) + ", but " +
              file + " is of " + std::to_string(metadata_.serial) + " (" + metadata_.product_line + ")";
     case Fault::kStart:
       return "packets with initialisation id " + std::to_string(other_header_.init_id) + ", but " + file +
-             " holds " + std::to_string(metadata_.init_id) +
-             " and no serial number: another sensor's metadata, or from before a restart; read it again";
+             " has " + std::to_string(metadata_.init_id) + " and no serial number: read it again";
     case Fault::kColumns:
       return "packets of " + std::to_string(evidence_.seen_columns()) + " columns a turn or more, but " +
              file + " says " + std::to_string(metadata_.columns_per_turn) + " (lidar_mode)";
     case Fault::kNone:
       break;
   }
-  return "packets of another sensor than " + file + " describes";
+  return "packets of another sensor than that of " + file;
 }
 
 }  // namespace isobar::ouster

@@ -74,7 +74,9 @@ bool PcapPackets::read(StampedPacket& packet) {
     }
     ++frames_;
     std::span<const std::uint8_t> payload;
-    const FrameKind kind = extractor_.extract(link_, {data, header->caplen}, payload);
+    const std::int64_t stamp_ns =
+        static_cast<std::int64_t>(header->ts.tv_sec) * 1'000'000'000 + header->ts.tv_usec;
+    const FrameKind kind = extractor_.extract(link_, {data, header->caplen}, stamp_ns, payload);
     switch (kind) {
       case FrameKind::kOtherPort:
         tallies_.other_port.add([this] { return place() + "is for another UDP port"; });
@@ -94,7 +96,7 @@ bool PcapPackets::read(StampedPacket& packet) {
       case FrameKind::kPayload:
         break;
     }
-    packet.stamp_ns = static_cast<std::int64_t>(header->ts.tv_sec) * 1'000'000'000 + header->ts.tv_usec;
+    packet.stamp_ns = stamp_ns;
     packet.sender_ipv4 = extractor_.sender_ipv4();
     packet.payload.assign(payload.begin(), payload.end());
     return true;

@@ -15,6 +15,7 @@
 #include "tests/drivers/hesai/packet_builder.hpp"
 #include "tests/drivers/robosense/packet_builder.hpp"
 #include "tests/drivers/velodyne/packet_builder.hpp"
+#include "tests/fuzz/lidar_seeds.hpp"
 
 namespace {
 
@@ -145,6 +146,7 @@ int main(int count, char** arguments) {
   }
   root = arguments[1];
   lidar_seeds();
+  test::write_lidar_seeds(root);
   recording_seeds();
   tile_store_seeds();
   save("fuzz_toml", "config", show_config(Config{}));

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -186,6 +187,59 @@ TEST_CASE("IP fragments are reassembled in any order; a missing one is counted")
   packets = open(scratch, lossy.text());
   CHECK(read_all(*packets).empty());
   CHECK(packets->extractor().incomplete() == 6);  // four are still waiting
+}
+
+TEST_CASE("A datagram with the identification of one that lost fragments is not mixed with it") {
+  Scratch scratch;
+  const Bytes lost = payload_of(1'206, 5);
+  const Bytes payload = payload_of(1'206, 6);
+  for (const std::size_t kept : {0U, 1U, 2U}) {
+    CAPTURE(kept);
+    PcapText text({});
+    const auto old_parts = fragments_of(frame_of(lost), 64);
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (i != kept) text.add(kSeconds, 1, old_parts[i]);
+    }
+    for (const Bytes& part : fragments_of(frame_of(payload), 64)) text.add(kSeconds + 88, 1, part);
+    const auto packets = open(scratch, text.text());
+    const auto all = read_all(*packets);
+    REQUIRE(all.size() == 1);
+    CHECK(all[0].payload == payload);
+    CHECK(packets->extractor().incomplete() == 1);
+  }
+}
+
+TEST_CASE("Overlapping and repeated fragments give the datagram once, of the bytes that came first") {
+  Scratch scratch;
+  const Bytes payload = payload_of(1'206, 7);
+  PcapText text({});
+  const auto parts = fragments_of(frame_of(payload), 64);
+  const auto other = fragments_of(frame_of(payload_of(1'206, 8)), 100);  // its first ends within parts[1]
+  text.add(kSeconds, 1, parts[0]);
+  text.add(kSeconds, 2, parts[0]);
+  text.add(kSeconds, 3, parts[1]);
+  text.add(kSeconds, 4, other[0]);
+  text.add(kSeconds, 5, parts[2]);
+  const auto all = read_all(*open(scratch, text.text()));
+  REQUIRE(all.size() == 1);
+  CHECK(all[0].payload == payload);
+}
+
+TEST_CASE(
+    "Of a captured datagram whose identification was used before, the later one's fragments are joined") {
+  const auto file = std::filesystem::path(ISOBAR_SHARED_DATA) / "ouster" / "duplicate_id.pcap";
+  if (!std::filesystem::exists(file)) {
+    MESSAGE("skipped: " << file.string() << " is not on this machine");
+    return;
+  }
+  PcapPackets packets(file, 34'636, StampGuardConfig{});
+  const auto all = read_all(packets);
+  REQUIRE(all.size() == 1);
+  REQUIRE(all[0].payload.size() == 8'448);
+  // Bytes 2 and 3 are the number of the turn: 0x037C in the first, lost datagram, 0x06F2 in the second.
+  CHECK(int{all[0].payload[2]} == 0xF2);
+  CHECK(int{all[0].payload[3]} == 0x06);
+  CHECK(packets.extractor().incomplete() == 1);
 }
 
 TEST_CASE("Other ports and protocols, broken lengths and truncated frames have separate counters") {
