@@ -20,8 +20,9 @@ constexpr std::size_t kBufferBytes = std::size_t{256} * 1024;
 
 }  // namespace
 
-PcapPackets::PcapPackets(const std::filesystem::path& file, std::uint16_t port, const StampGuardConfig& guard)
-    : name_(file.string()), buffer_(kBufferBytes), extractor_(port), guard_(guard) {
+PcapPackets::PcapPackets(const std::filesystem::path& file, const LidarPorts& ports,
+                         const StampGuardConfig& guard)
+    : name_(file.string()), buffer_(kBufferBytes), extractor_(ports), guard_(guard) {
   if (!std::filesystem::exists(file)) {
     throw DataError(name_ + ": no such file");
   }

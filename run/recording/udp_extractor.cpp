@@ -109,7 +109,7 @@ FrameKind UdpExtractor::extract_udp(std::span<const std::uint8_t> udp, bool cut,
   if (udp.size() < kUdpHeaderBytes) {
     return FrameKind::kMalformed;
   }
-  if (read_be16(udp, 2) != port_) {
+  if (!ports_.has(read_be16(udp, 2))) {
     return FrameKind::kOtherPort;
   }
   const std::size_t length = read_be16(udp, 4);

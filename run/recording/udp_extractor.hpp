@@ -21,9 +21,17 @@ enum class LinkType : int {
 };
 [[nodiscard]] std::optional<LinkType> link_type_of(int data_link);
 
+/// Destination ports of a lidar's packets.
+struct LidarPorts {
+  std::uint16_t data = 0;
+  std::uint16_t info = 0;  ///< of its IMU, position or device information; 0: not wanted
+
+  [[nodiscard]] bool has(std::uint16_t port) const { return port == data || (info != 0 && port == info); }
+};
+
 /// Content of a frame.
 enum class FrameKind : std::uint8_t {
-  kPayload,     ///< a UDP payload to the wanted port
+  kPayload,     ///< a UDP payload to a wanted port
   kCutPayload,  ///< the same, truncated by the capture
   kOtherPort,
   kOtherProtocol,  ///< ARP, TCP, IPv6, …
@@ -31,13 +39,13 @@ enum class FrameKind : std::uint8_t {
   kMalformed,      ///< lengths contradict each other
 };
 
-/// Extractor of the UDP payloads for one destination port from captured frames. Skips VLAN tags (802.1Q,
+/// Extractor of the UDP payloads for a lidar's ports from captured frames. Skips VLAN tags (802.1Q,
 /// 802.1ad, stacked) and reassembles IPv4 fragments (RFC 791; the first byte wins where they overlap). A sender
 /// counts the identifications of its datagrams in 16 bits, so that a lost fragment's is used again: fragments
 /// that are kReassemblyNs apart are of two datagrams. Every length is checked before use.
 class UdpExtractor {
  public:
-  explicit UdpExtractor(std::uint16_t port) : port_(port) {}
+  explicit UdpExtractor(const LidarPorts& ports) : ports_(ports) {}
 
   /// Longest time from a datagram's first fragment to its last; Linux's default (net.ipv4.ipfrag_time). An Ouster
   /// with a fragmented datagram every 1.4 ms comes back to an identification after 88 s.
@@ -78,7 +86,7 @@ class UdpExtractor {
                          std::int64_t stamp_ns, std::span<const std::uint8_t>& payload);
   Slot& slot_for(std::span<const std::uint8_t> ip, std::int64_t stamp_ns);
 
-  std::uint16_t port_;
+  LidarPorts ports_;
   std::uint32_t sender_ipv4_ = 0;
   std::uint64_t clock_ = 0;
   std::uint64_t incomplete_ = 0;

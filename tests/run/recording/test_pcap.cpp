@@ -116,7 +116,7 @@ std::vector<StampedPacket> read_all(PcapPackets& packets) {
 
 std::unique_ptr<PcapPackets> open(const Scratch& scratch, const std::string& text) {
   scratch.write("l.pcap", text);
-  return std::make_unique<PcapPackets>(scratch.path() / "l.pcap", 2'368, StampGuardConfig{});
+  return std::make_unique<PcapPackets>(scratch.path() / "l.pcap", LidarPorts{2'368, 0}, StampGuardConfig{});
 }
 
 }  // namespace
@@ -189,6 +189,21 @@ TEST_CASE("IP fragments are reassembled in any order; a missing one is counted")
   CHECK(packets->extractor().incomplete() == 6);  // four are still waiting
 }
 
+TEST_CASE("Packets of both ports of a lidar come in the order of the capture") {
+  Scratch scratch;
+  PcapText text({});
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    text.add(kSeconds + i, 0,
+             frame_of(payload_of(100, static_cast<int>(i)), static_cast<std::uint16_t>(7'502 + i % 3)));
+  }
+  scratch.write("l.pcap", text.text());
+  PcapPackets packets(scratch.path() / "l.pcap", LidarPorts{7'502, 7'503}, StampGuardConfig{});
+  const auto all = read_all(packets);
+  REQUIRE(all.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) CHECK(int{all[i].payload[0]} == static_cast<int>(i / 2 * 3 + i % 2));
+  CHECK(packets.tallies().other_port.count == 2);
+}
+
 TEST_CASE("A datagram with the identification of one that lost fragments is not mixed with it") {
   Scratch scratch;
   const Bytes lost = payload_of(1'206, 5);
@@ -232,7 +247,7 @@ TEST_CASE(
     MESSAGE("skipped: " << file.string() << " is not on this machine");
     return;
   }
-  PcapPackets packets(file, 34'636, StampGuardConfig{});
+  PcapPackets packets(file, LidarPorts{34'636, 0}, StampGuardConfig{});
   const auto all = read_all(packets);
   REQUIRE(all.size() == 1);
   REQUIRE(all[0].payload.size() == 8'448);
