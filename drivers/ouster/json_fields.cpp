@@ -27,6 +27,8 @@ JsonFields::JsonFields(std::string_view text, const std::string& file) : file_(f
     const auto line = 1 + std::count(text.begin(), end, '\n');
     throw ConfigError(file_ + ":" + std::to_string(line) + ": is no JSON; the sensor gives its metadata at " +
                       "http://SENSOR/api/v1/sensor/metadata");
+  } catch (const nlohmann::json::exception&) {  // a number beyond the range of double
+    throw ConfigError(file_ + ": holds a number that is too large: no sensor's metadata");
   }
   if (!root_.is_object()) throw ConfigError(file_ + ": must hold one JSON object, an Ouster's metadata");
 }

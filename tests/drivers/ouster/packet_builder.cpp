@@ -12,7 +12,7 @@ namespace {
 using ByteList = std::vector<std::uint8_t>;
 
 void put(ByteList& bytes, std::uint64_t value, int count) {
-  for (int i = 0; i < count; ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
+  for (int i = 0; i < count; ++i, value >>= 8U) bytes.push_back(static_cast<std::uint8_t>(value));
 }
 
 void put_float(ByteList& bytes, float value) {

@@ -67,6 +67,7 @@ TEST_CASE("Metadata of firmware 1.x, without a data format, means the LEGACY pro
 
 TEST_CASE("An error of the metadata names file, key and rule") {
   CHECK(error_of("{\n\"a\": 1,\n]").starts_with("os.json:3: is no JSON"));
+  CHECK(error_of("{\"a\": 1e999}") == "os.json: holds a number that is too large: no sensor's metadata");
   CHECK(error_of("[1]") == "os.json: must hold one JSON object, an Ouster's metadata");
   CHECK(error_of(build_ouster_metadata({}, true, "OS-0-128")) ==
         "os.json: sensor_info.prod_line: \"OS-0-128\", but lidar.model = \"OS1\": another sensor's metadata");
