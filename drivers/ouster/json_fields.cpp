@@ -2,8 +2,10 @@
 #include "drivers/ouster/json_fields.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 
 #include "core/errors.hpp"

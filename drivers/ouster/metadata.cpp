@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <iterator>
+#include <system_error>
 
 #include "core/errors.hpp"
 #include "drivers/ouster/json_fields.hpp"
