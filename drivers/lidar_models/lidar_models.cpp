@@ -7,6 +7,8 @@
 #include "core/errors.hpp"
 #include "drivers/hesai/decoder.hpp"
 #include "drivers/lidar/angle_table.hpp"
+#include "drivers/livox/decoder.hpp"
+#include "drivers/ouster/decoder.hpp"
 #include "drivers/robosense/decoder.hpp"
 #include "drivers/velodyne/decoder.hpp"
 
@@ -34,6 +36,17 @@ std::unique_ptr<LidarDecoder> make_robosense(const LidarConfig& config) {
   return std::make_unique<robosense::Decoder>(kTraits, config.limits, angles_of(config, kTraits.lasers));
 }
 
+/// OS0, OS1 and OS2: the metadata says the rest.
+std::unique_ptr<LidarDecoder> make_ouster(const LidarConfig& config) {
+  const std::string_view name = find_lidar_model(config.model)->name;
+  return std::make_unique<ouster::Decoder>(name, ouster::read_metadata(config.calibration_file, name),
+                                           config.limits);
+}
+
+std::unique_ptr<LidarDecoder> make_mid360(const LidarConfig& config) {
+  return std::make_unique<livox::Decoder>(config.limits);
+}
+
 constexpr std::array kModels{
     LidarModel{"VLP-16", "Velodyne", 2368, 8308, false, false, &make_velodyne<velodyne::kVlp16>},
     LidarModel{"VLP-16 Hi-Res", "Velodyne", 2368, 8308, false, false, &make_velodyne<velodyne::kVlp16HiRes>},
@@ -43,6 +56,10 @@ constexpr std::array kModels{
     LidarModel{"XT32", "Hesai", 2368, 10110, false, false, &make_hesai<hesai::kXt32>},
     LidarModel{"RS-LiDAR-16", "RoboSense", 6699, 7788, false, false, &make_robosense<robosense::kRs16>},
     LidarModel{"Helios-16P", "RoboSense", 6699, 7788, false, false, &make_robosense<robosense::kHelios16p>},
+    LidarModel{"OS0", "Ouster", ouster::kDataPort, ouster::kImuPort, true, true, &make_ouster},
+    LidarModel{"OS1", "Ouster", ouster::kDataPort, ouster::kImuPort, true, true, &make_ouster},
+    LidarModel{"OS2", "Ouster", ouster::kDataPort, ouster::kImuPort, true, true, &make_ouster},
+    LidarModel{"Mid-360", "Livox", livox::kDataPort, livox::kImuPort, true, false, &make_mid360},
 };
 
 }  // namespace

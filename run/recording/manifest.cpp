@@ -115,13 +115,28 @@ class ManifestText {
   std::vector<std::string>& warnings_;
 };
 
+/// @param least smallest number that is accepted
+std::uint16_t read_port(const toml::table& table, const char* key, std::uint16_t missing, int least,
+                        ManifestText& text) {
+  const toml::node* port = table.get(key);
+  if (port == nullptr) return missing;
+  // value_exact: value() would cast a float to an integer, undefined behaviour for 1e72.
+  const auto value = port->value_exact<std::int64_t>();
+  if (!value || *value < least || *value > 65'535) {
+    text.fail(*port, std::string("lidar.") + key,
+              "must be a whole number within " + std::to_string(least) + " … 65535");
+  }
+  return static_cast<std::uint16_t>(*value);
+}
+
 std::optional<LidarEntry> read_lidar(const toml::table& root, ManifestText& text) {
   const toml::table* table = text.section(root, "lidar");
   if (table == nullptr) {
     return std::nullopt;
   }
-  text.warn_unknown_keys(*table, "lidar.",
-                         {"model", "file", "port", "sender", "calibration_file", "xyz_m", "rpy_deg"});
+  text.warn_unknown_keys(
+      *table, "lidar.",
+      {"model", "file", "port", "info_port", "sender", "calibration_file", "xyz_m", "rpy_deg"});
   LidarEntry lidar;
   const toml::node* model = table->get("model");
   if (model == nullptr || !model->is_string() || model->value<std::string>()->empty()) {
@@ -129,14 +144,8 @@ std::optional<LidarEntry> read_lidar(const toml::table& root, ManifestText& text
   }
   lidar.model = *model->value<std::string>();
   lidar.file = text.file_name(*table, "lidar");
-  if (const toml::node* port = table->get("port"); port != nullptr) {
-    // value_exact: value() would cast a float to an integer, undefined behaviour for 1e72.
-    const auto value = port->value_exact<std::int64_t>();
-    if (!value || *value < 1 || *value > 65'535) {
-      text.fail(*port, "lidar.port", "must be a whole number within 1 … 65535");
-    }
-    lidar.port = static_cast<std::uint16_t>(*value);
-  }
+  lidar.port = read_port(*table, "port", lidar.port, 1, text);
+  lidar.info_port = read_port(*table, "info_port", lidar.info_port, 0, text);
   if (const toml::node* sender = table->get("sender"); sender != nullptr) {
     const auto value = sender->value<std::string>();
     in_addr address{};
@@ -197,6 +206,10 @@ std::string triple_text(const Eigen::Vector3d& v) {
 
 std::string calibration_text(const LidarEntry& lidar) {
   return lidar.calibration_file.empty() ? "" : "\ncalibration_file = " + quoted_toml(lidar.calibration_file);
+}
+
+std::string info_port_text(const LidarEntry& lidar) {
+  return lidar.info_port == 0 ? "" : "\ninfo_port = " + std::to_string(lidar.info_port);
 }
 
 std::string sender_text(const LidarEntry& lidar) {
@@ -271,8 +284,9 @@ std::string manifest_text(const Manifest& manifest) {
   if (manifest.lidar) {
     out += "\n[lidar]\nmodel   = " + quoted_toml(manifest.lidar->model) +
            "\nfile    = " + quoted_toml(manifest.lidar->file) +
-           "\nport    = " + std::to_string(manifest.lidar->port) + sender_text(*manifest.lidar) +
-           calibration_text(*manifest.lidar) + "\nxyz_m   = " + triple_text(manifest.lidar->mount.xyz_m) +
+           "\nport    = " + std::to_string(manifest.lidar->port) + info_port_text(*manifest.lidar) +
+           sender_text(*manifest.lidar) + calibration_text(*manifest.lidar) +
+           "\nxyz_m   = " + triple_text(manifest.lidar->mount.xyz_m) +
            "\nrpy_deg = " + triple_text(manifest.lidar->mount.rpy_deg) + "\n";
   }
   out += sensor_text("imu", manifest.imu, true, true);

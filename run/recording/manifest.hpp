@@ -19,8 +19,9 @@ inline constexpr const char* kSegmentsFile = "segments.csv";
 struct LidarEntry {
   std::string model = "VLP-16";
   std::string file = "lidar.pcap";
-  std::uint16_t port = 2368;  ///< UDP destination port of the data packets
-  std::string sender;         ///< IPv4 address of the lidar; empty: the first sender in the file
+  std::uint16_t port = 2368;    ///< UDP destination port of the data packets
+  std::uint16_t info_port = 0;  ///< of its other packets: IMU, position, device information; 0: not read
+  std::string sender;           ///< IPv4 address of the lidar; empty: the first sender in the file
   /// The sensor's own calibration (Ouster's metadata, angles of Hesai and RoboSense); empty: none. A relative path
   /// starts at the recording's folder.
   std::string calibration_file;

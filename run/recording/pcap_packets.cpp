@@ -20,8 +20,9 @@ constexpr std::size_t kBufferBytes = std::size_t{256} * 1024;
 
 }  // namespace
 
-PcapPackets::PcapPackets(const std::filesystem::path& file, std::uint16_t port, const StampGuardConfig& guard)
-    : name_(file.string()), buffer_(kBufferBytes), extractor_(port), guard_(guard) {
+PcapPackets::PcapPackets(const std::filesystem::path& file, const LidarPorts& ports,
+                         const StampGuardConfig& guard)
+    : name_(file.string()), buffer_(kBufferBytes), extractor_(ports), guard_(guard) {
   if (!std::filesystem::exists(file)) {
     throw DataError(name_ + ": no such file");
   }
@@ -74,7 +75,9 @@ bool PcapPackets::read(StampedPacket& packet) {
     }
     ++frames_;
     std::span<const std::uint8_t> payload;
-    const FrameKind kind = extractor_.extract(link_, {data, header->caplen}, payload);
+    const std::int64_t stamp_ns =
+        static_cast<std::int64_t>(header->ts.tv_sec) * 1'000'000'000 + header->ts.tv_usec;
+    const FrameKind kind = extractor_.extract(link_, {data, header->caplen}, stamp_ns, payload);
     switch (kind) {
       case FrameKind::kOtherPort:
         tallies_.other_port.add([this] { return place() + "is for another UDP port"; });
@@ -94,7 +97,7 @@ bool PcapPackets::read(StampedPacket& packet) {
       case FrameKind::kPayload:
         break;
     }
-    packet.stamp_ns = static_cast<std::int64_t>(header->ts.tv_sec) * 1'000'000'000 + header->ts.tv_usec;
+    packet.stamp_ns = stamp_ns;
     packet.sender_ipv4 = extractor_.sender_ipv4();
     packet.payload.assign(payload.begin(), payload.end());
     return true;

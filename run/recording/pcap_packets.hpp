@@ -38,7 +38,7 @@ class PcapPackets {
   };
 
   /// @throws DataError when the file is missing, not a pcap, or of a link type without IP
-  PcapPackets(const std::filesystem::path& file, std::uint16_t port, const StampGuardConfig& guard);
+  PcapPackets(const std::filesystem::path& file, const LidarPorts& ports, const StampGuardConfig& guard);
   ~PcapPackets();
   PcapPackets(const PcapPackets&) = delete;
   PcapPackets& operator=(const PcapPackets&) = delete;

@@ -97,8 +97,8 @@ class SampleStream : public Stream {
 
 class LidarStream : public Stream {
  public:
-  LidarStream(const std::filesystem::path& file, std::uint16_t port, const StampGuardConfig& guard)
-      : packets_(file, port, guard) {}
+  LidarStream(const std::filesystem::path& file, const LidarPorts& ports, const StampGuardConfig& guard)
+      : packets_(file, ports, guard) {}
 
   bool advance() override {
     const bool more = packets_.next(next_);
@@ -211,7 +211,8 @@ void RecordingReader::Impl::open_all(const ReaderOptions& options) {
                                     open_wheel_csv(folder / manifest.wheel->file), 0, guard);
   }
   if (manifest.lidar) {
-    open<LidarStream>(manifest.lidar->file, folder / manifest.lidar->file, manifest.lidar->port, guard);
+    open<LidarStream>(manifest.lidar->file, folder / manifest.lidar->file,
+                      LidarPorts{manifest.lidar->port, manifest.lidar->info_port}, guard);
   }
 }
 

@@ -68,17 +68,18 @@ std::optional<LinkType> link_type_of(int data_link) {
   return std::nullopt;
 }
 
-FrameKind UdpExtractor::extract(LinkType link, std::span<const std::uint8_t> frame,
+FrameKind UdpExtractor::extract(LinkType link, std::span<const std::uint8_t> frame, std::int64_t stamp_ns,
                                 std::span<const std::uint8_t>& payload) {
   bool too_short = false;
   const auto ip = ip_packet(link, frame, too_short);
   if (too_short) {
     return FrameKind::kMalformed;
   }
-  return ip.empty() ? FrameKind::kOtherProtocol : extract_ip(ip, payload);
+  return ip.empty() ? FrameKind::kOtherProtocol : extract_ip(ip, stamp_ns, payload);
 }
 
-FrameKind UdpExtractor::extract_ip(std::span<const std::uint8_t> ip, std::span<const std::uint8_t>& payload) {
+FrameKind UdpExtractor::extract_ip(std::span<const std::uint8_t> ip, std::int64_t stamp_ns,
+                                   std::span<const std::uint8_t>& payload) {
   if (ip[0] >> 4U != 4) {
     return FrameKind::kOtherProtocol;
   }
@@ -100,7 +101,7 @@ FrameKind UdpExtractor::extract_ip(std::span<const std::uint8_t> ip, std::span<c
   if ((fragment & 0x3FFFU) == 0) {  // no more fragments, offset 0: whole
     return extract_udp(part, cut, payload);
   }
-  return cut ? FrameKind::kMalformed : add_fragment(ip, part, payload);
+  return cut ? FrameKind::kMalformed : add_fragment(ip, part, stamp_ns, payload);
 }
 
 FrameKind UdpExtractor::extract_udp(std::span<const std::uint8_t> udp, bool cut,
@@ -108,7 +109,7 @@ FrameKind UdpExtractor::extract_udp(std::span<const std::uint8_t> udp, bool cut,
   if (udp.size() < kUdpHeaderBytes) {
     return FrameKind::kMalformed;
   }
-  if (read_be16(udp, 2) != port_) {
+  if (!ports_.has(read_be16(udp, 2))) {
     return FrameKind::kOtherPort;
   }
   const std::size_t length = read_be16(udp, 4);
@@ -119,14 +120,18 @@ FrameKind UdpExtractor::extract_udp(std::span<const std::uint8_t> udp, bool cut,
   return cut ? FrameKind::kCutPayload : FrameKind::kPayload;
 }
 
-UdpExtractor::Slot& UdpExtractor::slot_for(std::span<const std::uint8_t> ip) {
+UdpExtractor::Slot& UdpExtractor::slot_for(std::span<const std::uint8_t> ip, std::int64_t stamp_ns) {
   std::array<std::uint8_t, 10> key{};
   std::copy_n(ip.begin() + 4, 2, key.begin());
   std::copy_n(ip.begin() + 12, 8, key.begin() + 2);
   Slot* chosen = &slots_[0];
   for (Slot& slot : slots_) {
     if (slot.used && slot.key == key) {
-      return slot;
+      const bool is_same =
+          stamp_ns - slot.stamp_ns <= kReassemblyNs && slot.stamp_ns - stamp_ns <= kReassemblyNs;
+      if (is_same) return slot;
+      chosen = &slot;
+      break;
     }
     if (!slot.used || (chosen->used && slot.age < chosen->age)) {
       chosen = chosen->used ? &slot : chosen;
@@ -135,6 +140,7 @@ UdpExtractor::Slot& UdpExtractor::slot_for(std::span<const std::uint8_t> ip) {
   incomplete_ += chosen->used ? 1 : 0;
   chosen->used = true;
   chosen->age = ++clock_;
+  chosen->stamp_ns = stamp_ns;
   chosen->key = key;
   chosen->length = 0;
   chosen->bytes.resize(kMaxDatagram);
@@ -143,7 +149,7 @@ UdpExtractor::Slot& UdpExtractor::slot_for(std::span<const std::uint8_t> ip) {
 }
 
 FrameKind UdpExtractor::add_fragment(std::span<const std::uint8_t> ip, std::span<const std::uint8_t> part,
-                                     std::span<const std::uint8_t>& payload) {
+                                     std::int64_t stamp_ns, std::span<const std::uint8_t>& payload) {
   const std::uint16_t field = read_be16(ip, 6);
   const bool more = (field & 0x2000U) != 0;
   const std::size_t offset = static_cast<std::size_t>(field & 0x1FFFU) * kFragmentUnit;
@@ -151,7 +157,7 @@ FrameKind UdpExtractor::add_fragment(std::span<const std::uint8_t> ip, std::span
   if (part.empty() || (more && !whole_units) || offset + part.size() > kMaxDatagram - 1) {
     return FrameKind::kMalformed;
   }
-  Slot& slot = slot_for(ip);
+  Slot& slot = slot_for(ip, stamp_ns);
   for (std::size_t done = 0; done < part.size(); done += kFragmentUnit) {
     const std::size_t at = offset + done;
     if (!slot.have[at / kFragmentUnit]) {

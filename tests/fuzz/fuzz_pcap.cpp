@@ -16,7 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   try {
-    isobar::recording::PcapPackets packets("/proc/self/fd/" + std::to_string(memory), 2'368, {});
+    isobar::recording::PcapPackets packets("/proc/self/fd/" + std::to_string(memory), {2'368, 8'308}, {});
     isobar::recording::StampedPacket packet;
     while (packets.next(packet)) {
       if (packet.payload.size() > 65'535) {

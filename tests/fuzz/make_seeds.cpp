@@ -17,6 +17,7 @@
 #include "tests/drivers/velodyne/packet_builder.hpp"
 #include "tests/drivers/vn100/packet_writer.hpp"
 #include "tests/drivers/xsens/message_writer.hpp"
+#include "tests/fuzz/lidar_seeds.hpp"
 
 namespace {
 
@@ -166,6 +167,7 @@ int main(int count, char** arguments) {
   root = arguments[1];
   lidar_seeds();
   imu_seeds();
+  test::write_lidar_seeds(root);
   recording_seeds();
   tile_store_seeds();
   save("fuzz_toml", "config", show_config(Config{}));

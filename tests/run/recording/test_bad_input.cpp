@@ -91,6 +91,8 @@ TEST_CASE("Every rule of recording.toml is checked with file, line and key; unkn
   fails("version = 1\n[lidar]\nfile = \"l\"\n", "lidar.model");
   fails("version = 1\n[lidar]\nmodel = \"VLP-16\"\nfile = \"l\"\nport = 70000\n",
         "recording.toml:5: lidar.port");
+  fails("version = 1\n[lidar]\nmodel = \"VLP-16\"\nfile = \"l\"\ninfo_port = -1\n",
+        "recording.toml:5: lidar.info_port");
   fails("version = 1\n[lidar]\nmodel = \"VLP-16\"\nfile = \"l\"\nport = 8.3e+72\n",
         "recording.toml:5: lidar.port");
   std::string deep = "version = 1\na";

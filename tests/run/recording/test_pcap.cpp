@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -115,7 +116,7 @@ std::vector<StampedPacket> read_all(PcapPackets& packets) {
 
 std::unique_ptr<PcapPackets> open(const Scratch& scratch, const std::string& text) {
   scratch.write("l.pcap", text);
-  return std::make_unique<PcapPackets>(scratch.path() / "l.pcap", 2'368, StampGuardConfig{});
+  return std::make_unique<PcapPackets>(scratch.path() / "l.pcap", LidarPorts{2'368, 0}, StampGuardConfig{});
 }
 
 }  // namespace
@@ -186,6 +187,74 @@ TEST_CASE("IP fragments are reassembled in any order; a missing one is counted")
   packets = open(scratch, lossy.text());
   CHECK(read_all(*packets).empty());
   CHECK(packets->extractor().incomplete() == 6);  // four are still waiting
+}
+
+TEST_CASE("Packets of both ports of a lidar come in the order of the capture") {
+  Scratch scratch;
+  PcapText text({});
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    text.add(kSeconds + i, 0,
+             frame_of(payload_of(100, static_cast<int>(i)), static_cast<std::uint16_t>(7'502 + i % 3)));
+  }
+  scratch.write("l.pcap", text.text());
+  PcapPackets packets(scratch.path() / "l.pcap", LidarPorts{7'502, 7'503}, StampGuardConfig{});
+  const auto all = read_all(packets);
+  REQUIRE(all.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) CHECK(int{all[i].payload[0]} == static_cast<int>(i / 2 * 3 + i % 2));
+  CHECK(packets.tallies().other_port.count == 2);
+}
+
+TEST_CASE("A datagram with the identification of one that lost fragments is not mixed with it") {
+  Scratch scratch;
+  const Bytes lost = payload_of(1'206, 5);
+  const Bytes payload = payload_of(1'206, 6);
+  for (const std::size_t kept : {0U, 1U, 2U}) {
+    CAPTURE(kept);
+    PcapText text({});
+    const auto old_parts = fragments_of(frame_of(lost), 64);
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (i != kept) text.add(kSeconds, 1, old_parts[i]);
+    }
+    for (const Bytes& part : fragments_of(frame_of(payload), 64)) text.add(kSeconds + 88, 1, part);
+    const auto packets = open(scratch, text.text());
+    const auto all = read_all(*packets);
+    REQUIRE(all.size() == 1);
+    CHECK(all[0].payload == payload);
+    CHECK(packets->extractor().incomplete() == 1);
+  }
+}
+
+TEST_CASE("Overlapping and repeated fragments give the datagram once, of the bytes that came first") {
+  Scratch scratch;
+  const Bytes payload = payload_of(1'206, 7);
+  PcapText text({});
+  const auto parts = fragments_of(frame_of(payload), 64);
+  const auto other = fragments_of(frame_of(payload_of(1'206, 8)), 100);  // its first ends within parts[1]
+  text.add(kSeconds, 1, parts[0]);
+  text.add(kSeconds, 2, parts[0]);
+  text.add(kSeconds, 3, parts[1]);
+  text.add(kSeconds, 4, other[0]);
+  text.add(kSeconds, 5, parts[2]);
+  const auto all = read_all(*open(scratch, text.text()));
+  REQUIRE(all.size() == 1);
+  CHECK(all[0].payload == payload);
+}
+
+TEST_CASE(
+    "Of a captured datagram whose identification was used before, the later one's fragments are joined") {
+  const auto file = std::filesystem::path(ISOBAR_SHARED_DATA) / "ouster" / "duplicate_id.pcap";
+  if (!std::filesystem::exists(file)) {
+    MESSAGE("skipped: " << file.string() << " is not on this machine");
+    return;
+  }
+  PcapPackets packets(file, LidarPorts{34'636, 0}, StampGuardConfig{});
+  const auto all = read_all(packets);
+  REQUIRE(all.size() == 1);
+  REQUIRE(all[0].payload.size() == 8'448);
+  // Bytes 2 and 3 are the number of the turn: 0x037C in the first, lost datagram, 0x06F2 in the second.
+  CHECK(int{all[0].payload[2]} == 0xF2);
+  CHECK(int{all[0].payload[3]} == 0x06);
+  CHECK(packets.extractor().incomplete() == 1);
 }
 
 TEST_CASE("Other ports and protocols, broken lengths and truncated frames have separate counters") {

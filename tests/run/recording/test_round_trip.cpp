@@ -27,6 +27,7 @@ Manifest full_manifest() {
   Manifest manifest = Manifest::with_all_sensors();
   manifest.description = "three \"floors\",\n311 m \\ é";
   manifest.lidar->port = 2'369;
+  manifest.lidar->info_port = 8'309;
   manifest.lidar->mount = {{0.1, 0.0, 0.45}, {1.0, -2.0, 90.0}};
   manifest.imu->mount = {{0.0, 1.0 / 3.0, 0.2}, {0.0, 180.0, 0.0}};
   manifest.barometer->mount.xyz_m = {-0.1, 0.05, 0.3};
@@ -79,6 +80,7 @@ TEST_CASE("A written recording reads back bit for bit, merged in order of time")
   CHECK(reader.warnings().empty());
   CHECK(reader.manifest().description == full_manifest().description);
   CHECK(reader.manifest().lidar->port == 2'369);
+  CHECK(reader.manifest().lidar->info_port == 8'309);
   CHECK(reader.manifest().lidar->mount.rpy_deg == full_manifest().lidar->mount.rpy_deg);
   CHECK(reader.manifest().imu->mount.xyz_m == full_manifest().imu->mount.xyz_m);
   CHECK(reader.base_clock().offset_ns == 0);
