@@ -27,7 +27,7 @@ struct RecordingCheck {
   std::vector<recording::Count> counts;  ///< of the reader
 };
 
-/// Reads the recording once, with the mounts of `used` (with_sensors_of()). Of the pipeline only the decoder runs: 1.5 ms
+/// Reads the recording once, with the mounts of `used` (with_sensors_of()). Of the pipeline only the decoder runs: 1.2 ms
 /// a scan of a VLP-16.
 /// @param progress called with 0 … 1
 /// @throws DataError for a recording that cannot be read

@@ -2,7 +2,9 @@
 // Point-to-line registration of two horizontal slices.
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 
 #include "core/contradictions/scan_motion.hpp"
 #include "core/geometry.hpp"
@@ -31,16 +33,21 @@ std::size_t wrapped(int bin) { return static_cast<std::size_t>((bin % kTurnBins 
 
 /// Turn that brings the ranges together, without any way.
 int search_turn(const ScanProfile& before, const ScanProfile& after) {
+  // Ranges with their ends repeated, so that no index of the inner loop wraps; negative: none.
+  std::array<float, ScanProfile::kBins + 2 * kTurnSearchBins> ranges_m{};
+  for (int i = 0; i < static_cast<int>(ranges_m.size()); ++i) {
+    const ScanProfile::Bin& bin = before.bins[wrapped(i - kTurnSearchBins)];
+    ranges_m[static_cast<std::size_t>(i)] = bin.valid ? bin.range_m : -1.0F;
+  }
   int best = 0;
   float best_cost = 1e9F;
   for (int shift = -kTurnSearchBins; shift <= kTurnSearchBins; ++shift) {
     float sum = 0.0F;
     int pairs = 0;
-    for (int i = 0; i < kTurnBins; ++i) {
-      const ScanProfile::Bin& a = before.bins[wrapped(i + shift)];
-      const ScanProfile::Bin& b = after.bins[static_cast<std::size_t>(i)];
-      if (!a.valid || !b.valid) continue;
-      sum += std::min(std::abs(a.range_m - b.range_m), kSearchCutM);
+    const float* const shifted_m = ranges_m.data() + kTurnSearchBins + shift;
+    for (std::size_t i = 0; i < ScanProfile::kBins; ++i) {
+      if (shifted_m[i] < 0.0F || !after.bins[i].valid) continue;
+      sum += std::min(std::abs(shifted_m[i] - after.bins[i].range_m), kSearchCutM);
       ++pairs;
     }
     if (pairs < kLeastMatches) continue;

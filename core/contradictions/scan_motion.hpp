@@ -41,7 +41,7 @@ struct ScanStep {
 };
 
 /// Registers each scan's slice to that of the scan before: search of the turn, then point-to-line ICP with three
-/// unknowns. 0.5 ms a scan. Allocates nothing. Not thread-safe.
+/// unknowns. 0.8 ms a scan. Allocates nothing. Not thread-safe.
 class ScanMotion {
  public:
   explicit ScanMotion(const Eigen::Isometry3d& T_base_lidar);
