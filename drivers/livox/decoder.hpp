@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -33,7 +34,9 @@ class Decoder final : public LidarDecoder {
 
   [[nodiscard]] std::string_view model() const override { return "Mid-360"; }
   [[nodiscard]] std::uint32_t points_per_column() const override { return kMostPoints; }
-  [[nodiscard]] std::size_t longest_packet() const override { return kHeaderBytes + kMostPoints * 14; }
+  [[nodiscard]] std::size_t longest_packet() const override {
+    return kHeaderBytes + std::size_t{kMostPoints} * 14;
+  }
   [[nodiscard]] std::string mismatch() const override;
   [[nodiscard]] LidarSync sync() const override { return sync_; }
   bool take_imu(ImuSample& sample) override;

@@ -20,10 +20,11 @@ BeamGeometry::BeamGeometry(const Metadata& metadata) {
     const Eigen::Matrix3d R =
         R_sensor_lidar * Eigen::AngleAxisd(theta_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
     const Eigen::Vector3d origin_in_sensor_m = R * origin_m + p_lidar_m;
-    for (int row = 0; row < 3; ++row) {
-      columns_[id].origin_m[static_cast<std::size_t>(row)] = static_cast<float>(origin_in_sensor_m[row]);
-      for (int col = 0; col < 3; ++col) {
-        columns_[id].rotation[static_cast<std::size_t>(3 * row + col)] = static_cast<float>(R(row, col));
+    for (std::size_t row = 0; row < 3; ++row) {
+      const auto r = static_cast<Eigen::Index>(row);
+      columns_[id].origin_m[row] = static_cast<float>(origin_in_sensor_m[r]);
+      for (std::size_t col = 0; col < 3; ++col) {
+        columns_[id].rotation[3 * row + col] = static_cast<float>(R(r, static_cast<Eigen::Index>(col)));
       }
     }
   }

@@ -27,7 +27,7 @@ constexpr JsonFields::Range kBeamOriginMm{-500.0, 500.0};
 Eigen::Matrix4d read_transform(const JsonFields& fields, JsonFields::Sections sections, const char* key) {
   const std::vector<double> values = fields.numbers(sections, key, {-1e4, 1e4});
   if (values.size() != 16) fields.fail(sections, key, "must hold 16 numbers, row by row");
-  const Eigen::Matrix4d T = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(values.data());
+  Eigen::Matrix4d T = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(values.data());
   const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
   const bool is_rotation = (R * R.transpose()).isIdentity(1e-3) && R.determinant() > 0.0 &&
                            T.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1));

@@ -13,6 +13,7 @@
 #include "drivers/lidar/scan_assembler.hpp"
 #include "drivers/ouster/decoder.hpp"
 #include "tests/drivers/ouster/captures.hpp"
+#include "tests/drivers/ouster/range_to_xyz.hpp"
 
 namespace isobar::test::test_real_captures {
 namespace {
@@ -20,7 +21,6 @@ namespace {
 using nlohmann::json;
 
 const std::filesystem::path kFolder = std::filesystem::path(ISOBAR_SHARED_DATA) / "ouster";
-constexpr double kDeg = 3.14159265358979323846 / 180.0;
 
 struct Capture {
   const char* name;
@@ -90,41 +90,6 @@ std::unique_ptr<ouster::Decoder> decoder_of(const Capture& capture, const LidarL
       capture.model, ouster::read_metadata(file_of(capture, ".json"), capture.model), limits);
 }
 
-/// Ouster sensor documentation, "Lidar Range to XYZ", in double precision.
-class Geometry {
- public:
-  explicit Geometry(const Capture& capture) : root_(read_json(file_of(capture, ".json"))) {
-    const auto field = [this](const char* section, const char* key) {
-      return root_.contains(section) ? root_[section][key] : root_[key];
-    };
-    altitude_ = field("beam_intrinsics", "beam_altitude_angles").get<std::vector<double>>();
-    azimuth_ = field("beam_intrinsics", "beam_azimuth_angles").get<std::vector<double>>();
-    n_mm_ = field("beam_intrinsics", "lidar_origin_to_beam_origin_mm");
-    T_ = field("lidar_intrinsics", "lidar_to_sensor_transform").get<std::vector<double>>();
-  }
-  [[nodiscard]] Eigen::Vector3d point_m(double range_mm, int id, int row, int columns) const {
-    const auto r = static_cast<std::size_t>(row);
-    const double encoder = 2.0 * 180.0 * kDeg * (1.0 - static_cast<double>(id) / columns);
-    const double direction = encoder - azimuth_[r] * kDeg;
-    const double phi = altitude_[r] * kDeg;
-    const Eigen::Vector3d p(
-        (range_mm - n_mm_) * std::cos(direction) * std::cos(phi) + n_mm_ * std::cos(encoder),
-        (range_mm - n_mm_) * std::sin(direction) * std::cos(phi) + n_mm_ * std::sin(encoder),
-        (range_mm - n_mm_) * std::sin(phi));
-    Eigen::Vector3d out;
-    for (int i = 0; i < 3; ++i) {
-      const auto at = static_cast<std::size_t>(4 * i);
-      out[i] = T_[at] * p[0] + T_[at + 1] * p[1] + T_[at + 2] * p[2] + T_[at + 3];
-    }
-    return out * 1e-3;
-  }
-
- private:
-  json root_;
-  std::vector<double> altitude_, azimuth_, T_;
-  double n_mm_ = 0.0;
-};
-
 std::string little_endian(std::uint64_t value, int bytes) {
   std::string text;
   for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> (8 * i));
@@ -146,7 +111,7 @@ std::string field_bytes(const Capture& capture, const PixelField& field,
 }
 
 /// What a packet must give, in the decoder's order.
-std::vector<ScanPoint> expected_points(const Capture& capture, const Geometry& geometry,
+std::vector<ScanPoint> expected_points(const Capture& capture, const RangeToXyz& geometry,
                                        const std::vector<std::uint8_t>& bytes) {
   std::vector<ScanPoint> points;
   std::uint64_t first_ns = 0;
@@ -213,7 +178,7 @@ TEST_CASE("Every return of every packet of the captures is decoded: place, time,
   if (is_missing()) return;
   for (const Capture& capture : kCaptures) {
     CAPTURE(std::string(capture.name));
-    const Geometry geometry(capture);
+    const RangeToXyz geometry(read_json(file_of(capture, ".json")));
     LidarLimits limits;
     limits.min_range_m = 0.0;
     limits.max_range_m = 1'000.0;
