@@ -19,9 +19,9 @@
 #include "drivers/dps310/settings.hpp"
 #include "drivers/icp20100/settings.hpp"
 #include "drivers/iio/settings.hpp"
+#include "drivers/ms5611/settings.hpp"
 #include "drivers/vn100/settings.hpp"
 #include "drivers/xsens/settings.hpp"
-#include "drivers/ms5611/settings.hpp"
 #include "ipc/dds_config.hpp"
 
 namespace isobar {

@@ -156,8 +156,8 @@ AlignedLogs align_logs(const CalibrationLogs& logs) {
                      std::to_string(logs.reference.files.size()) + " reference logs");
   }
   AlignedLogs aligned;
-  const std::vector<PressureLog> sensor = read_all(logs.sensor, "sensor", aligned.notes);
-  std::vector<PressureLog> reference = read_all(logs.reference, "reference", aligned.notes);
+  const std::vector<recording::PressureLog> sensor = read_all(logs.sensor, "sensor", aligned.notes);
+  std::vector<recording::PressureLog> reference = read_all(logs.reference, "reference", aligned.notes);
   if (logs.paired) {
     for (std::size_t k = 0; k < sensor.size(); ++k) pair({&sensor[k], 1}, {&reference[k], 1}, logs, aligned);
   } else {

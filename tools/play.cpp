@@ -6,8 +6,8 @@
 
 #include "core/errors.hpp"
 #include "daemon/lidar_sender.hpp"
-#include "drivers/lidar_models/lidar_models.hpp"
 #include "drivers/datagram/datagram.hpp"
+#include "drivers/lidar_models/lidar_models.hpp"
 #include "run/files/text_file.hpp"
 #include "run/recording/recording_reader.hpp"
 #include "run/recording/reference.hpp"

@@ -103,7 +103,7 @@ void print(const ScanAssembler& assembler, const recording::PcapPackets::Tallies
 /// The packets of device information come first: the angles in them are the sensor's for as long as it lives.
 void read_information(const std::filesystem::path& capture, std::uint16_t port, ScanAssembler& assembler) {
   if (port == 0) return;
-  recording::PcapPackets packets(capture, port, {});
+  recording::PcapPackets packets(capture, {port, 0}, {});
   const auto unused = std::make_unique<Scan>();
   recording::StampedPacket packet;
   while (packets.next(packet)) {
@@ -130,7 +130,7 @@ void points(const PointsOptions& options) {
   const std::uint16_t info_port = options.info_port != 0 ? options.info_port : model->info_port;
   if (info_port != port) read_information(options.capture, info_port, assembler);
 
-  recording::PcapPackets packets(options.capture, port, {});
+  recording::PcapPackets packets(options.capture, {port, 0}, {});
   const auto scan = std::make_unique<Scan>();
   recording::StampedPacket packet;
   while (packets.next(packet)) {

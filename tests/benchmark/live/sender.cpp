@@ -7,6 +7,7 @@
 #include "core/samples.hpp"
 #include "daemon/realtime.hpp"
 #include "daemon/stage_settings.hpp"
+#include "drivers/lidar/scan_assembler.hpp"
 #include "tools/player.hpp"
 
 namespace isobar::benchmark {

@@ -187,7 +187,8 @@ TEST_CASE("a lidar that sends is found with its address, model and rate") {
 
 TEST_CASE("of two lidars the first with a driver is proposed with its address") {
   Survey survey;
-  survey.lidars = {{"10.0.0.2", 2368, "", "packets of VLS-128", 1500.0}, {"10.0.0.3", 2368, "VLP-16", "", 754.0}};
+  survey.lidars = {{"10.0.0.2", 2368, "", "packets of VLS-128", 1500.0},
+                   {"10.0.0.3", 2368, "VLP-16", "", 754.0}};
   CHECK(parse_config(proposal(survey), "c.toml").lidar.sender == "10.0.0.3");
 }
 
@@ -195,7 +196,8 @@ TEST_CASE("a lidar without a driver is named by what its packets say, and not pr
   Survey survey;
   survey.lidars = {{"10.0.0.2", 2368, "", "packets of VLS-128", 1500.0}};
   const std::string text = proposal(survey);
-  CHECK(has(text, "# Found a lidar without a driver (packets of VLS-128): 1500 packets a second from 10.0.0.2"));
+  CHECK(has(text,
+            "# Found a lidar without a driver (packets of VLS-128): 1500 packets a second from 10.0.0.2"));
   CHECK(parse_config(text, "c.toml").lidar.model == "VLP-16");
 }
 
