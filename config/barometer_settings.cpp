@@ -42,7 +42,8 @@ void add_barometer_section(BarometerSettings& barometer, std::vector<Setting>& s
   s.choice(
        "source", &barometer.source, kBarometerSourceNames.names(),
        "Source of the barometer's samples; those of any other source are refused. datagram: sample datagrams "
-       "by UDP. none: this robot has no barometer; its height is the lidar's. imu: the barometer within the "
+       "by UDP. dds: the ROS 2 topic dds.topics.pressure, through isobar-dds; on robots only. none: this "
+       "robot has no barometer; its height is the lidar's. imu: the barometer within the "
        "IMU, which imu.source names. Any other word: a sensor of "
        "this machine, which isobard reads itself, set up in the section of that name.")
       .basic();
@@ -67,6 +68,7 @@ void add_barometer_section(BarometerSettings& barometer, std::vector<Setting>& s
 int BarometerSettings::rate_hz() const noexcept {
   switch (source) {
     case BarometerSource::kDatagram:
+    case BarometerSource::kDds:
     case BarometerSource::kNone:
     case BarometerSource::kImu:  // that of the IMU
       return 0;

@@ -7,6 +7,7 @@
 #include "config/setting_rules.hpp"
 #include "config/value_text.hpp"
 #include "core/errors.hpp"
+#include "drivers/lidar_models/lidar_models.hpp"
 #include "ipc/keys/limits.hpp"
 
 namespace isobar {
@@ -54,6 +55,11 @@ void check_imu(const Config& config, const Requirements& rules) {
                                                          : nullptr;
   const char* key = imu.source == ImuSource::kVn100 ? "imu.vn100.rate_hz" : "imu.xsens.rate_hz";
   rules.require(broken == nullptr, key, broken == nullptr ? "" : broken);
+  const LidarModel* lidar = find_lidar_model(config.lidar.model);
+  const bool has_packets = config.lidar.source == LidarSource::kDriver;
+  rules.require(imu.source != ImuSource::kLidar || (has_packets && lidar != nullptr && lidar->has_imu),
+                "imu.source",
+                "must not be \"lidar\": a " + config.lidar.model + " has no IMU that its packets hold");
   const bool has_barometer =
       config.role == Role::kRobot && (imu.source == ImuSource::kVn100 || imu.source == ImuSource::kXsens);
   rules.require(config.barometer.source != BarometerSource::kImu || has_barometer, "barometer.source",
@@ -67,6 +73,8 @@ void check_sensors(const Config& config, const Requirements& rules) {
   rules.require(config.lidar.port != config.input.port || config.role == Role::kBaseStation, "input.port",
                 "must differ from lidar.port");
   const BarometerSettings& barometer = config.barometer;
+  rules.require(barometer.source != BarometerSource::kDds || config.role == Role::kRobot, "barometer.source",
+                "must not be \"dds\" on a base station, which publishes its pressure there");
   rules.require(barometer.present() || config.role == Role::kRobot, "barometer.source",
                 "must not be \"none\": a base station measures air pressure");
   if (barometer.source == BarometerSource::kDps310) {
@@ -102,7 +110,7 @@ void require_different(const std::array<NamedText, N>& texts, const Requirements
 }
 
 void check_topic_names(const dds::TopicNames& names, const Requirements& rules) {
-  require_different(std::array<NamedText, 10>{{
+  require_different(std::array<NamedText, 12>{{
                         {"dds.topics.odom", &names.odom},
                         {"dds.topics.pose", &names.pose},
                         {"dds.topics.altitude", &names.altitude},
@@ -111,6 +119,8 @@ void check_topic_names(const dds::TopicNames& names, const Requirements& rules) 
                         {"dds.topics.registered_scan", &names.registered_scan},
                         {"dds.topics.map_cloud", &names.map_cloud},
                         {"dds.topics.diagnostics", &names.diagnostics},
+                        {"dds.topics.points", &names.points},
+                        {"dds.topics.pressure", &names.pressure},
                         {"dds.topics.imu", &names.imu},
                         {"dds.topics.wheel", &names.wheel},
                     }},

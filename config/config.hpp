@@ -39,9 +39,11 @@ inline constexpr NameTable<Role, 2> kRoleNames{{{
 
 /// [lidar]
 struct LidarSettings {
+  LidarSource source = LidarSource::kDriver;
   std::string model = "VLP-16";     ///< a name of drivers/lidar_models
   std::string address = "0.0.0.0";  ///< IPv4 address on which packets are received
   std::uint16_t port = 2368;        ///< UDP port of the data packets
+  std::uint16_t info_port = 0;      ///< UDP port of its IMU, position or device information; 0: the model's
   std::string calibration_file;     ///< of this sensor, see LidarConfig; empty: none
   std::string sender;               ///< IPv4 address of the lidar; empty: the first that sends
   Mount mount;                      ///< of the sensor in base_link

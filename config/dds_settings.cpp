@@ -49,6 +49,9 @@ void add_topics(dds::TopicNames& names, std::vector<Setting>& settings) {
   name("tf_static", names.tf_static, "Name of the fixed transforms, without ros_namespace.");
   name("registered_scan", names.registered_scan, "Name of the registered scan, a cloud in base_link.");
   name("map_cloud", names.map_cloud, "Name of the map's points. Not \"map\", where Nav2 expects a grid.");
+  name("points", names.points, "Name of the lidar's clouds, received where lidar.source is \"dds\".");
+  name("pressure", names.pressure,
+       "Name of the robot's own air pressure, received where barometer.source is \"dds\".");
   name("imu", names.imu, "Name of the IMU's samples, received where imu.source is \"dds\".");
   name("wheel", names.wheel, "Name of the wheels' odometry, received where wheel.source is \"dds\".");
 }
@@ -87,6 +90,13 @@ void add_outputs(dds::DdsConfig& dds, SectionBuilder& s) {
 void add_inputs(dds::DdsConfig& dds, SectionBuilder& s) {
   s.text("second_base_station", dds.second_base_station, TextRule::kNameOrEmpty,
          "Name of a second base station, against which a faulty first one is noticed. Empty: none.");
+  s.choice("wheel_type", &dds.wheel_type, {"odometry", "twist"},
+           "Message type of the topic dds.topics.wheel: nav_msgs/Odometry, or "
+           "geometry_msgs/TwistWithCovarianceStamped.");
+  s.flag("imu_orientation", dds.imu_orientation,
+         "Use the orientation in the messages of dds.topics.imu, where they hold one. false: for an IMU "
+         "whose own "
+         "filter is not to be trusted.");
   s.flag("receive_base_pressure", dds.receive_base_pressure,
          "Receive the base stations' pressure over DDS. true: base stations publish it there.");
 }

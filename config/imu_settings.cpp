@@ -72,7 +72,8 @@ void add_imu_settings(ImuSettings& imu, std::vector<Setting>& settings) {
   s.choice(
        "source", &imu.source, kImuSourceNames.names(),
        "Source of the IMU's samples; those of any other source are refused. datagram: sample datagrams "
-       "by UDP. dds: the ROS 2 topic dds.topics.imu, through isobar-dds. none: this robot has no IMU; "
+       "by UDP. dds: the ROS 2 topic dds.topics.imu, through isobar-dds. lidar: the IMU within the lidar. "
+       "none: this robot has no IMU; "
        "scans are registered as 6-DOF from the wheels or the last motion, and roll, pitch and height "
        "drift with the way. Any other word: a sensor of this machine, which isobard reads itself, set up in "
        "the section of that name.")

@@ -7,9 +7,17 @@ namespace isobar {
 
 void add_lidar_settings(LidarSettings& lidar, std::vector<Setting>& settings) {
   SectionBuilder s("lidar", UsedBy::kRobot, settings);
+  s.choice("source", &lidar.source, kLidarSourceNames.names(),
+           "Source of the lidar's points. driver: its own packets by UDP, those of lidar.model. dds: clouds "
+           "of the "
+           "ROS 2 topic dds.topics.points, through isobar-dds: any lidar with a ROS 2 driver.")
+      .basic();
   s.choice("model", &lidar.model, lidar_model_names(),
            "Model of the lidar. Packets of any other model are refused.")
       .basic();
+  s.number("info_port", &lidar.info_port, "", 0, 65'535,
+           "UDP port of the lidar's other packets: position, device information, samples of its IMU. 0: the "
+           "model's factory setting.");
   s.text("calibration_file", lidar.calibration_file, TextRule::kAny,
          "The sensor's own calibration: the metadata of an Ouster (JSON, needed), the angle corrections of a "
          "Hesai (CSV) or of a RoboSense (CSV). A relative path starts at the folder of this configuration. "

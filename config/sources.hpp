@@ -9,6 +9,12 @@
 
 namespace isobar {
 
+/// [lidar] source
+enum class LidarSource : std::uint8_t {
+  kDriver,  ///< the lidar's own packets by UDP, decoded for lidar.model
+  kDds,     ///< ROS 2 topic of point clouds, received by isobar-dds
+};
+
 /// [imu] source
 enum class ImuSource : std::uint8_t {
   kDatagram,  ///< sample datagrams by UDP (drivers/datagram)
@@ -17,11 +23,13 @@ enum class ImuSource : std::uint8_t {
   kVn100,     ///< VectorNav VN-100 on a serial line
   kXsens,     ///< Xsens MTi on a serial line
   kIio,       ///< IMU of the kernel's industrial I/O
+  kLidar,     ///< the lidar's own, in its packets
 };
 
 /// [barometer] source
 enum class BarometerSource : std::uint8_t {
   kDatagram,  ///< sample datagrams by UDP
+  kDds,       ///< ROS 2 topic, received by isobar-dds
   kNone,      ///< the robot has none
   kDps310,    ///< DPS310 or DPS368 on I2C or SPI, as the four that follow
   kBmp581,
@@ -40,17 +48,24 @@ enum class WheelSource : std::uint8_t {
   kNone,      ///< the robot has none, or they are not to be used
 };
 
-inline constexpr NameTable<ImuSource, 6> kImuSourceNames{{{
+inline constexpr NameTable<LidarSource, 2> kLidarSourceNames{{{
+    {LidarSource::kDriver, "driver"},
+    {LidarSource::kDds, "dds"},
+}}};
+
+inline constexpr NameTable<ImuSource, 7> kImuSourceNames{{{
     {ImuSource::kDatagram, "datagram"},
     {ImuSource::kDds, "dds"},
     {ImuSource::kNone, "none"},
     {ImuSource::kVn100, "vn100"},
     {ImuSource::kXsens, "xsens"},
     {ImuSource::kIio, "iio"},
+    {ImuSource::kLidar, "lidar"},
 }}};
 
-inline constexpr NameTable<BarometerSource, 10> kBarometerSourceNames{{{
+inline constexpr NameTable<BarometerSource, 11> kBarometerSourceNames{{{
     {BarometerSource::kDatagram, "datagram"},
+    {BarometerSource::kDds, "dds"},
     {BarometerSource::kNone, "none"},
     {BarometerSource::kDps310, "dps310"},
     {BarometerSource::kBmp581, "bmp581"},

@@ -14,9 +14,9 @@
 #include "daemon/health_entry.hpp"
 #include "daemon/imu_source.hpp"
 #include "daemon/input_health.hpp"
-#include "daemon/lidar_sender.hpp"
 #include "daemon/run_health.hpp"
 #include "daemon/status_figures.hpp"
+#include "drivers/lidar_models/lidar_models.hpp"
 
 namespace isobar {
 
@@ -29,8 +29,15 @@ using ipc::HealthReport;
 std::string input_of(const Config& config, datagram::Kind kind) {
   using datagram::Kind;
   const bool by_dds = (kind == Kind::kImu && config.imu.source == ImuSource::kDds) ||
+                      (kind == Kind::kPressure && config.barometer.source == BarometerSource::kDds) ||
                       (kind == Kind::kWheel && config.wheel.source == WheelSource::kDds);
   if (by_dds) return "DDS";
+  if (kind == Kind::kImu && config.imu.source == ImuSource::kLidar) {
+    const LidarModel* lidar = find_lidar_model(config.lidar.model);
+    const int port =
+        config.lidar.info_port != 0 || lidar == nullptr ? config.lidar.info_port : lidar->info_port;
+    return "UDP port " + std::to_string(port) + ", from the lidar";
+  }
   if (kind == Kind::kPressure && config.barometer.source == BarometerSource::kImu) return "the IMU";
   const bool both = kind == Kind::kBasePressure && config.dds.receive_base_pressure;
   return "UDP port " + std::to_string(config.input.port) + (both ? " or over DDS" : "");
@@ -85,45 +92,6 @@ void HealthMonitor::fill(const StatusSnapshot& now, HealthReport& report) {
   fill_deadlines(now, report);
   fill_robot_figures(now, last_, *times_, report.status);
   last_ = now;
-}
-
-void HealthMonitor::fill_lidar(const StatusSnapshot& now, double elapsed_s, HealthReport& report) const {
-  const auto& counters = now.lidar.counters;
-  const auto& before = last_.lidar.counters;
-  const double rate_hz =
-      per_second(counters.scans - counters.divided, before.scans - before.divided, elapsed_s);
-  const std::string where = "UDP port " + std::to_string(config_.lidar.port);
-  if (!now.lidar_waits_for.empty()) {
-    add_entry(report, "lidar", HealthLevel::kError, "waiting: " + now.lidar_waits_for, 0.0);
-  } else if (rate_hz > kFastestScanHz) {
-    add_entry(
-        report, "lidar", HealthLevel::kError,
-        fmt::format("{:.0f} scans per second on {}: no lidar turns that fast; do two send from one address?",
-                    rate_hz, where),
-        rate_hz);
-  } else {
-    add_stream(report, "lidar", now.lidar.last_packet_ns, now.now_ns, kSensorSilenceNs, rate_hz, where);
-  }
-  if (now.lidar.sync != LidarSync::kUnknown) {
-    const bool is_faulty = now.lidar.sync == LidarSync::kFault;
-    add_entry(report, "lidar/clock", is_faulty ? HealthLevel::kWarning : HealthLevel::kOk,
-              std::string(kLidarSyncTexts.name(now.lidar.sync)), 0.0);
-  }
-  add_senders(report, "lidar", now.lidar.sender, now.now_ns, "lidar.sender chooses");
-  if (counters.wrong_model > before.wrong_model) {
-    add_entry(report, "lidar/model", HealthLevel::kError, now.lidar.wrong_model_message.data(),
-              static_cast<double>(counters.wrong_model));
-  }
-  add_count(report, "lidar/packets_lost", counters.lost, before.lost,
-            "packets lost, by the gaps in the sensor's time");
-  add_count(report, "lidar/garbage", counters.garbage + counters.truncated + counters.oversized,
-            before.garbage + before.truncated + before.oversized, "packets of another format, refused");
-  add_count(report, "lidar/reordered", counters.reordered + counters.duplicated,
-            before.reordered + before.duplicated, "packets duplicated or out of order");
-  add_count(report, "lidar/dropped_by_kernel", now.lidar.dropped_by_kernel, last_.lidar.dropped_by_kernel,
-            "datagrams dropped by the kernel: the machine is overloaded");
-  add_count(report, "lidar/no_memory", now.lidar.scans_without_memory, last_.lidar.scans_without_memory,
-            "scans dropped: no free chunk of shared memory");
 }
 
 void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, HealthReport& report) const {

@@ -33,6 +33,7 @@ struct StatusSnapshot {
   MapStatus map;
   OutputStatus output;
   std::string lidar_waits_for{};  ///< see UdpReceiver::waiting_for()
+  std::string lidar_info_waits_for{};
   std::string samples_wait_for{};
   Findings contradictions{};
 };

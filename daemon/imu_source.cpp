@@ -13,6 +13,7 @@ std::unique_ptr<Device<InertialReading>> make_imu(const ImuSettings& imu) {
     case ImuSource::kDatagram:
     case ImuSource::kDds:
     case ImuSource::kNone:
+    case ImuSource::kLidar:  // the LidarThread's
       return nullptr;
     case ImuSource::kVn100:
       return vn100::make_sensor(imu.vn100);

@@ -6,13 +6,36 @@
 
 namespace isobar {
 
-LidarThread::LidarThread(const LidarConfig& config, const LidarSettings& lidar, ThreadSettings settings)
+namespace {
+
+/// The port of the other packets; 0: the model has none.
+std::uint16_t info_port_of(const LidarSettings& lidar) {
+  const LidarModel* model = find_lidar_model(lidar.model);
+  const std::uint16_t port = lidar.info_port != 0 || model == nullptr ? lidar.info_port : model->info_port;
+  return port == lidar.port ? 0 : port;
+}
+
+}  // namespace
+
+LidarStatus status_of_clouds(std::uint64_t scans, std::int64_t last_scan_ns, const StreamPace& pace) {
+  LidarStatus status;
+  status.counters.scans = scans;
+  status.last_packet_ns = last_scan_ns;
+  status.pace = pace;
+  return status;
+}
+
+LidarThread::LidarThread(const StageSettings& stages, const LidarSettings& lidar, ThreadSettings settings)
     : receiver_(lidar.address, lidar.port),
+      configured_sender_(lidar.sender.empty() ? 0 : ipv4_of(lidar.sender)),
       sender_(lidar.sender),
-      assembler_(make_lidar_decoder(config)),
+      assembler_(make_lidar_decoder(stages.lidar)),
       publisher_(ipc::topics::kLidarScan),
       deadline_(settings.deadline_ms),
-      worker_(std::move(settings), receiver_, [this] { loop(); }) {}
+      worker_(std::move(settings), receiver_, [this] { loop(); }) {
+  if (const std::uint16_t port = info_port_of(lidar); port != 0) info_receiver_.emplace(lidar.address, port);
+  if (stages.imu_of_lidar) imu_publisher_.emplace(ipc::topics::kImu);
+}
 
 LidarThread::~LidarThread() {
   worker_.stop();
@@ -25,6 +48,7 @@ void LidarThread::loop() noexcept {
       receiver_, worker_.heartbeat(), [this](const ReceivedDatagram& datagram) { take_packet(datagram); },
       [this] {
         tap_.end_round();
+        take_information();
         report();
         pause();
       });
@@ -41,6 +65,25 @@ void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
   tap_.add(datagram);
   Scan& scan = loaned_ != nullptr ? *loaned_ : spare_scan_;
   if (assembler_.add_packet(datagram.payload, datagram.stamp_ns, scan).scan_complete) publish_scan();
+}
+
+void LidarThread::take_information() noexcept {
+  if (!info_receiver_) return;
+  ReceivedDatagram datagram;
+  while (info_receiver_->receive(datagram, 0) == UdpReceiver::Status::kDatagram) {
+    const std::uint32_t in_use = sender_.status().in_use.ipv4;
+    const std::uint32_t wanted = configured_sender_ != 0 ? configured_sender_ : in_use;
+    if ((wanted != 0 && datagram.sender.ipv4 != wanted) || assembler_.decoder().is_data(datagram.payload)) {
+      ++draft_status_.info_refused;
+      continue;
+    }
+    (void)assembler_.add_packet(datagram.payload, datagram.stamp_ns,
+                                loaned_ != nullptr ? *loaned_ : spare_scan_);
+    ImuSample sample;
+    while (imu_publisher_ && assembler_.take_imu(sample)) {
+      if (!imu_publisher_->send(sample)) ++draft_status_.samples_without_memory;
+    }
+  }
 }
 
 void LidarThread::publish_scan() noexcept {
@@ -60,8 +103,11 @@ void LidarThread::publish_scan() noexcept {
 void LidarThread::pause() noexcept {
   constexpr std::int64_t kFreshNs = 1'000'000;
   constexpr std::int64_t kNsPerMs = 1'000'000;
+  constexpr std::size_t kLargePacketBytes = 2'000;
   const std::int64_t now_ns = RobotClock::now_ns();
   if (now_ns - draft_status_.last_packet_ns > kFreshNs) return;
+  // Samples of an IMU must not wait, and the socket's buffer holds few packets of several kilobytes.
+  if (imu_publisher_ || assembler_.decoder().longest_packet() > kLargePacketBytes) return;
   if (const std::int64_t pause_ns = pacing_.pause_ns(now_ns); pause_ns > 0) {
     receiver_.pause(static_cast<int>(pause_ns / kNsPerMs));
   }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "config/config.hpp"
@@ -13,6 +14,7 @@
 #include "daemon/packet_pacing.hpp"
 #include "daemon/packet_tap.hpp"
 #include "daemon/seq_lock.hpp"
+#include "daemon/stage_settings.hpp"
 #include "daemon/worker.hpp"
 #include "drivers/lidar/scan_assembler.hpp"
 #include "drivers/lidar_models/lidar_models.hpp"
@@ -25,22 +27,29 @@ namespace isobar {
 struct LidarStatus {
   LidarCounters counters;
   std::uint64_t dropped_by_kernel = 0;
-  std::uint64_t scans_without_memory = 0;  ///< complete scans dropped for want of a chunk in shared memory
-  std::int64_t last_packet_ns = 0;         ///< robot clock; 0: none yet
-  StreamPace pace;                         ///< of the scans' ends
-  SenderStatus sender;                     ///< port 0
-  std::int64_t clock_jumped_ns = 0;        ///< last jump of the lidar's clock, robot clock; 0: never
-  LidarSync sync = LidarSync::kUnknown;    ///< state of the lidar's clock
-  DeadlineStatus punctuality;              ///< from the end of a scan to its publication
+  std::uint64_t samples_without_memory = 0;  ///< samples of the lidar's IMU
+  std::uint64_t info_refused = 0;            ///< packets of the second port that another machine sent
+  std::uint64_t scans_without_memory = 0;    ///< complete scans dropped for want of a chunk in shared memory
+  std::int64_t last_packet_ns = 0;           ///< robot clock; 0: none yet
+  StreamPace pace;                           ///< of the scans' ends
+  SenderStatus sender;                       ///< port 0
+  std::int64_t clock_jumped_ns = 0;          ///< last jump of the lidar's clock, robot clock; 0: never
+  LidarSync sync = LidarSync::kUnknown;      ///< state of the lidar's clock
+  DeadlineStatus punctuality;                ///< from the end of a scan to its publication
   /// Names the configured and the received model; empty while all packets are of the configured one.
   std::array<char, 120> wrong_model_message{};
 };
 
-/// Decodes the lidar's UDP packets and publishes scans.
+/// What isobard knows of a lidar whose scans isobar-dds converts: their number and times.
+[[nodiscard]] LidarStatus status_of_clouds(std::uint64_t scans, std::int64_t last_scan_ns,
+                                           const StreamPace& pace);
+
+/// Decodes the lidar's UDP packets and publishes scans. Its other packets (position, device information, IMU)
+/// come to a second port; they are taken after each packet of the first one, and every 200 ms without.
 class LidarThread {
  public:
   /// @throws ConfigError for a calibration file that cannot be used; ServiceError when the port may not be used; an address or port that is not there yet is waited for
-  LidarThread(const LidarConfig& config, const LidarSettings& lidar, ThreadSettings settings);
+  LidarThread(const StageSettings& stages, const LidarSettings& lidar, ThreadSettings settings);
   ~LidarThread();
   LidarThread(const LidarThread&) = delete;
   LidarThread& operator=(const LidarThread&) = delete;
@@ -57,6 +66,10 @@ class LidarThread {
   [[nodiscard]] std::uint16_t port() const noexcept { return receiver_.port(); }
   /// See UdpReceiver::waiting_for().
   [[nodiscard]] std::string waiting_for() const { return receiver_.waiting_for(); }
+  /// The same of the second port.
+  [[nodiscard]] std::string info_waiting_for() const {
+    return info_receiver_ ? info_receiver_->waiting_for() : std::string{};
+  }
 
  private:
   struct Change {
@@ -65,14 +78,18 @@ class LidarThread {
   };
   void loop() noexcept;
   void take_packet(const ReceivedDatagram& datagram) noexcept;
+  void take_information() noexcept;
   void publish_scan() noexcept;
   void report() noexcept;
   void pause() noexcept;
 
   UdpReceiver receiver_;
+  std::optional<UdpReceiver> info_receiver_;
+  std::uint32_t configured_sender_;  ///< 0: any
   LidarSender sender_;
   ScanAssembler assembler_;
   ipc::Publisher<Scan> publisher_;
+  std::optional<ipc::Publisher<ImuSample>> imu_publisher_;  ///< imu.source is lidar
   Scan* loaned_ = nullptr;
   Scan
       spare_scan_;  ///< decoded into while no chunk is free, so that the next scan starts at the right packet

@@ -21,7 +21,8 @@ LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileStorag
       filling_(std::make_unique<Scan>()),
       queue_(kLockStepQueue),
       has_imu_(settings.prior.has_imu),
-      uses_wheels_(settings.uses_wheels) {}
+      uses_wheels_(settings.uses_wheels),
+      imu_of_lidar_(settings.imu_of_lidar) {}
 
 void LockStep::continue_from(const RunStart& start, const std::filesystem::path& map_folder) {
   prior_estimator_.resume(start.datum);
@@ -41,7 +42,7 @@ void LockStep::handle(const recording::Event& event) {
       take_packet(event);
       break;
     case recording::EventKind::kImu:
-      take_imu(event.imu);
+      if (!imu_of_lidar_) take_imu(event.imu);
       break;
     case recording::EventKind::kPressure:
       prior_estimator_.add_pressure(event.pressure);
@@ -68,6 +69,8 @@ void LockStep::take_packet(const recording::Event& event) {
     queue_scan();
     register_admissible();
   }
+  ImuSample sample;
+  while (imu_of_lidar_ && assembler_.take_imu(sample)) take_imu(sample);
 }
 
 void LockStep::take_imu(const ImuSample& sample) {

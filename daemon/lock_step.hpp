@@ -70,6 +70,7 @@ class LockStep {
   std::uint64_t scans_ = 0;
   bool has_imu_;
   bool uses_wheels_;
+  bool imu_of_lidar_;
   PriorPace pace_;  ///< without an IMU
 };
 

@@ -72,9 +72,12 @@ class RobotGraph final : public Graph {
                   .wheel = config.wheel.source == WheelSource::kDatagram,
                   .unsigned_base = config.dds.keys_directory.empty()},
                  config.input.senders, scheduling_.inertial),
-        lidar_(stages_.lidar, config.lidar, scheduling_.lidar),
-        check_({.imu = config.imu.mount, .lidar = config.lidar.mount}, config.imu.present(),
-               scheduling_.check),
+        lidar_(config.lidar.source == LidarSource::kDriver
+                   ? std::make_unique<LidarThread>(stages_, config.lidar, scheduling_.lidar)
+                   : nullptr),
+        check_({.imu = stages_.imu_of_lidar ? config.lidar.mount : config.imu.mount,
+                .lidar = config.lidar.mount},
+               config.imu.present(), scheduling_.check),
         output_(files_.checkpoint_file().empty()
                     ? nullptr
                     : std::make_unique<OutputThread>(
@@ -95,7 +98,7 @@ class RobotGraph final : public Graph {
     // them.
     if (imu_) workers_.add(imu_->worker(), Watch::kNo);
     if (barometer_) workers_.add(barometer_->worker(), Watch::kNo);
-    workers_.add(lidar_.worker());
+    if (lidar_) workers_.add(lidar_->worker());
   }
 
   void start() override {
@@ -111,31 +114,36 @@ class RobotGraph final : public Graph {
     files_.close(status(RobotClock::now_ns()));
   }
   [[nodiscard]] StatusSnapshot status(std::int64_t now_ns) const {
+    const RegistrationStatus registration = registration_.status();
     return {now_ns,
-            lidar_.status(),
+            lidar_ ? lidar_->status()
+                   : status_of_clouds(registration.arrived_scans, registration.last_scan_ns,
+                                      registration.scan_pace),
             samples_.status(),
             imu_ ? imu_->status() : DeviceThreadStatus{},
             barometer_ ? barometer_->status() : DeviceThreadStatus{},
             prior_.status(),
-            registration_.status(),
+            registration,
             map_.status(),
             output_ ? output_->status() : OutputStatus{},
-            lidar_.waiting_for(),
+            lidar_ ? lidar_->waiting_for() : std::string{},
+            lidar_ ? lidar_->info_waiting_for() : std::string{},
             samples_.waiting_for(),
             check_.findings()};
   }
 
   [[nodiscard]] WorkerGroup& workers() override { return workers_; }
   [[nodiscard]] std::string inputs() const override {
-    return fmt::format("lidar {} on UDP port {}, samples on UDP port {}", config_.lidar.model, lidar_.port(),
-                       samples_.port());
+    const std::string lidar =
+        lidar_ ? fmt::format("{} on UDP port {}", config_.lidar.model, lidar_->port()) : "clouds over DDS";
+    return fmt::format("lidar {}, samples on UDP port {}", lidar, samples_.port());
   }
   [[nodiscard]] DeviceStates device_states() const override {
     return {barometer_ ? barometer_->status().device.state : DeviceState{},
             imu_ ? imu_->status().device.state : DeviceState{}};
   }
   [[nodiscard]] std::vector<std::string> waiting_for() const override {
-    return {lidar_.waiting_for(), samples_.waiting_for(),
+    return {lidar_ ? lidar_->waiting_for() : std::string{}, samples_.waiting_for(),
             imu_ ? isobar::waiting_for(imu_->status()) : std::string{},
             barometer_ ? isobar::waiting_for(barometer_->status()) : std::string{}};
   }
@@ -148,7 +156,7 @@ class RobotGraph final : public Graph {
     config_ = change.running;
     stages_ = stage_settings(without_unusable(config_, usable_));
     const RobotScheduling scheduling = robot_scheduling(config_.realtime);
-    lidar_.configure(stages_.lidar.limits, scheduling.lidar.deadline_ms);
+    if (lidar_) lidar_->configure(stages_.lidar.limits, scheduling.lidar.deadline_ms);
     if (usable_ == UsableSensors{}) {
       prior_.configure(stages_.prior, scheduling.prior.deadline_ms);
     } else {
@@ -163,11 +171,12 @@ class RobotGraph final : public Graph {
     description_.publish(config_);
   }
   void collect() override {
-    if (monitor_.input_starts_over(lidar_.status(), samples_.status(), prior_.status())) {
+    if (monitor_.input_starts_over(lidar_ ? lidar_->status() : LidarStatus{}, samples_.status(),
+                                   prior_.status())) {
       registration_.begin_new_frame(NewFrameReason::kInputStartsOver);
     }
     leave_out(usable_sensors(check_.findings()));
-    lidar_.collect();
+    if (lidar_) lidar_->collect();
     prior_.collect();
     registration_.collect();
     map_.collect();
@@ -200,7 +209,7 @@ class RobotGraph final : public Graph {
   std::unique_ptr<ImuThread> imu_;
   std::unique_ptr<BarometerThread> barometer_;
   SampleThread samples_;
-  LidarThread lidar_;
+  std::unique_ptr<LidarThread> lidar_;  ///< null: the scans come from isobar-dds
   CheckThread check_;
   std::unique_ptr<OutputThread> output_;
   HealthMonitor monitor_;

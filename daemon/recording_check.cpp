@@ -25,9 +25,11 @@ class CheckedInputs {
   explicit CheckedInputs(const Config& used)
       : sender_(used.lidar.sender),
         assembler_(make_lidar_decoder(stage_settings(used).lidar)),
-        check_({.imu = used.imu.mount, .lidar = used.lidar.mount}),
+        check_({.imu = used.imu.source == ImuSource::kLidar ? used.lidar.mount : used.imu.mount,
+                .lidar = used.lidar.mount}),
         scan_(std::make_unique<Scan>()),
         has_imu_(used.imu.present()),
+        imu_of_lidar_(used.imu.source == ImuSource::kLidar),
         has_wheels_(used.wheel.present()) {}
 
   void handle(const recording::Event& event) {
@@ -37,9 +39,10 @@ class CheckedInputs {
             assembler_.add_packet(event.packet, event.stamp_ns, *scan_).scan_complete) {
           check_.add_scan(*scan_);
         }
+        take_imu_of_lidar();
         break;
       case EventKind::kImu:
-        if (has_imu_) check_.add_imu(event.imu);
+        if (has_imu_ && !imu_of_lidar_) check_.add_imu(event.imu);
         break;
       case EventKind::kPressure:
         check_.add_pressure(event.pressure);
@@ -58,11 +61,17 @@ class CheckedInputs {
   [[nodiscard]] const InputCheck& check() const { return check_; }
 
  private:
+  void take_imu_of_lidar() {
+    ImuSample sample;
+    while (imu_of_lidar_ && assembler_.take_imu(sample)) check_.add_imu(sample);
+  }
+
   LidarSender sender_;
   ScanAssembler assembler_;
   InputCheck check_;
   std::unique_ptr<Scan> scan_;
   bool has_imu_;
+  bool imu_of_lidar_;
   bool has_wheels_;
 };
 

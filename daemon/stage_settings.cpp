@@ -19,7 +19,9 @@ StageSettings stage_settings(const Config& config) {
   settings.uses_wheels = config.wheel.present();
   settings.prior = config.prior;
   settings.prior.has_imu = config.imu.present();
-  settings.prior.T_base_imu = config.imu.mount.T_base_sensor();
+  settings.imu_of_lidar = config.imu.source == ImuSource::kLidar;
+  // Decoders give the samples of a lidar's IMU in the lidar's frame.
+  settings.prior.T_base_imu = (settings.imu_of_lidar ? config.lidar.mount : config.imu.mount).T_base_sensor();
   settings.prior.p_base_port = config.barometer.mount.xyz_m;
   settings.registration = config.registration;
   settings.registration.has_imu = config.imu.present();
@@ -43,8 +45,10 @@ Config with_sensors_of(const recording::Manifest& manifest, Config config) {
     throw DataError("recording.toml: lidar.model: \"" + printable(manifest.lidar->model) +
                     "\" has no driver; there are " + lidar_model_list());
   }
+  config.lidar.source = LidarSource::kDriver;
   config.lidar.model = manifest.lidar->model;
   config.lidar.port = manifest.lidar->port;
+  config.lidar.info_port = manifest.lidar->info_port;
   if (!manifest.lidar->calibration_file.empty()) {
     config.lidar.calibration_file = manifest.lidar->calibration_file;
   }
@@ -53,7 +57,8 @@ Config with_sensors_of(const recording::Manifest& manifest, Config config) {
   if (manifest.imu) {
     config.imu.mount = manifest.imu->mount;
   } else {
-    config.imu.source = ImuSource::kNone;
+    const bool has_imu = find_lidar_model(manifest.lidar->model)->has_imu && manifest.lidar->info_port != 0;
+    config.imu.source = has_imu && config.imu.present() ? ImuSource::kLidar : ImuSource::kNone;
   }
   if (manifest.barometer) {
     config.barometer.mount = manifest.barometer->mount;

@@ -18,8 +18,9 @@ namespace isobar {
 /// Settings of all stages.
 struct StageSettings {
   LidarConfig lidar;
-  std::string lidar_sender;  ///< see LidarSender
-  bool uses_wheels = true;   ///< wheel.source is not none
+  std::string lidar_sender;   ///< see LidarSender
+  bool imu_of_lidar = false;  ///< imu.source is lidar
+  bool uses_wheels = true;    ///< wheel.source is not none
   PriorConfig prior;
   RegistrationConfig registration;
   MapConfig map;

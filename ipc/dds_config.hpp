@@ -20,6 +20,8 @@ struct TopicNames {
   std::string registered_scan = "registered_scan";
   std::string map_cloud = "map_cloud";
   std::string diagnostics = "diagnostics";
+  std::string points = "points";
+  std::string pressure = "fluid_pressure";
   std::string imu = "imu/data";
   std::string wheel = "wheel/odom";
   std::string base_pressure = "fluid_pressure";
@@ -77,6 +79,11 @@ struct DdsConfig {
   std::string keys_directory;
   /// Receive the base stations' pressure over DDS.
   bool receive_base_pressure = true;
+  /// Message type of the wheels' topic: "odometry", nav_msgs/Odometry; "twist",
+  /// geometry_msgs/TwistWithCovarianceStamped.
+  std::string wheel_type = "odometry";
+  /// Use the orientation of the IMU's messages, where they hold one.
+  bool imu_orientation = true;
   /// Smoothing of the registration's corrections in the odom frame.
   PosePropagatorConfig propagator;
 };

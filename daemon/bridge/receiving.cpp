@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/bridge/receiving.hpp"
 
+#include <type_traits>
+
 #include "drivers/clock/robot_clock.hpp"
 #include "ipc/dds/samples.hpp"
 
@@ -22,7 +24,7 @@ std::int64_t IsobardClock::now_ns() const noexcept {
 
 Receiving::Receiving(dds_entity_t participant, dds_entity_t of_stations, const Settings& settings,
                      const IsobardClock& clock)
-    : clock_(clock) {
+    : clock_(clock), imu_orientation_(settings.dds.imu_orientation) {
   const dds::DdsConfig& config = settings.dds;
   const auto open = [&](auto& stream, const auto& from, const std::string& name, const auto& to) {
     stream.emplace(participant, from, config.ros_namespace, name, to);
@@ -34,8 +36,16 @@ Receiving::Receiving(dds_entity_t participant, dds_entity_t of_stations, const S
       stations_.push_back(std::make_unique<StationInput>(of_stations, config, config.second_base_station, 1));
     }
   }
+  if (settings.receives_points) cloud_ = std::make_unique<CloudInput>(participant, settings);
+  if (settings.receives_pressure) {
+    open(pressure_, dds::topics::kPressure, config.topics.pressure, ipc::topics::kBarometer);
+  }
   if (settings.receives_imu) open(imu_, dds::topics::kImu, config.topics.imu, ipc::topics::kImu);
-  if (settings.receives_wheel) open(wheel_, dds::topics::kWheel, config.topics.wheel, ipc::topics::kWheel);
+  if (settings.receives_wheel && config.wheel_type == "twist") {
+    open(wheel_twist_, dds::topics::kWheelTwist, config.topics.wheel, ipc::topics::kWheel);
+  } else if (settings.receives_wheel) {
+    open(wheel_, dds::topics::kWheel, config.topics.wheel, ipc::topics::kWheel);
+  }
   // Not of a participant: such a wait set would refuse the readers of the other one.
   waitset_ = dds::checked(dds_create_waitset(DDS_CYCLONEDDS_HANDLE), "wait set");
   stop_ = dds::checked(dds_create_guardcondition(participant), "guard condition");
@@ -47,8 +57,14 @@ Receiving::Receiving(dds_entity_t participant, dds_entity_t of_stations, const S
     dds_set_status_mask(stream->reader.get(), DDS_DATA_AVAILABLE_STATUS);
     dds_waitset_attach(waitset_.get(), stream->reader.get(), 0);
   };
+  if (cloud_) {
+    dds_set_status_mask(cloud_->reader(), DDS_DATA_AVAILABLE_STATUS);
+    dds_waitset_attach(waitset_.get(), cloud_->reader(), 0);
+  }
+  attach(pressure_);
   attach(imu_);
   attach(wheel_);
+  attach(wheel_twist_);
   for (const auto& station : stations_) {
     dds_waitset_attach(waitset_.get(), station->pressure_reader(), 0);
   }
@@ -66,14 +82,17 @@ std::vector<dds_entity_t> Receiving::readers() const {
     readers.push_back(station->pressure_reader());
     readers.push_back(station->temperature_reader());
   }
+  if (cloud_) readers.push_back(cloud_->reader());
+  add_reader(pressure_, readers);
   add_reader(imu_, readers);
   add_reader(wheel_, readers);
+  add_reader(wheel_twist_, readers);
   return readers;
 }
 
 ReceivedCounts Receiving::counts() const noexcept {
-  return {refused_.load(std::memory_order_relaxed),
-          other_senders_.load(std::memory_order_relaxed),
+  return {refused_.load(std::memory_order_relaxed) + (cloud_ ? cloud_->refused() : 0),
+          other_senders_.load(std::memory_order_relaxed) + (cloud_ ? cloud_->other_senders() : 0),
           too_early_.load(std::memory_order_relaxed),
           station_status_.get(),
           stations_.size(),
@@ -107,9 +126,20 @@ void Receiving::forward(std::optional<Stream<Message, Sample>>& stream) {
     static_cast<void>(stream->anchor.add(stamp_ns, now_ns));
     stream->anchored = true;
     sample.stamp_ns = stream->anchor.to_host_ns(stream->anchor.device_unwrapped_ns());
+    if constexpr (std::is_same_v<Sample, ImuSample>)
+      sample.has_attitude = sample.has_attitude && imu_orientation_;
     sample.path = SamplePath::kDds;
     if (!stream->publisher.send(sample)) too_early_.fetch_add(1, std::memory_order_relaxed);
   });
+}
+
+void Receiving::forward_cloud() {
+  if (!cloud_) return;
+  if (clock_.known()) {
+    cloud_->take(clock_.now_ns(), system_clock_);
+  } else {
+    cloud_->drop();
+  }
 }
 
 void Receiving::forward_stations() {
@@ -137,7 +167,10 @@ void Receiving::loop() noexcept {
     system_clock_.note(read_clocks());
     forward_stations();
     forward(wheel_);
+    forward(wheel_twist_);
+    forward(pressure_);
     forward(imu_);
+    forward_cloud();
     static_cast<void>(dds_read_guardcondition(stop_.get(), &stopped));
   }
 }

@@ -13,6 +13,7 @@
 
 #include "core/time/clock_anchor.hpp"
 #include "core/time/system_clock_watch.hpp"
+#include "daemon/bridge/cloud_input.hpp"
 #include "daemon/bridge/settings.hpp"
 #include "daemon/bridge/station_input.hpp"
 #include "daemon/bridge/writer_choice.hpp"
@@ -83,6 +84,7 @@ class Receiving {
 
   template <class Message, class Sample>
   void forward(std::optional<Stream<Message, Sample>>& stream);
+  void forward_cloud();
   void forward_stations();
   void loop() noexcept;
 
@@ -90,8 +92,12 @@ class Receiving {
   SystemClockWatch system_clock_{0};  ///< its steps, which ROS 2 nodes of this machine share
   std::vector<std::unique_ptr<StationInput>> stations_;
   std::optional<ipc::Publisher<PressureSample>> base_pressure_;
+  std::unique_ptr<CloudInput> cloud_;
+  std::optional<Stream<dds::PressureMessage, PressureSample>> pressure_;
   std::optional<Stream<dds::ImuMessage, ImuSample>> imu_;
   std::optional<Stream<dds::OdometryMessage, WheelSample>> wheel_;
+  std::optional<Stream<dds::TwistMessage, WheelSample>> wheel_twist_;
+  bool imu_orientation_;
   dds::Entity waitset_;
   dds::Entity stop_;
   std::atomic<std::uint64_t> refused_{0};

@@ -18,8 +18,8 @@ std::string used_values(Config config) {
   std::string text;
   for (const Setting& setting : settings_of(config)) {
     const std::string name = setting.name();
-    if (setting.key.starts_with("dds.") || name == "role" || name == "source" || name == "xyz_m" ||
-        name == "rpy_deg") {
+    if (setting.key.starts_with("dds.") || setting.key.starts_with("lidar.") || name == "role" ||
+        name == "source" || name == "xyz_m" || name == "rpy_deg") {
       text += setting.key + " = " + value_text(setting) + "\n";
     }
   }
@@ -61,6 +61,10 @@ Settings settings_of(Config config, const Options& options) {
   Settings settings;
   settings.values = used_values(config);
   settings.is_base_station = config.role == Role::kBaseStation;
+  settings.receives_points = !settings.is_base_station && config.lidar.source == LidarSource::kDds;
+  settings.lidar_limits = {config.lidar.min_range_m, config.lidar.max_range_m, config.lidar.mask_start_deg,
+                           config.lidar.mask_end_deg};
+  settings.receives_pressure = !settings.is_base_station && config.barometer.source == BarometerSource::kDds;
   settings.receives_imu = !settings.is_base_station && config.imu.source == ImuSource::kDds;
   settings.receives_wheel = !settings.is_base_station && config.wheel.source == WheelSource::kDds;
   settings.dds = config.dds;

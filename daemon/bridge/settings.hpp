@@ -8,6 +8,7 @@
 
 #include "config/config.hpp"
 #include "daemon/bridge/environment.hpp"
+#include "drivers/lidar/lidar_decoder.hpp"
 #include "ipc/dds_config.hpp"
 
 namespace CLI {
@@ -26,9 +27,12 @@ struct Options {
 /// Settings of the bridge, from the configuration, the command line and the environment.
 struct Settings {
   bool is_base_station = false;
-  bool receives_imu = false;    ///< imu.source is dds
-  bool receives_wheel = false;  ///< wheel.source is dds
-  dds::DdsConfig dds;           ///< frames with their prefix, domain_id >= 0
+  bool receives_points = false;    ///< lidar.source is dds
+  LidarLimits lidar_limits;        ///< of those clouds
+  bool receives_pressure = false;  ///< barometer.source is dds
+  bool receives_imu = false;       ///< imu.source is dds
+  bool receives_wheel = false;     ///< wheel.source is dds
+  dds::DdsConfig dds;              ///< frames with their prefix, domain_id >= 0
   dds::SensorMounts mounts;
   Environment environment;
   std::string values;  ///< all values that the bridge uses, as text: equal settings have equal texts

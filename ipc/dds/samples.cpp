@@ -26,6 +26,15 @@ Eigen::Vector3d to_vector(const geometry_msgs_msg_dds__Vector3_& message) noexce
   return {message.x, message.y, message.z};
 }
 
+const char* take_twist(const HeaderMessage& header, const geometry_msgs_msg_dds__Twist_& twist,
+                       WheelSample& sample) noexcept {
+  WheelSample candidate;
+  candidate.vx_m_s = twist.linear.x;
+  candidate.vy_m_s = twist.linear.y;
+  candidate.wz_rad_s = twist.angular.z;
+  return hand_over(header, candidate, sample);
+}
+
 }  // namespace
 
 const char* to_sample(const PressureMessage& message, PressureSample& sample) noexcept {
@@ -54,11 +63,11 @@ const char* to_sample(const ImuMessage& message, ImuSample& sample) noexcept {
 }
 
 const char* to_sample(const OdometryMessage& message, WheelSample& sample) noexcept {
-  WheelSample candidate;
-  candidate.vx_m_s = message.twist.twist.linear.x;
-  candidate.vy_m_s = message.twist.twist.linear.y;
-  candidate.wz_rad_s = message.twist.twist.angular.z;
-  return hand_over(message.header, candidate, sample);
+  return take_twist(message.header, message.twist.twist, sample);
+}
+
+const char* to_sample(const TwistMessage& message, WheelSample& sample) noexcept {
+  return take_twist(message.header, message.twist.twist, sample);
 }
 
 void fill_pressure(const PressureSample& sample, const std::string& frame,

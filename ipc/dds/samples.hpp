@@ -23,6 +23,9 @@ namespace isobar::dds {
 /// Twist of an Odometry message; its pose is ignored.
 [[nodiscard]] const char* to_sample(const OdometryMessage& message, WheelSample& sample) noexcept;
 
+/// Twist of base_link in base_link.
+[[nodiscard]] const char* to_sample(const TwistMessage& message, WheelSample& sample) noexcept;
+
 /// Temperature of a base station's barometer.
 struct TemperatureSample {
   std::int64_t stamp_ns = 0;  ///< sender's clock

@@ -14,6 +14,7 @@ namespace isobar::dds {
 // Short names for the generated C types of the ROS 2 messages.
 using OdometryMessage = nav_msgs_msg_dds__Odometry_;
 using PoseMessage = geometry_msgs_msg_dds__PoseWithCovarianceStamped_;
+using TwistMessage = geometry_msgs_msg_dds__TwistWithCovarianceStamped_;
 using TfMessage = tf2_msgs_msg_dds__TFMessage_;
 using AltitudeMessage = isobar_msgs_msg_dds__Altitude_;
 using CloudMessage = sensor_msgs_msg_dds__PointCloud2_;
@@ -47,8 +48,11 @@ inline const DdsTopic<DiagnosticsMessage> kDiagnostics{"diagnostics", &diagnosti
 // Topics of a base station, with its name as namespace, such as "base".
 inline const DdsTopic<PressureMessage> kBasePressure{"fluid_pressure", &sensor_msgs_msg_dds__FluidPressure__desc, Delivery::kBestEffort, 5, false};
 inline const DdsTopic<TemperatureMessage> kBaseTemperature{"temperature", &sensor_msgs_msg_dds__Temperature__desc, Delivery::kBestEffort, 5, false};
+inline const DdsTopic<CloudMessage> kPoints{"points", &sensor_msgs_msg_dds__PointCloud2__desc, Delivery::kBestEffort, 5, false};
+inline const DdsTopic<PressureMessage> kPressure{"fluid_pressure", &sensor_msgs_msg_dds__FluidPressure__desc, Delivery::kBestEffort, 5, false};
 inline const DdsTopic<ImuMessage> kImu{"imu/data", &sensor_msgs_msg_dds__Imu__desc, Delivery::kBestEffort, 5, false};
 inline const DdsTopic<OdometryMessage> kWheel{"wheel/odom", &nav_msgs_msg_dds__Odometry__desc, Delivery::kBestEffort, 5, false};
+inline const DdsTopic<TwistMessage> kWheelTwist{"wheel/twist", &geometry_msgs_msg_dds__TwistWithCovarianceStamped__desc, Delivery::kBestEffort, 5, false};
 // clang-format on
 
 }  // namespace topics

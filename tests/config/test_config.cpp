@@ -212,7 +212,7 @@ TEST_CASE("Impossible rates of a barometer are refused if that barometer is in u
   fails("[barometer]\nsource = \"setra278\"\n[barometer.setra278]\nlow_v = 3.0\n",
         "barometer.setra278: high_v must be above low_v");
   fails("[barometer]\nsource = \"bmp280\"\n",
-        "must be one of datagram, none, dps310, bmp581, bmp390, icp20100, ms5611, setra278, iio");
+        "must be one of datagram, dds, none, dps310, bmp581, bmp390, icp20100, ms5611, setra278, iio");
 }
 
 TEST_CASE("An IMU on a serial line needs a line that carries its rate, and its barometer needs the IMU") {
@@ -279,7 +279,7 @@ TEST_CASE("Basic settings are shown first, and with --basic alone") {
     CHECK(all.find("\n" + setting.key + " = ") != std::string::npos);
     basic_settings += is_basic ? 1 : 0;
   }
-  CHECK(basic_settings == 19);
+  CHECK(basic_settings == 20);
   CHECK_NOTHROW(parse_config(basic, "c.toml"));
 }
 

@@ -110,7 +110,7 @@ struct Rig {
   ImuThread imu;
   ipc::Subscriber<ImuSample> reader{ipc::topics::kImu};
   ipc::Subscriber<PressureSample> barometer{ipc::topics::kBarometer};
-  ipc::Waiter waiter{{&reader.raw()}};
+  ipc::Waiter waiter = ipc::Waiter({&reader.raw()});
   HealthMonitor monitor;
   ImuSample last;
   int pressures = 0;
