@@ -38,6 +38,7 @@ enum class WheelSource : std::uint8_t {
   kDatagram,  ///< sample datagrams by UDP
   kDds,       ///< ROS 2 topic, received by isobar-dds
   kNone,      ///< the robot has none, or they are not to be used
+  kEncoder,   ///< quadrature encoders on GPIO lines of this machine
 };
 
 inline constexpr NameTable<ImuSource, 6> kImuSourceNames{{{
@@ -62,10 +63,11 @@ inline constexpr NameTable<BarometerSource, 10> kBarometerSourceNames{{{
     {BarometerSource::kImu, "imu"},
 }}};
 
-inline constexpr NameTable<WheelSource, 3> kWheelSourceNames{{{
+inline constexpr NameTable<WheelSource, 4> kWheelSourceNames{{{
     {WheelSource::kDatagram, "datagram"},
     {WheelSource::kDds, "dds"},
     {WheelSource::kNone, "none"},
+    {WheelSource::kEncoder, "encoder"},
 }}};
 
 }  // namespace isobar
