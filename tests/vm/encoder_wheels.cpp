@@ -40,7 +40,7 @@ class Lines {
   }
   [[nodiscard]] bool set(const encoder::Edge& edge) const {
     const std::string word = edge.rising ? "pull-up" : "pull-down";
-    const int file = files_[2U * edge.encoder + static_cast<std::size_t>(edge.line)];
+    const int file = files_[std::size_t{2} * edge.encoder + static_cast<std::size_t>(edge.line)];
     return pwrite(file, word.data(), word.size(), 0) == static_cast<ssize_t>(word.size());
   }
 
