@@ -66,8 +66,17 @@ void check_imu(const Config& config, const Requirements& rules) {
                 "must not be \"imu\" without imu.source \"vn100\" or \"xsens\", on a robot");
 }
 
+/// Lines of the encoders, where these are the wheels' source.
+void check_wheels(const Config& config, const Requirements& rules) {
+  if (config.wheel.source != WheelSource::kEncoder) return;
+  const encoder::BrokenRule broken = encoder::broken_rule(config.wheel.encoder);
+  rules.require(broken.rule == nullptr, std::string("wheel.encoder.") + broken.name,
+                broken.rule == nullptr ? "" : broken.rule);
+}
+
 void check_sensors(const Config& config, const Requirements& rules) {
   check_imu(config, rules);
+  check_wheels(config, rules);
   rules.require(config.lidar.min_range_m < config.lidar.max_range_m, "lidar.min_range_m",
                 "must be below lidar.max_range_m");
   rules.require(config.lidar.port != config.input.port || config.role == Role::kBaseStation, "input.port",

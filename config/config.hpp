@@ -17,6 +17,7 @@
 #include "drivers/bmp390/settings.hpp"
 #include "drivers/bmp581/settings.hpp"
 #include "drivers/dps310/settings.hpp"
+#include "drivers/encoder/settings.hpp"
 #include "drivers/icp20100/settings.hpp"
 #include "drivers/iio/settings.hpp"
 #include "drivers/ms5611/settings.hpp"
@@ -86,6 +87,7 @@ struct BarometerSettings {
 /// [wheel]
 struct WheelSettings {
   WheelSource source = WheelSource::kDatagram;
+  encoder::Settings encoder;
   [[nodiscard]] bool present() const { return source != WheelSource::kNone; }
 };
 

@@ -45,6 +45,8 @@ constexpr auto kDocs = std::to_array<Doc>({
      "u = (p - pressure_centre_pa) / pressure_scale_pa, v = (t - temperature_centre_c) / "
      "temperature_scale_c."},
     {"wheel", "The wheels' odometry. A replay takes its samples from the recording."},
+    {"wheel.encoder",
+     "Quadrature encoders of the wheels on GPIO lines of this machine; used if wheel.source is \"encoder\"."},
     {"base_barometer",
      "The base station's barometer, for a base station that does not compensate its samples itself."},
     {"base_barometer.compensation",

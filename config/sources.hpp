@@ -46,6 +46,7 @@ enum class WheelSource : std::uint8_t {
   kDatagram,  ///< sample datagrams by UDP
   kDds,       ///< ROS 2 topic, received by isobar-dds
   kNone,      ///< the robot has none, or they are not to be used
+  kEncoder,   ///< quadrature encoders on GPIO lines of this machine
 };
 
 inline constexpr NameTable<LidarSource, 2> kLidarSourceNames{{{
@@ -77,10 +78,11 @@ inline constexpr NameTable<BarometerSource, 11> kBarometerSourceNames{{{
     {BarometerSource::kImu, "imu"},
 }}};
 
-inline constexpr NameTable<WheelSource, 3> kWheelSourceNames{{{
+inline constexpr NameTable<WheelSource, 4> kWheelSourceNames{{{
     {WheelSource::kDatagram, "datagram"},
     {WheelSource::kDds, "dds"},
     {WheelSource::kNone, "none"},
+    {WheelSource::kEncoder, "encoder"},
 }}};
 
 }  // namespace isobar

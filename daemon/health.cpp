@@ -16,6 +16,7 @@
 #include "daemon/input_health.hpp"
 #include "daemon/run_health.hpp"
 #include "daemon/status_figures.hpp"
+#include "daemon/wheel_source.hpp"
 #include "drivers/lidar_models/lidar_models.hpp"
 
 namespace isobar {
@@ -116,6 +117,9 @@ void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, He
                  now.now_ns, rate_hz);
     } else if (which == datagram::Kind::kImu && now.imu.present) {
       add_device(report, kNames[kind], imu_period_ns(config_.imu), now.imu, last_.imu, now.now_ns, rate_hz);
+    } else if (which == datagram::Kind::kWheel && now.wheels.present) {
+      add_device(report, kNames[kind], wheel_period_ns(config_.wheel), now.wheels, last_.wheels, now.now_ns,
+                 rate_hz, kLostEdges);
     } else if (which == datagram::Kind::kBasePressure) {
       fill_base_stations(now, report);
     } else {
@@ -133,6 +137,7 @@ void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, He
   add_sample_senders(report, now.samples, last_.samples, now.now_ns);
   add_paths(report, "imu", now.prior.imu_path, now.now_ns);
   add_paths(report, "wheels", now.prior.wheel_path, now.now_ns);
+  add_slip(report, now.prior.counters, last_.prior.counters);
   add_count(report, "input/dropped", now.prior.dropped_samples, last_.prior.dropped_samples,
             "samples dropped: they arrived faster than they were used");
 }

@@ -28,6 +28,7 @@ struct StatusSnapshot {
   SampleThreadStatus samples;
   DeviceThreadStatus imu;
   DeviceThreadStatus barometer;
+  DeviceThreadStatus wheels;
   PriorStatus prior;
   RegistrationStatus registration;
   MapStatus map;

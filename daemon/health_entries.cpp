@@ -73,7 +73,7 @@ void add_absent(HealthReport& report, const std::string& name, const char* key, 
 
 void add_device(HealthReport& report, const std::string& name, std::int64_t period_ns,
                 const DeviceThreadStatus& now, const DeviceThreadStatus& before, std::int64_t now_ns,
-                double rate_hz) {
+                double rate_hz, const CorruptWords& corrupt) {
   const DeviceStatus& device = now.device;
   const std::string place = now.place.data();
   const std::int64_t age_ns = now_ns - device.last_sample_ns;
@@ -100,10 +100,18 @@ void add_device(HealthReport& report, const std::string& name, std::int64_t peri
         "resets of the sensor: it lost its settings, check its power supply");
   count("/implausible", device.counters.implausible, earlier.implausible,
         "readings outside of the plausible range, refused");
-  count("/corrupt", device.counters.corrupt, earlier.corrupt,
-        "messages with a wrong checksum, refused: line too long, or another baud rate?");
+  count(corrupt.entry, device.counters.corrupt, earlier.corrupt, corrupt.sentence);
   count("/no_memory", now.samples_without_memory, before.samples_without_memory,
         "samples dropped: no free chunk of shared memory");
+}
+
+void add_slip(HealthReport& report, const PriorCounters& now, const PriorCounters& before) {
+  add_count(
+      report, "wheels/turn_slip", now.wheel_turn_slips, before.wheel_turn_slips,
+      "seconds in which the wheels turned otherwise than the gyro: a wheel slips, or the robot is moved");
+  add_count(report, "wheels/speed_slip", now.wheel_speed_slips, before.wheel_speed_slips,
+            "seconds in which the accelerometer contradicted the wheels: they block or stand while the robot "
+            "moves on");
 }
 
 void add_calibration(HealthReport& report, const std::string& sensor, std::uint64_t outside,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "config/config.hpp"
+#include "core/prior/prior_estimator.hpp"
 #include "daemon/deadline.hpp"
 #include "daemon/device_thread.hpp"
 #include "daemon/level_changes.hpp"
@@ -53,12 +54,25 @@ void add_absent(ipc::HealthReport& report, const std::string& name, const char* 
 void add_stream(ipc::HealthReport& report, const std::string& name, std::int64_t last_ns, std::int64_t now_ns,
                 std::int64_t silence_ns, double rate_hz, const std::string& where, bool expected = true);
 
+/// Entry of DeviceCounters::corrupt: end of its name, and its sentence.
+struct CorruptWords {
+  const char* entry;
+  const char* sentence;
+};
+inline constexpr CorruptWords kCorruptMessages{
+    "/corrupt", "messages with a wrong checksum, refused: line too long, or another baud rate?"};
+inline constexpr CorruptWords kLostEdges{
+    "/lost_edges", "edges of encoders lost, at least: is the machine overloaded, does a line bounce?"};
+
 /// Entries of a sensor that this machine reads.
 /// @param name of the main entry, "barometer"
 /// @param period_ns interval of its samples
 void add_device(ipc::HealthReport& report, const std::string& name, std::int64_t period_ns,
                 const DeviceThreadStatus& now, const DeviceThreadStatus& before, std::int64_t now_ns,
-                double rate_hz);
+                double rate_hz, const CorruptWords& corrupt = kCorruptMessages);
+
+/// Counters of the slip of the wheels, see SlipWatch.
+void add_slip(ipc::HealthReport& report, const PriorCounters& now, const PriorCounters& before);
 
 /// Interval of the samples of the barometer that barometer.source names, if this machine reads it [ns].
 [[nodiscard]] std::int64_t barometer_period_ns(const BarometerSettings& barometer);

@@ -41,6 +41,7 @@
 #include "daemon/scheduling.hpp"
 #include "daemon/service_folder.hpp"
 #include "daemon/stage_settings.hpp"
+#include "daemon/wheel_source.hpp"
 #include "drivers/clock/robot_clock.hpp"
 
 namespace isobar {
@@ -66,6 +67,7 @@ class RobotGraph final : public Graph {
         prior_(stages_.prior, scheduling_.prior),
         imu_(make_imu_thread(config, scheduling_.imu)),
         barometer_(make_barometer_thread(config.barometer, scheduling_.barometer)),
+        wheels_(make_wheel_thread(config.wheel, scheduling_.wheels)),
         samples_(config.input.address, config.input.port,
                  {.imu = config.imu.source == ImuSource::kDatagram,
                   .barometer = config.barometer.source == BarometerSource::kDatagram,
@@ -98,12 +100,13 @@ class RobotGraph final : public Graph {
     // them.
     if (imu_) workers_.add(imu_->worker(), Watch::kNo);
     if (barometer_) workers_.add(barometer_->worker(), Watch::kNo);
+    if (wheels_) workers_.add(wheels_->worker(), Watch::kNo);
     if (lidar_) workers_.add(lidar_->worker());
   }
 
   void start() override {
-    // Wheels are heard, not configured.
     const PresentSensors present{.imu = config_.imu.present(),
+                                 .wheels = config_.wheel.present(),
                                  .barometer = config_.barometer.present(),
                                  .base_station = config_.input.expect_base_station};
     for (const std::string& text : missing_sensor_texts(present)) spdlog::info("{}", text);
@@ -122,6 +125,7 @@ class RobotGraph final : public Graph {
             samples_.status(),
             imu_ ? imu_->status() : DeviceThreadStatus{},
             barometer_ ? barometer_->status() : DeviceThreadStatus{},
+            wheels_ ? wheels_->status() : DeviceThreadStatus{},
             prior_.status(),
             registration,
             map_.status(),
@@ -140,12 +144,14 @@ class RobotGraph final : public Graph {
   }
   [[nodiscard]] DeviceStates device_states() const override {
     return {barometer_ ? barometer_->status().device.state : DeviceState{},
-            imu_ ? imu_->status().device.state : DeviceState{}};
+            imu_ ? imu_->status().device.state : DeviceState{},
+            wheels_ ? wheels_->status().device.state : DeviceState{}};
   }
   [[nodiscard]] std::vector<std::string> waiting_for() const override {
     return {lidar_ ? lidar_->waiting_for() : std::string{}, samples_.waiting_for(),
             imu_ ? isobar::waiting_for(imu_->status()) : std::string{},
-            barometer_ ? isobar::waiting_for(barometer_->status()) : std::string{}};
+            barometer_ ? isobar::waiting_for(barometer_->status()) : std::string{},
+            wheels_ ? isobar::waiting_for(wheels_->status()) : std::string{}};
   }
   void fill_health(std::int64_t now_ns, ipc::HealthReport& report) override {
     monitor_.fill(status(now_ns), report);
@@ -208,6 +214,7 @@ class RobotGraph final : public Graph {
   PriorThread prior_;
   std::unique_ptr<ImuThread> imu_;
   std::unique_ptr<BarometerThread> barometer_;
+  std::unique_ptr<WheelThread> wheels_;
   SampleThread samples_;
   std::unique_ptr<LidarThread> lidar_;  ///< null: the scans come from isobar-dds
   CheckThread check_;

@@ -8,8 +8,8 @@
 
 namespace isobar {
 
-/// States of the sensors that this machine reads: barometer, IMU.
-using DeviceStates = std::array<DeviceState, 2>;
+/// States of the sensors that this machine reads: barometer, IMU, wheels.
+using DeviceStates = std::array<DeviceState, 3>;
 
 /// Interval of the health report [ns]; a fault or recovery of such a sensor is reported at once.
 inline constexpr std::int64_t kReportEveryNs = 1'000'000'000;

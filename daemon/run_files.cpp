@@ -31,6 +31,10 @@ std::vector<files::RunCount> counts_of_threads(const StatusSnapshot& last) {
   }
   counts.push_back({"sample datagrams of senders not allowed", last.samples.not_allowed, ""});
   if (last.barometer.present) run_counts::append(counts, counts_of(last.barometer.device.counters));
+  if (last.wheels.present) {
+    counts.push_back({"wheel edges lost", last.wheels.device.counters.corrupt, ""});
+    counts.push_back({"wheel accesses failed", last.wheels.device.counters.io_errors, ""});
+  }
   run_counts::append(counts, counts_of(last.prior.counters));
   counts.push_back({"imu samples of the other path", last.prior.imu_path.refused, ""});
   counts.push_back({"wheel samples of the other path", last.prior.wheel_path.refused, ""});

@@ -10,6 +10,7 @@ RobotScheduling robot_scheduling(const RealtimeSettings& realtime) {
       {"inertial", fifo(realtime.inertial_priority), realtime.estimator_cpus},
       {"imu", fifo(realtime.inertial_priority), realtime.estimator_cpus},
       {"barometer", fifo(realtime.inertial_priority), realtime.estimator_cpus},
+      {"wheels", fifo(realtime.inertial_priority), realtime.estimator_cpus},
       {"prior", fifo(realtime.prior_priority), realtime.estimator_cpus, realtime.prior_deadline_ms},
       {"registration", fifo(realtime.registration_priority), realtime.estimator_cpus,
        realtime.registration_deadline_ms},

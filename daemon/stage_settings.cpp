@@ -65,6 +65,7 @@ Config with_sensors_of(const recording::Manifest& manifest, Config config) {
   } else {
     config.barometer.source = BarometerSource::kNone;
   }
+  if (!manifest.wheel) config.wheel.source = WheelSource::kNone;
   return config;
 }
 

@@ -53,8 +53,10 @@ std::array<std::uint64_t, datagram::kKinds> rejected(const StatusSnapshot& now) 
   const auto& refused = now.samples.refused;
   const std::uint64_t imu_refused =
       used.imu_bad_value + used.imu_bad_time + now.imu.device.counters.implausible;
+  const std::uint64_t wheels_refused =
+      used.wheel_bad_value + used.wheel_bad_time + now.wheels.device.counters.implausible;
   return {imu_refused + refused[0], pressure_refused + refused[1], base_refused + refused[2],
-          used.wheel_bad_value + used.wheel_bad_time + refused[3]};
+          wheels_refused + refused[3]};
 }
 
 void add_samples(const StatusSnapshot& now, const StatusSnapshot& before, double elapsed_s,

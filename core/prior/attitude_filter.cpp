@@ -110,7 +110,7 @@ void AttitudeFilter::bridge(const Eigen::Vector3d& turn_rad, double dt_s, double
   turn_world_with_heading();
 }
 
-void AttitudeFilter::update_wheels(double vx_m_s, double vy_m_s, double dt_s, bool use_vertical) {
+bool AttitudeFilter::update_wheels(double vx_m_s, double vy_m_s, double dt_s, bool use_vertical) {
   const Eigen::Vector3d measured(vx_m_s, vy_m_s, 0.0);
   const double speed = std::hypot(vx_m_s, vy_m_s);
   const double share = squared(config_.wheel_sigma_share * speed);
@@ -136,6 +136,7 @@ void AttitudeFilter::update_wheels(double vx_m_s, double vy_m_s, double dt_s, bo
     P_.diagonal().segment<3>(kVelocity).array() += kUnknownVelocityM2S2;
     gated_s_ = 0.0;
   }
+  return agreed;
 }
 
 void AttitudeFilter::update_bounded_velocity(double dt_s) {

@@ -52,8 +52,9 @@ class AttitudeFilter {
   void bridge(const Eigen::Vector3d& turn_rad, double dt_s, double turn_sigma_rad);
 
   /// Wheel velocity of base_link, mean over the last `dt_s`. `use_vertical`: also the non-holonomic
-  /// constraint vz = 0, which does not hold while the ground moves (elevator).
-  void update_wheels(double vx_m_s, double vy_m_s, double dt_s, bool use_vertical);
+  /// constraint vz = 0, which does not hold while the ground moves (elevator). False when a horizontal speed lay
+  /// outside of the gate, and was not used.
+  bool update_wheels(double vx_m_s, double vy_m_s, double dt_s, bool use_vertical);
 
   /// Without wheels: zero velocity with the variance of a bounded motion, over the last `dt_s`.
   void update_bounded_velocity(double dt_s);

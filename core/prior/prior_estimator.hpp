@@ -46,7 +46,9 @@ struct PriorCounters {
   std::uint64_t wheel_accepted = 0;
   std::uint64_t wheel_bad_value = 0;
   std::uint64_t wheel_bad_time = 0;
-  std::uint64_t moving_ground = 0;  ///< events: start of a moving ground (elevator rides)
+  std::uint64_t wheel_turn_slips = 0;  ///< seconds in which wheels and gyro turned differently, see SlipWatch
+  std::uint64_t wheel_speed_slips = 0;  ///< seconds in which the wheels' speed did not fit the acceleration
+  std::uint64_t moving_ground = 0;      ///< events: start of a moving ground (elevator rides)
 };
 
 /// Health of the barometers.

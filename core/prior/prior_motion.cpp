@@ -192,10 +192,11 @@ void PriorEstimator::State::use_rest(bool on_wheels) {
 
 void PriorEstimator::State::use_wheels(std::int64_t stamp_ns, double dt_s, bool on_wheels) {
   if (on_wheels && new_wheels) {
-    const double wheel_dt_s = std::max(wheels.interval_s(), dt_s);
-    attitude.update_wheels(wheels.last().vx_m_s, wheels.last().vy_m_s,
-                           std::min(wheel_dt_s, config.dead_reckoning.wheel_timeout_s),
-                           !height.ground_moves());
+    const double wheel_dt_s =
+        std::min(std::max(wheels.interval_s(), dt_s), config.dead_reckoning.wheel_timeout_s);
+    const bool used = attitude.update_wheels(wheels.last().vx_m_s, wheels.last().vy_m_s, wheel_dt_s,
+                                             !height.ground_moves());
+    slip.add_speed(used, wheel_dt_s);
     new_wheels = false;
   }
   since_bounded_s = on_wheels ? 0.0 : since_bounded_s + dt_s;
@@ -206,6 +207,17 @@ void PriorEstimator::State::use_wheels(std::int64_t stamp_ns, double dt_s, bool 
   const Eigen::Vector2d rolled_m = wheels.take_displacement(stamp_ns);
   p_odom_base += midpoint_step(attitude.q_world_base(), attitude.rate_rad_s() * (-0.5 * dt_s),
                                {rolled_m.x(), rolled_m.y(), 0.0});
+}
+
+void PriorEstimator::State::watch_slip(double dt_s, bool comparable) {
+  if (!comparable) {
+    slip.restart();
+    return;
+  }
+  slip.add_rates(attitude.rate_rad_s().z(), wheels.last().wz_rad_s, dt_s);
+  const SlipWatch::Slip found = slip.take();
+  counters.wheel_turn_slips += found.turn ? 1 : 0;
+  counters.wheel_speed_slips += found.speed ? 1 : 0;
 }
 
 void PriorEstimator::State::use_climb(double dt_s, bool on_wheels, bool pressure_lost) {
@@ -251,6 +263,7 @@ void PriorEstimator::State::step(const Eigen::Vector3d& gyro, const Eigen::Vecto
   }
   if (height.started()) climbed_m += std::clamp(height.vz_m_s(), -kFastestClimbMS, kFastestClimbMS) * dt_s;
   use_wheels(stamp_ns, dt_s, on_wheels);
+  watch_slip(dt_s, on_wheels && !gap);
   const bool pressure_lost = altimeter.robot_lost(stamp_ns, config.height.barometer_timeout_s);
   if (!gap) use_climb(dt_s, on_wheels, pressure_lost);
 }

@@ -28,6 +28,7 @@
 #include "core/prior/imu_noise.hpp"
 #include "core/prior/prior_estimator.hpp"
 #include "core/prior/rest_gravity.hpp"
+#include "core/prior/slip_watch.hpp"
 #include "core/prior/standstill.hpp"
 #include "core/stamp.hpp"
 
@@ -63,6 +64,7 @@ struct PriorEstimator::State {
   StandstillDetector standstill;
   RestGravity rest_gravity;
   WheelOdometer wheels;
+  SlipWatch slip;
   ClimbMeter climb;
   SensorCompensation compensation;
   SensorCompensation base_compensation;
@@ -107,6 +109,7 @@ struct PriorEstimator::State {
   void use_standstill(const Eigen::Vector3d& gyro, const Eigen::Vector3d& force, double dt_s, bool on_wheels);
   void use_rest(bool on_wheels);
   void use_wheels(std::int64_t stamp_ns, double dt_s, bool on_wheels);
+  void watch_slip(double dt_s, bool comparable);
   void use_climb(double dt_s, bool on_wheels, bool pressure_lost);
 
   // prior_without_imu.cpp

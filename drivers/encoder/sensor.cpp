@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/encoder/sensor.hpp"
 
+#include <algorithm>
 #include <cerrno>
 
 #include "core/plausibility.hpp"
@@ -15,7 +16,7 @@ Sensor::Sensor(const Settings& settings, std::unique_ptr<EdgeSource> source)
       place_("encoders on " + settings.chip),
       faults_(device_silence_ns(settings.rate_hz)) {}
 
-int Sensor::file_descriptor() const noexcept { return open_ ? source_->file_descriptor() : -1; }
+int Sensor::file_descriptor() const noexcept { return open_ && !turns_ ? source_->file_descriptor() : -1; }
 
 Device<WheelSample>::Step Sensor::step(std::int64_t now_ns) noexcept {
   Step step;
@@ -47,6 +48,7 @@ std::int64_t Sensor::begin(std::int64_t now_ns) noexcept {
     return faults_.fail(DeviceState::kNoAnswer, what, now_ns, error);
   }
   open_ = true;
+  turns_ = false;
   sorter_.clear();
   period_end_ns_ = source_->now_ns() + period_ns_;
   faults_.expects_results(now_ns);
@@ -55,6 +57,7 @@ std::int64_t Sensor::begin(std::int64_t now_ns) noexcept {
 
 void Sensor::measure(std::int64_t now_ns, Step& step) noexcept {
   const std::int64_t begun_ns = source_->now_ns();  // edges after this time may come in any order
+  const std::size_t held_back = sorter_.size();
   if (const int error = source_->read(sorter_); error != 0) {
     open_ = false;
     source_->close();
@@ -62,12 +65,15 @@ void Sensor::measure(std::int64_t now_ns, Step& step) noexcept {
     step.next_ns = faults_.fail(DeviceState::kNoAnswer, "the edges cannot be read", now_ns, error);
     return;
   }
+  turns_ = sorter_.size() > held_back;
   const bool ends = begun_ns >= period_end_ns_;
   sorter_.release(ends ? period_end_ns_ : begun_ns, [this](const Edge& edge) {
     if (edge.encoder < kMaxEncoders) decoders_[edge.encoder].add(edge);
   });
   if (ends) take(now_ns - (begun_ns - period_end_ns_), step);
-  step.next_ns = now_ns + period_end_ns_ - begun_ns;  // not ahead after a late call: more periods have ended
+  // Not ahead after a late call: more periods have ended.
+  const std::int64_t to_end_ns = period_end_ns_ - begun_ns;
+  step.next_ns = now_ns + (turns_ ? std::min(to_end_ns, kReadEveryNs) : to_end_ns);
 }
 
 /// @param end_ns of the period, robot clock

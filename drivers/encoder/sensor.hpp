@@ -16,10 +16,15 @@ namespace isobar::encoder {
 /// kernel's stamps of the edges; its stamp is the middle of that period. Standing wheels give zeros at the
 /// same rate.
 ///
-/// Edges are read at every step: the kernel holds 16 a line, so that step() must follow file_descriptor().
+/// Edges are read at every step: the kernel holds 16 a line, so that step() must follow file_descriptor(). While
+/// edges come they are read every kReadEveryNs instead, since a thread that each edge wakes would fill a core; the
+/// descriptor is then -1.
 /// Lost edges that are noticed, and full queues, count as `corrupt`.
 class Sensor final : public Device<WheelSample> {
  public:
+  /// A line of 32 kHz fills its queue in this time.
+  static constexpr std::int64_t kReadEveryNs = 500'000;
+
   Sensor(const Settings& settings, std::unique_ptr<EdgeSource> source);
 
   Step step(std::int64_t now_ns) noexcept override;
@@ -49,6 +54,7 @@ class Sensor final : public Device<WheelSample> {
   std::array<std::int64_t, kMaxEncoders> last_counts_{};  ///< at the end of the last period
   std::int64_t period_end_ns_ = 0;                        ///< of the period in progress, clock of the edges
   bool open_ = false;
+  bool turns_ = false;  ///< the last step has read edges
 };
 
 }  // namespace isobar::encoder

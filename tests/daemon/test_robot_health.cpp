@@ -104,6 +104,35 @@ TEST_CASE("wheels that were never heard are none, unless they are expected; once
   CHECK(entry(report_of(monitor, heard), "wheels").level == HealthLevel::kError);
 }
 
+TEST_CASE(
+    "encoders of this machine are the wheels' entry; slip and lost edges are warnings while they grow") {
+  Config config;
+  config.wheel.source = WheelSource::kEncoder;
+  HealthMonitor monitor{config};
+  StatusSnapshot status = working(kStart, true);
+  status.wheels.present = true;
+  std::string("encoders on /dev/gpiochip0").copy(status.wheels.place.data(), 79);
+  status.wheels.device.state = DeviceState::kMeasuring;
+  status.wheels.device.last_sample_ns = kStart;
+  CHECK(entry(report_of(monitor, status), "wheels").level == HealthLevel::kOk);
+  status.wheels.device.counters.corrupt = 3;
+  status.prior.counters.wheel_turn_slips = 2;
+  HealthReport report = report_of(monitor, status);
+  CHECK(std::string(entry(report, "wheels").message).ends_with("from encoders on /dev/gpiochip0"));
+  CHECK(entry(report, "wheels/lost_edges").level == HealthLevel::kWarning);
+  CHECK(entry(report, "wheels/turn_slip").level == HealthLevel::kWarning);
+  CHECK(entry(report, "wheels/turn_slip").value == 2.0);
+  report = report_of(monitor, status);
+  CHECK(entry(report, "wheels/lost_edges").level == HealthLevel::kOk);
+  CHECK(entry(report, "wheels/turn_slip").level == HealthLevel::kOk);
+  status.wheels.device.state = DeviceState::kNoAnswer;
+  std::string("another program holds a line").copy(status.wheels.device.fault.data(), 95);
+  report = report_of(monitor, status);
+  CHECK(entry(report, "wheels").level == HealthLevel::kError);
+  CHECK(std::string(entry(report, "wheels").message) ==
+        "encoders on /dev/gpiochip0: another program holds a line");
+}
+
 TEST_CASE("a robot that is lost is an error of the registration, with the reason and since when") {
   HealthMonitor monitor{Config{}};
   StatusSnapshot status = working(kStart, true);

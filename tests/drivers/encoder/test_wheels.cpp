@@ -141,7 +141,6 @@ TEST_CASE("turning wheels give the twist at the rate, stamped with the middle of
   const std::int64_t age_ns = bench.lines->time_ns + kClocksApartNs - sample.stamp_ns;
   CHECK(age_ns >= 10 * kMs);
   CHECK(age_ns <= 32 * kMs);
-  CHECK(bench.sensor->file_descriptor() == 42);
   CHECK(bench.sensor->place() == "encoders on /dev/gpiochip0");
 }
 
@@ -178,6 +177,18 @@ TEST_CASE("standing wheels are zeros at the rate, not silence") {
   CHECK(bench.samples.size() > 240);
   CHECK(bench.samples.back().vx_m_s == 0.0);
   CHECK(bench.sensor->status().state == DeviceState::kMeasuring);
+}
+
+TEST_CASE(
+    "while edges come they are read every half millisecond; wheels that stand wake only at a period's end") {
+  WheelBench bench;
+  bench.run(0.1, 5'000.0, 5'000.0);
+  CHECK(bench.sensor->file_descriptor() == -1);
+  CHECK(bench.next_ns - (bench.lines->time_ns + kClocksApartNs) <= Sensor::kReadEveryNs);
+  bench.run(0.1, 0.0, 0.0);
+  CHECK(bench.sensor->file_descriptor() == 42);
+  bench.run(0.005, 0.0, 0.0);
+  CHECK(bench.next_ns - (bench.lines->time_ns + kClocksApartNs) > 5 * kMs);
 }
 
 TEST_CASE("a late call gives the samples of all periods that have ended, with the edges in their periods") {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "daemon/missing_sensors.hpp"
+#include "daemon/stage_settings.hpp"
 #include "tests/integration/replay/recordings.hpp"
 
 namespace isobar::test::test_missing_sensors {
@@ -89,6 +90,17 @@ TEST_CASE("a configuration without an IMU leaves that of a recording unused") {
   run(copy_with(short_drive(), "no-imu", [](auto& manifest) { manifest.imu.reset(); }, {}), without,
       Method::kAdaptive);
   CHECK(bytes_of(out / "trajectory.tum") == bytes_of(without / "trajectory.tum"));
+}
+
+TEST_CASE("the sensors of a recording are those of its manifest, wheels included") {
+  recording::Manifest manifest = recording::Manifest::with_all_sensors();
+  Config config;
+  config.wheel.source = WheelSource::kEncoder;
+  CHECK(with_sensors_of(manifest, config).wheel.source == WheelSource::kEncoder);
+  CHECK(stage_settings(with_sensors_of(manifest, config)).uses_wheels);
+  manifest.wheel.reset();
+  CHECK(with_sensors_of(manifest, config).wheel.source == WheelSource::kNone);
+  CHECK_FALSE(stage_settings(with_sensors_of(manifest, config)).uses_wheels);
 }
 
 }  // namespace isobar::test::test_missing_sensors
