@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "daemon/silent_lidar.hpp"
 #include "simulation/simulate.hpp"
 #include "tests/run/recording/scratch.hpp"
 #include "tests/support/exit_code.hpp"
@@ -45,6 +46,28 @@ TEST_CASE(
              "xyz_m   = [0, 0, 0.2]\nrpy_deg = [180, 0, 0]");
   CHECK(check_command(recording) == 1);
   CHECK(check_command(scratch.path() / "none") == 65);
+}
+
+TEST_CASE("a recording whose lidar sent nothing to its port is an error of check, with what was found") {
+  const Scratch scratch;
+  const std::filesystem::path recording = scratch.path() / "drive";
+  simulation::simulate({.name = "stairs-demo", .seed = 3, .stop_after_s = 1.0}, recording,
+                       [](double /*fraction*/) {});
+  replace_in(recording / "recording.toml", "port    = 2368", "port    = 2370");
+  CHECK(check_command(recording) == 65);
+}
+
+TEST_CASE("packets of a lidar without data packets ask for its laser, unless another port is as busy") {
+  const LidarModel& model = *find_lidar_model("VLP-16");
+  recording::PortsSeen ports;
+  CHECK(only_information_text(model, 8308, ports, 0).empty());
+  for (int i = 0; i < 100; ++i) ports.add(8308);
+  ports.add(5353);
+  CHECK(only_information_text(model, 8308, ports, 0) ==
+        "position packets only (100), no data packet: is the laser off?");
+  for (int i = 0; i < 100; ++i) ports.add(2370);
+  CHECK(only_information_text(model, 8308, ports, 0).empty());
+  CHECK_FALSE(only_information_text(*find_lidar_model("XT16"), 0, recording::PortsSeen{}, 3).empty());
 }
 
 }  // namespace isobar::test::test_check_command
