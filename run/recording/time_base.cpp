@@ -8,12 +8,11 @@
 namespace isobar::recording {
 namespace {
 
-// Within a turn of any lidar all streams have come to a jump, but for those slower than it.
+// Within a turn of any lidar all streams have come to a jump, but for those slower than it. So far apart may be the time of
+// a packet and its stamp, too, where the sensor sees a part of the turn only and a packet begins before the rest.
 constexpr std::int64_t kOneTurnNs = 250'000'000;
 // Streams with longer intervals are not waited for.
 constexpr std::int64_t kSlowIntervalNs = 2'000'000'000;
-// Two clocks that agree on an interval do it within this.
-constexpr std::int64_t kAgreementNs = 50'000'000;
 // A jump forward is longer than so many intervals.
 constexpr std::int64_t kGapIntervals = 4;
 // After a step of the clock alone a sensor's own clock has gone on by less.
@@ -107,27 +106,29 @@ std::optional<std::int64_t> TimeBase::shift_by_own_clock_ns(const State& state) 
   if (!state.elapsed_ns) return std::nullopt;
   const std::int64_t elapsed_ns = *state.elapsed_ns;
   std::int64_t difference_ns = state.jump_ns() - elapsed_ns;
-  if (std::abs(difference_ns) <= kAgreementNs) return state.shift_ns;
+  const bool forward = state.jump_ns() > 0;
+  if (forward && std::abs(difference_ns) <= kOneTurnNs) return state.shift_ns;
   const std::int64_t period_ns = state.stream.period_ns;
   // A pause of more than a period looks like a shorter one, a step by whole periods like none.
-  if (period_ns > 0 && elapsed_ns > kNoPauseNs && difference_ns > 0) {
+  if (forward && period_ns > 0 && elapsed_ns > kNoPauseNs) {
     difference_ns %= period_ns;
-    if (difference_ns <= kAgreementNs || period_ns - difference_ns <= kAgreementNs) return state.shift_ns;
+    if (difference_ns <= kOneTurnNs || period_ns - difference_ns <= kOneTurnNs) return state.shift_ns;
   }
   return state.last_ns + elapsed_ns - state.raw_ns;
 }
 
 std::optional<std::int64_t> TimeBase::common_shift_ns() const {
-  std::optional<std::int64_t> shift_ns;
+  std::optional<std::int64_t> own_ns;
+  for (const State& state : streams_) {
+    if (state.waiting && !own_ns) own_ns = shift_by_own_clock_ns(state);
+  }
+  std::optional<std::int64_t> shift_ns = own_ns;
   for (const State& state : streams_) {
     if (!state.waiting) continue;
-    if (const auto own_ns = shift_by_own_clock_ns(state)) return own_ns;
-  }
-  for (const State& state : streams_) {
-    if (!state.waiting || state.jump_ns() > 0) continue;
     // Each stream's first sample comes one interval after its last, or later where samples were lost.
     const std::int64_t least_ns = state.last_ns + state.interval_ns() - state.raw_ns;
-    shift_ns = std::max(shift_ns.value_or(least_ns), least_ns);
+    const bool believed = own_ns ? std::abs(least_ns - *own_ns) <= kOneTurnNs : state.jump_ns() < 0;
+    if (believed) shift_ns = std::max(shift_ns.value_or(least_ns), least_ns);
   }
   return shift_ns;
 }
