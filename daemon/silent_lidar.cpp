@@ -20,6 +20,10 @@ std::string refusals(const std::vector<recording::Count>& counts) {
 
 }  // namespace
 
+bool has_data_packets(const LidarCounters& lidar) {
+  return lidar.packets + lidar.wrong_model + lidar.garbage + lidar.truncated + lidar.oversized > 0;
+}
+
 std::string only_information_text(const LidarModel& model, std::uint16_t info_port,
                                   const recording::PortsSeen& ports, std::uint64_t without_points) {
   const std::uint64_t unwanted = info_port == 0 ? 0 : ports.count(info_port);
@@ -34,7 +38,7 @@ std::string silent_lidar_text(const recording::RecordingReader& reader, const Sc
   std::string text;
   if (lidar.wrong_model > 0) text += assembler.decoder().mismatch() + "; ";
   const LidarModel* model = find_lidar_model(assembler.decoder().model());
-  if (model != nullptr && lidar.packets == 0 && lidar.wrong_model == 0) {
+  if (model != nullptr && !has_data_packets(lidar)) {
     const auto& named = reader.manifest().lidar;
     const std::uint16_t info_port = named && named->info_port != 0 ? named->info_port : model->info_port;
     const std::string only = only_information_text(*model, info_port, reader.other_ports(), lidar.no_points);

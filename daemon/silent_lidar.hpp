@@ -11,6 +11,9 @@
 
 namespace isobar {
 
+/// Whether packets came that were or should have been data.
+[[nodiscard]] bool has_data_packets(const LidarCounters& lidar);
+
 /// "position packets only (100), no data packet: is the laser off?" for a lidar that sends its other packets; empty where
 /// nothing tells that: none came, or another port is as busy, which may be its data.
 /// @param info_port of its other packets

@@ -102,6 +102,8 @@ void print(const ScanAssembler& assembler, const recording::PcapPackets::Tallies
 /// What the capture holds instead of data packets, and why it ends early.
 std::string found_text(const recording::PcapPackets& packets, const LidarModel& model,
                        const ScanAssembler& assembler, std::uint16_t info_port) {
+  if (assembler.counters().wrong_model > 0) return assembler.decoder().mismatch();
+  if (has_data_packets(assembler.counters())) return {};
   // The information packets were counted by read_information().
   std::string only = only_information_text(model, info_port, packets.extractor().other_ports(),
                                            assembler.counters().no_points);
