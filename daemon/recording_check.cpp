@@ -8,7 +8,9 @@
 #include "core/contradictions/finding_text.hpp"
 #include "core/contradictions/input_check.hpp"
 #include "core/errors.hpp"
+#include "daemon/lidar_clock.hpp"
 #include "daemon/lidar_sender.hpp"
+#include "daemon/silent_lidar.hpp"
 #include "daemon/stage_settings.hpp"
 #include "drivers/lidar/scan_assembler.hpp"
 #include "drivers/lidar_models/lidar_models.hpp"
@@ -59,6 +61,7 @@ class CheckedInputs {
     if (assembler_.flush(*scan_)) check_.add_scan(*scan_);
   }
   [[nodiscard]] const InputCheck& check() const { return check_; }
+  [[nodiscard]] const ScanAssembler& assembler() const { return assembler_; }
 
  private:
   void take_imu_of_lidar() {
@@ -113,6 +116,19 @@ void add_shifted_files(const RecordingCheck& check, std::vector<std::string>& no
   }
 }
 
+/// What a capture without a scan holds instead, and why a file ends early.
+void add_what_was_found(const recording::RecordingReader& reader, const ScanAssembler& assembler,
+                        RecordingCheck& out) {
+  if (reader.manifest().lidar && assembler.counters().scans == 0) {
+    out.silent_lidar = "no lidar scan could be decoded: " + silent_lidar_text(reader, assembler);
+    return;
+  }
+  for (const recording::Count& count : out.counts) {
+    const bool note = count.name == "lidar: file truncated" || count.name == "clock of the recording set";
+    if (note) out.notes.push_back(count.first_message);
+  }
+}
+
 /// The finding that leaves no pose with gravity: wheels or a barometer without a common time are left out.
 const Finding* missing_overlap(const Findings& findings) {
   for (const Finding& finding : findings.all()) {
@@ -127,6 +143,7 @@ const Finding* missing_overlap(const Findings& findings) {
 RecordingCheck check_recording(const std::filesystem::path& recording, const Config& used,
                                const std::function<void(double)>& progress) {
   recording::RecordingReader reader(recording);
+  reader.use_lidar_clock(lidar_clock(stage_settings(used).lidar));
   CheckedInputs inputs(used);
   recording::Event event;
   for (std::uint64_t events = 0; reader.next(event); ++events) {
@@ -150,6 +167,7 @@ RecordingCheck check_recording(const std::filesystem::path& recording, const Con
     out.times[i] = inputs.check().times(static_cast<CheckedSensor>(i));
   }
   if (out.findings.empty()) add_shifted_files(out, out.notes);
+  add_what_was_found(reader, inputs.assembler(), out);
   out.warnings = reader.warnings();
   if (reader.manifest().base_barometer) out.base_clock = reader.base_clock().reason;
   return out;

@@ -24,6 +24,7 @@ struct RecordingCheck {
   std::string base_clock;
   std::vector<std::string> warnings;     ///< of the manifest
   std::vector<std::string> notes;        ///< what is no evidence, but worth a look
+  std::string silent_lidar;              ///< why no scan was decoded; empty: one was, or there is no lidar
   std::vector<recording::Count> counts;  ///< of the reader
 };
 

@@ -12,9 +12,11 @@
 #include "core/names.hpp"
 #include "core/stamp.hpp"
 #include "daemon/counts.hpp"
+#include "daemon/lidar_clock.hpp"
 #include "daemon/lock_step.hpp"
 #include "daemon/missing_sensors.hpp"
 #include "daemon/recording_check.hpp"
+#include "daemon/silent_lidar.hpp"
 #include "daemon/stage_settings.hpp"
 #include "run/recording/recording_reader.hpp"
 
@@ -153,32 +155,17 @@ void warn_of_two_lidars(const LockStep& pipeline, std::uint16_t port, ReplaySumm
   }
 }
 
-/// Counters of the lidar packets, in one line.
-std::string refusals(const std::vector<files::RunCount>& counts) {
-  std::string text;
-  for (const files::RunCount& count : counts) {
-    const bool is_lidar = count.name.rfind("lidar", 0) == 0;
-    if (is_lidar && count.count > 0) {
-      text += (text.empty() ? "" : ", ") + count.name + ": " + std::to_string(count.count);
-    }
-  }
-  return text.empty() ? "the file contains no packets" : text;
-}
-
 /// The contradictions in the status of the run.
 void add_contradictions(const std::vector<std::string>& texts, std::vector<files::RunCount>& counts) {
   for (const std::string& text : texts) counts.push_back({"contradiction", 1, text});
 }
 
 /// A recording without a decodable scan is an error, not an empty trajectory.
-void refuse_empty_run(const ReplaySummary& summary, const LockStep& pipeline,
-                      const std::filesystem::path& recording) {
+void refuse_empty_run(const ReplaySummary& summary, const recording::RecordingReader& reader,
+                      const LockStep& pipeline, const std::filesystem::path& recording) {
   if (summary.scans > 0) return;
-  const auto& lidar = pipeline.assembler().counters();
-  std::string why = "no lidar scan could be decoded: ";
-  if (lidar.wrong_model > 0) why += pipeline.assembler().decoder().mismatch() + "; ";
-  why += refusals(summary.counts);
-  throw DataError(recording.string() + ": " + why);
+  throw DataError(recording.string() +
+                  ": no lidar scan could be decoded: " + silent_lidar_text(reader, pipeline.assembler()));
 }
 
 }  // namespace
@@ -193,6 +180,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   refuse_clocks_apart(check, recording);
   const recording::Manifest manifest = without_unusable(reader.manifest(), check.usable);
   const Config used = with_sensors_of(manifest, config);
+  reader.use_lidar_clock(lidar_clock(stage_settings(used).lidar));
   ReplaySummary summary;
   summary.warnings = reader.warnings();
   const std::vector<std::string> contradictions = contradiction_texts(check);
@@ -235,7 +223,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   if (used.method == Method::kAdaptive) {
     output.write_mounts(mounts_file_text(sink.last().mount, used.lidar.mount.rpy_deg));
   }
-  refuse_empty_run(summary, pipeline, recording);
+  refuse_empty_run(summary, reader, pipeline, recording);
   summary.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   return summary;
 }

@@ -108,7 +108,7 @@ HeightSeries heights(const AltitudeArguments& arguments) {
   } else {
     base = read_base(arguments, moved, rows);
   }
-  const double air_c = arguments.air_c.value_or(coldest_c({&moved.samples, &rows}).value_or(kDefaultAirC));
+  const double air_c = air_c_of(arguments.air_c, {&moved.samples, &rows});
   HeightSeries series = height_difference(filtered, base, air_c + kZeroCelsiusK);
   if (arguments.imu.empty()) {
     std::printf(

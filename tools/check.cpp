@@ -86,6 +86,10 @@ void run_check(const CheckOptions& options) {
   for (const Finding& finding : check.findings.all()) {
     std::printf("contradiction: %s\n", finding_text(finding).c_str());
   }
+  if (!check.silent_lidar.empty()) {
+    std::fflush(stdout);
+    throw DataError(options.recording.string() + ": " + check.silent_lidar);
+  }
   if (check.findings.empty()) {
     std::printf("no contradictions\n");
     return;

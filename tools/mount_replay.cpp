@@ -6,6 +6,7 @@
 #include "core/errors.hpp"
 #include "core/mounts/corrected_mount.hpp"
 #include "core/stamp.hpp"
+#include "daemon/lidar_clock.hpp"
 #include "daemon/lock_step.hpp"
 #include "daemon/stage_settings.hpp"
 #include "run/recording/recording_reader.hpp"
@@ -107,6 +108,7 @@ MountReplay replay_for_mount(const std::filesystem::path& recording, const Confi
   }
   const Config used = with_sensors_of(reader.manifest(), config);
   StageSettings settings = stage_settings(used);
+  reader.use_lidar_clock(lidar_clock(settings.lidar));
   const Eigen::Vector3d configured_rpy_deg = used.lidar.mount.rpy_deg;
   settings.method = Method::k6Dof;
   settings.registration.step_rotation_floor_deg = kFreeStepDeg;

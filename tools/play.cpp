@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "core/errors.hpp"
+#include "daemon/lidar_clock.hpp"
 #include "daemon/lidar_sender.hpp"
 #include "drivers/datagram/datagram.hpp"
 #include "drivers/lidar_models/lidar_models.hpp"
@@ -55,14 +56,16 @@ void play(const PlayOptions& options) {
   Player player(options.address, options.lidar_port != 0 ? options.lidar_port : reader.manifest().lidar->port,
                 options.input_port);
 
+  LidarConfig lidar;
+  lidar.model = reader.manifest().lidar->model;
+  lidar.calibration_file = reader.manifest().lidar->calibration_file;
+  reader.use_lidar_clock(lidar_clock(lidar));
   recording::Event event;
   if (!reader.next(event)) throw DataError(options.recording.string() + ": holds no samples");
   const std::int64_t shift_ns = player.start(event.stamp_ns);
   if (!options.reference_out.empty()) write_shifted_reference(options, reader.manifest(), shift_ns);
 
   // Played packets all come from this program: a second lidar in the recording could not be told apart.
-  LidarConfig lidar;
-  lidar.model = reader.manifest().lidar->model;
   const auto decoder = make_lidar_decoder(lidar);
   LidarSender sender(reader.manifest().lidar->sender);
   Progress progress("playing");

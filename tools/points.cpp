@@ -2,6 +2,7 @@
 // `isobar points`: the points of a lidar's packets in a capture, without a recording, for looking at a sensor and
 // for comparing decoders.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -11,6 +12,7 @@
 
 #include "core/errors.hpp"
 #include "core/printable_text.hpp"
+#include "daemon/silent_lidar.hpp"
 #include "drivers/lidar/scan_assembler.hpp"
 #include "drivers/lidar_models/lidar_models.hpp"
 #include "run/files/ply_writer.hpp"
@@ -95,9 +97,23 @@ void print(const ScanAssembler& assembler, const recording::PcapPackets::Tallies
   print_count("cut by the capture", tallies.cut.count);
   std::printf("  clock: %s\n", kLidarSyncTexts.name(assembler.decoder().sync()).data());
   if (counters.wrong_model > 0) std::printf("  %s\n", assembler.decoder().mismatch().c_str());
-  if (counters.packets == 0 && tallies.other_port.count > 0) {
-    std::printf("  %s\n", tallies.other_port.first_message.c_str());
+}
+
+/// What the capture holds instead of data packets, and why it ends early.
+std::string found_text(const recording::PcapPackets& packets, const LidarModel& model,
+                       const ScanAssembler& assembler, std::uint16_t info_port) {
+  if (assembler.counters().wrong_model > 0) return assembler.decoder().mismatch();
+  if (has_data_packets(assembler.counters())) return {};
+  // The information packets were counted by read_information().
+  std::string only = only_information_text(model, info_port, packets.extractor().other_ports(),
+                                           assembler.counters().no_points);
+  if (!only.empty()) return only;
+  const recording::PcapPackets::Tallies& tallies = packets.tallies();
+  for (const recording::Tally* tally :
+       {&tallies.file_truncated, &tallies.other_link, &tallies.malformed, &tallies.other_protocol}) {
+    if (tally->count > 0 && tallies.other_port.count == 0) return tally->first_message;
   }
+  return packets.ports_text("the model's port or --port");
 }
 
 /// The packets of device information come first: the angles in them are the sensor's for as long as it lives.
@@ -139,9 +155,13 @@ void points(const PointsOptions& options) {
   if (assembler.flush(*scan)) file.add(*scan);
   file.close();
   print(assembler, packets.tallies());
+  if (packets.tallies().file_truncated.count > 0) {
+    std::printf("  %s\n", packets.tallies().file_truncated.first_message.c_str());
+  }
   if (assembler.counters().packets == 0) {
+    const std::string found = found_text(packets, *model, assembler, info_port);
     throw DataError(printable(options.capture.string()) + ": holds no data packet of a " + options.model +
-                    " for UDP port " + std::to_string(port));
+                    " for UDP port " + std::to_string(port) + (found.empty() ? "" : ": " + found));
   }
 }
 
@@ -150,7 +170,8 @@ void points(const PointsOptions& options) {
 void add_points_command(CLI::App& app) {
   const auto [command, options] = add_subcommand<PointsOptions>(
       app, "points", "Decode the lidar packets of a capture: counts, and points as CSV or PLY", points);
-  command.add_option("CAPTURE", options.capture, "pcap or pcapng file")->required();
+  command.add_option("CAPTURE", options.capture, "pcap or pcapng file, compressed with gzip or not")
+      ->required();
   command.add_option("--model", options.model, "model of the lidar: " + lidar_model_list())
       ->capture_default_str();
   command.add_option("--port", options.port, "UDP port of the data packets (default: the model's)")

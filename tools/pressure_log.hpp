@@ -18,25 +18,29 @@ class App;
 
 namespace isobar::tools {
 
-/// Parses "TIME[:UNIT],PRESSURE[:UNIT][,TEMPERATURE]". An empty text leaves columns and units to the file's
+/// Parses "TIME[:UNIT],PRESSURE[:UNIT][,TEMPERATURE[:UNIT]]". An empty text leaves columns and units to the file's
 /// header and values.
 /// @throws UsageError when the text has another form
 recording::PressureColumns parse_columns(const std::string& text);
 
 /// Help text of --columns.
 inline constexpr const char* kColumnsHelp =
-    "TIME[:ns|us|ms|s],PRESSURE[:Pa|hPa|kPa][,TEMPERATURE]: columns and units, if the header does not name "
-    "them";
+    "TIME[:ns|us|ms|s],PRESSURE[:Pa|hPa|kPa|bar|mmHg|torr|inHg|psi|atm][,TEMPERATURE[:C|K|F]]: columns and "
+    "units, if the "
+    "header does not name them";
 
 /// Air temperature without --air and without a thermometer.
 inline constexpr double kDefaultAirC = 20.0;
 
+/// The hottest air that is believed without --air: deserts reach more only in records, a sensor in the sun every summer.
+inline constexpr double kHottestAirC = 45.0;
+
 /// Adds --air, the air temperature [degC].
 void add_air_option(CLI::App& command, std::optional<double>& air_c);
 
-/// The samples of a log without repeated values.
+/// The measurements of a log.
 struct PressureLog {
-  std::vector<PressureSample> samples;  ///< stamps ascend, no value twice in a row
+  std::vector<PressureSample> samples;  ///< stamps ascend
   std::uint64_t repeats =
       0;  ///< rows left out because they repeat a value: the chip was polled faster than it converts
   std::vector<std::string> notes;  ///< columns and units as detected, rows left out and why
@@ -45,7 +49,8 @@ struct PressureLog {
   [[nodiscard]] std::vector<double> pressures_pa() const;
 };
 
-/// recording::read_pressure_log() without repeated values.
+/// recording::read_pressure_log() without the values that a chip repeats when it is polled faster than it converts.
+/// Equal values of a coarse sensor, or of one that is read every some seconds, are measurements and stay.
 /// @throws DataError as read_pressure_log()
 PressureLog read_new_values(const std::filesystem::path& file,
                             const recording::PressureColumns& columns = {});
@@ -57,5 +62,10 @@ std::string tie_clocks(const PressureLog& moved, PressureLog& standing);
 /// Mean temperature of the coldest sensor [degC]: chips warm themselves, so the coldest is nearest to the
 /// air's. Nothing without a thermometer.
 std::optional<double> coldest_c(std::initializer_list<const std::vector<PressureSample>*> logs);
+
+/// Temperature of the air [degC]: the chosen one, else coldest_c(), else kDefaultAirC.
+/// @throws DataError when the coldest thermometer is hotter than any air
+double air_c_of(const std::optional<double>& chosen_c,
+                std::initializer_list<const std::vector<PressureSample>*> logs);
 
 }  // namespace isobar::tools

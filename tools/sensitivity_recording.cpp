@@ -128,9 +128,7 @@ RecordedRig read_recorded_rig(const RecordedRigRequest& request) {
   options.step_m = request.step_m.value_or(options.step_m);
   options.lag_s = request.lag_s;
   options.settle_s = request.settle_s.value_or(0.0);
-  options.air_temperature_k =
-      request.air_c.value_or(coldest_c({&rig.pair.moved, &rig.pair.standing}).value_or(kDefaultAirC)) +
-      kZeroCelsiusK;
+  options.air_temperature_k = air_c_of(request.air_c, {&rig.pair.moved, &rig.pair.standing}) + kZeroCelsiusK;
   rig.plateaus = files.segments.empty() ? found_plateaus(request, rig.pair, options, rig.notes)
                                         : shortened(named_plateaus(files.segments, rig.pair, options),
                                                     options.settle_s, options.settle_s);

@@ -74,7 +74,8 @@ std::optional<StampSpan> imu_span(const std::filesystem::path& file) {
   return span_of<ImuSample>(open_imu_csv(file));
 }
 
-BaseClock tie_base_clock(const std::optional<StampSpan>& robot, const std::optional<StampSpan>& base) {
+BaseClock tie_base_clock(const std::optional<StampSpan>& robot, const std::optional<StampSpan>& base,
+                         Recorders recorders) {
   if (!robot || !base) {
     return {0, "base-station clock trusted: nothing to compare it with"};
   }
@@ -82,23 +83,22 @@ BaseClock tie_base_clock(const std::optional<StampSpan>& robot, const std::optio
   const std::int64_t end_ns = robot->last_ns - base->last_ns;
   const std::int64_t middle_ns = start_ns + (end_ns - start_ns) / 2;
   const std::int64_t disagreement_ns = std::abs(start_ns - end_ns);
-  const bool same_tightly = disagreement_ns <= kTogetherNs && std::abs(middle_ns) > kTogetherNs;
-  const bool same_loosely = disagreement_ns <= kToleranceNs && std::abs(middle_ns) > kToleranceNs;
-  if (same_tightly || same_loosely) {
+  const bool overlaps = base->first_ns <= robot->last_ns && base->last_ns >= robot->first_ns;
+  const bool together =
+      recorders == Recorders::kOne && disagreement_ns <= kTogetherNs && std::abs(middle_ns) > kTogetherNs;
+  if (together || (!overlaps && disagreement_ns <= kToleranceNs)) {
     return {middle_ns, "base-station clock is off by " + seconds(-middle_ns) +
                            ": its file starts and ends that much away from the robot's"};
   }
   if (start_ns >= -kToleranceNs && end_ns <= kToleranceNs) {
     return {0, "base-station clock trusted: its file covers the robot's"};
   }
-  const bool longer = base->length_ns() + kToleranceNs >= robot->length_ns();
-  if (longer) {
-    return {middle_ns,
-            "base-station clock is off by about " + seconds(-middle_ns) +
-                ": its file is longer than the robot's but does not cover it, so both are centred"};
-  }
-  if (base->first_ns <= robot->last_ns && base->last_ns >= robot->first_ns) {
+  if (overlaps) {
     return {0, "base-station clock trusted: its file overlaps the robot's, but does not cover it"};
+  }
+  if (base->length_ns() + kToleranceNs >= robot->length_ns()) {
+    return {middle_ns, "base-station clock is off by about " + seconds(-middle_ns) +
+                           ": its file does not overlap the robot's and is longer, so both are centred"};
   }
   return {start_ns, "base-station clock is off by about " + seconds(-start_ns) +
                         ": its file does not overlap the robot's, so the starts are put together"};

@@ -22,13 +22,19 @@ struct StampSpan {
 std::optional<StampSpan> pressure_span(const std::filesystem::path& file);
 std::optional<StampSpan> imu_span(const std::filesystem::path& file);
 
-/// Offset of the base station's clock, from the spans of the two files of one run:
-/// - starts and ends differ by the same amount: that amount. "Same" is within 0.3 s for an offset of at least
-///   0.3 s, within 5 s for one of at least 5 s;
-/// - the base station's span covers or overlaps the robot's: 0, the clock is trusted;
-/// - it is longer and does not cover it: the spans are centred on each other;
-/// - it is shorter and does not overlap it: the starts are aligned.
+/// What is known of the two files.
+enum class Recorders : std::uint8_t {
+  kOne,    ///< one recorder opened and closed both
+  kApart,  ///< each has its own
+};
+
+/// Offset of the base station's clock, from the spans of the two files of one run. A clock is corrected only with evidence:
+/// - one recorder, and starts and ends differ by the same amount within 0.3 s: that amount;
+/// - the spans share no time, so that both clocks cannot be right: starts and ends differ by the same amount within 5 s:
+///   that amount; the base station's is longer: the spans are centred on each other; else the starts are aligned;
+/// - otherwise 0, the clock is trusted: what the files' lengths say is no evidence.
 /// Errors of a few seconds cost little: weather changes the pressure by about 0.01 Pa/s at most.
-BaseClock tie_base_clock(const std::optional<StampSpan>& robot, const std::optional<StampSpan>& base);
+BaseClock tie_base_clock(const std::optional<StampSpan>& robot, const std::optional<StampSpan>& base,
+                         Recorders recorders = Recorders::kOne);
 
 }  // namespace isobar::recording

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/recording/date_text.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <string>
 
 #include "run/text/number_text.hpp"
 
 namespace isobar::recording {
 namespace {
+
+constexpr std::int64_t kDayNs = 86'400'000'000'000;
 
 /// Removes exactly `digits` digits from the front.
 bool take_digits(std::string_view& text, std::size_t digits, int& value) {
@@ -36,10 +40,14 @@ bool take_day(std::string_view& text, std::int64_t& days) {
   int year = 0;
   int month = 0;
   int day = 0;
-  if (!take_digits(text, 4, year) || !take(text, '-') || !take_digits(text, 2, month) || !take(text, '-') ||
-      !take_digits(text, 2, day)) {
-    return false;
-  }
+  const char separator = text.size() > 4 ? text[4] : '-';
+  const bool year_first = separator == '-' || separator == '/';
+  const bool parsed =
+      year_first ? take_digits(text, 4, year) && take(text, separator) && take_digits(text, 2, month) &&
+                       take(text, separator) && take_digits(text, 2, day)
+                 : take_digits(text, 2, day) && take(text, '.') && take_digits(text, 2, month) &&
+                       take(text, '.') && take_digits(text, 4, year);
+  if (!parsed) return false;
   const std::chrono::year_month_day date{std::chrono::year(year),
                                          std::chrono::month(static_cast<unsigned>(month)),
                                          std::chrono::day(static_cast<unsigned>(day))};
@@ -54,12 +62,28 @@ bool take_seconds(std::string_view& text, std::int64_t& ns) {
   if (!take(text, ':')) {
     return true;
   }
-  std::size_t length = text.find_first_not_of("0123456789.");
+  std::size_t length = text.find_first_not_of("0123456789.,");
   length = length == std::string_view::npos ? text.size() : length;
+  std::string digits(text.substr(0, length));
+  std::replace(digits.begin(), digits.end(), ',', '.');
   constexpr std::int64_t kNsPerMinute = 60'000'000'000;
-  const bool fits = length >= 2 && text::parse_seconds(text.substr(0, length), ns) && ns < kNsPerMinute;
+  const bool fits = length >= 2 && text::parse_seconds(digits, ns) && ns < kNsPerMinute;
   text.remove_prefix(length);
   return fits;
+}
+
+/// "h:mm" or "hh:mm", seconds optional; 24:00 is the end of a day, and nothing follows it (ISO 8601).
+bool take_time(std::string_view& text, std::int64_t& of_day_ns) {
+  int hour = 0;
+  int minute = 0;
+  std::int64_t seconds_ns = 0;
+  const std::size_t digits = text.size() > 1 && text[1] == ':' ? 1 : 2;
+  if (!take_digits(text, digits, hour) || !take(text, ':') || !take_digits(text, 2, minute) ||
+      !take_seconds(text, seconds_ns)) {
+    return false;
+  }
+  of_day_ns = (std::int64_t{hour} * 60 + minute) * 60 * 1'000'000'000 + seconds_ns;
+  return hour <= 24 && minute <= 59 && of_day_ns <= kDayNs;
 }
 
 bool take_zone(std::string_view& text, std::int64_t& minutes) {
@@ -91,21 +115,19 @@ bool take_zone(std::string_view& text, std::int64_t& minutes) {
 bool parse_date(std::string_view text, std::int64_t& stamp_ns) {
   text = text::trimmed(text);
   std::int64_t days = 0;
-  std::int64_t seconds_ns = 0;
+  std::int64_t of_day_ns = 0;
   std::int64_t zone_minutes = 0;
-  int hour = 0;
-  int minute = 0;
-  if (!take_day(text, days) || (!take(text, ' ') && !take(text, 'T')) || !take_digits(text, 2, hour) ||
-      !take(text, ':') || !take_digits(text, 2, minute) || !take_seconds(text, seconds_ns) ||
-      !take_zone(text, zone_minutes) || !text.empty() || hour > 24 || minute > 59) {
+  if (!take_day(text, days) || (!take(text, ' ') && !take(text, 'T')) || !take_time(text, of_day_ns) ||
+      !take_zone(text, zone_minutes) || !text.empty()) {
     return false;
   }
-  if (hour == 24 && (minute > 0 || seconds_ns > 0)) {
-    return false;  // ISO 8601: 24:00 is the end of a day, and nothing follows it
-  }
-  const std::int64_t minutes = (days * 24 + hour) * 60 + minute - zone_minutes;
-  stamp_ns = minutes * 60 * 1'000'000'000 + seconds_ns;
+  stamp_ns = (days * 24 * 60 - zone_minutes) * 60 * 1'000'000'000 + of_day_ns;
   return true;
+}
+
+bool parse_time_of_day(std::string_view text, std::int64_t& of_day_ns) {
+  text = text::trimmed(text);
+  return take_time(text, of_day_ns) && text.empty();
 }
 
 }  // namespace isobar::recording

@@ -1,108 +1,89 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/recording/pcap_packets.hpp"
 
-#include <pcap/pcap.h>
-
-#include <array>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <utility>
 
 #include "core/errors.hpp"
 #include "core/plausibility.hpp"
 
 namespace isobar::recording {
-namespace {
-
-// Size of the file buffer: 200 packets per read() instead of three.
-constexpr std::size_t kBufferBytes = std::size_t{256} * 1024;
-
-}  // namespace
 
 PcapPackets::PcapPackets(const std::filesystem::path& file, const LidarPorts& ports,
                          const StampGuardConfig& guard)
-    : name_(file.string()), buffer_(kBufferBytes), extractor_(ports), guard_(guard) {
-  if (!std::filesystem::exists(file)) {
-    throw DataError(name_ + ": no such file");
-  }
-  if (std::filesystem::is_directory(file)) {
-    throw DataError(name_ + ": is a folder, must be a file");
-  }
-  std::FILE* stream = std::fopen(name_.c_str(), "rb");
-  if (stream == nullptr) {
-    throw DataError(name_ + ": cannot be read: " + std::strerror(errno));
-  }
-  std::setvbuf(stream, buffer_.data(), _IOFBF, buffer_.size());
-  std::array<char, PCAP_ERRBUF_SIZE> error{};
-  handle_ = pcap_fopen_offline_with_tstamp_precision(stream, PCAP_TSTAMP_PRECISION_NANO, error.data());
-  if (handle_ == nullptr) {
-    std::fclose(stream);
-    throw DataError(name_ + ": is no pcap file: " + error.data());
-  }
-  const auto link = link_type_of(pcap_datalink(handle_));
-  if (!link) {
-    const char* link_name = pcap_datalink_val_to_name(pcap_datalink(handle_));
-    const std::string text = link_name == nullptr ? "unknown" : link_name;
-    pcap_close(handle_);
-    throw DataError(name_ + ": holds frames of link type " + text +
-                    "; known are Ethernet, Linux cooked, raw IP and loopback");
-  }
-  link_ = *link;
+    : name_(file.string()), file_(open_capture(file)), extractor_(ports), guard_(guard) {
+  if (file_->data_link() >= 0) refuse_link();
 }
 
-PcapPackets::~PcapPackets() { pcap_close(handle_); }
+void PcapPackets::refuse_link() const {
+  const auto link = link_type_of(file_->data_link());
+  if (!link) {
+    throw DataError(name_ + ": holds frames of link type " + data_link_name(file_->data_link()) +
+                    "; known are " + kLinkTypesText);
+  }
+  if (*link == LinkType::kIpv6) {
+    throw DataError(name_ + ": holds frames of link type IPV6 only; a lidar's packets are IPv4");
+  }
+}
 
 std::string PcapPackets::place() const { return name_ + ": frame " + std::to_string(frames_) + ": "; }
 
-std::uint64_t PcapPackets::bytes_read() const {
-  const long position = std::ftell(pcap_file(handle_));
-  return position < 0 ? 0 : static_cast<std::uint64_t>(position);
+std::string PcapPackets::ports_text(const std::string& who) const {
+  const PortsSeen& seen = extractor_.other_ports();
+  if (seen.empty()) return {};
+  const LidarPorts& ports = extractor_.ports();
+  return name_ + ": " + seen.text() + ", " + who + " says " + std::to_string(ports.data) +
+         (ports.info == 0 ? "" : " and " + std::to_string(ports.info));
 }
 
 bool PcapPackets::read(StampedPacket& packet) {
+  CaptureFrame frame;
   while (!ended_) {
-    pcap_pkthdr* header = nullptr;
-    const u_char* data = nullptr;
-    const int status = pcap_next_ex(handle_, &header, &data);
-    if (status != 1) {
+    if (!file_->next(frame)) {
       ended_ = true;
-      if (status == PCAP_ERROR) {
+      if (!file_->damage().empty()) {
         tallies_.file_truncated.add(
-            [this] { return place() + "the file ends early or is broken: " + pcap_geterr(handle_); });
+            [this] { return place() + "the file ends early or is broken: " + file_->damage(); });
       }
       break;
     }
     ++frames_;
-    std::span<const std::uint8_t> payload;
-    const std::int64_t stamp_ns =
-        static_cast<std::int64_t>(header->ts.tv_sec) * 1'000'000'000 + header->ts.tv_usec;
-    const FrameKind kind = extractor_.extract(link_, {data, header->caplen}, stamp_ns, payload);
-    switch (kind) {
-      case FrameKind::kOtherPort:
-        tallies_.other_port.add([this] { return place() + "is for another UDP port"; });
-        continue;
-      case FrameKind::kOtherProtocol:
-        tallies_.other_protocol.add([this] { return place() + "is no UDP over IPv4"; });
-        continue;
-      case FrameKind::kMalformed:
-        tallies_.malformed.add(
-            [this] { return place() + "the lengths in its headers contradict each other"; });
-        continue;
-      case FrameKind::kFragment:
-        continue;
-      case FrameKind::kCutPayload:
-        tallies_.cut.add([this] { return place() + "the capture holds only its beginning"; });
-        break;
-      case FrameKind::kPayload:
-        break;
-    }
-    packet.stamp_ns = stamp_ns;
-    packet.sender_ipv4 = extractor_.sender_ipv4();
-    packet.payload.assign(payload.begin(), payload.end());
-    return true;
+    if (take(frame, packet)) return true;
   }
   return false;
+}
+
+/// False for a frame without a wanted payload.
+bool PcapPackets::take(const CaptureFrame& frame, StampedPacket& packet) {
+  const auto link = link_type_of(frame.data_link);
+  if (!link) {
+    tallies_.other_link.add([&] {
+      return place() + "is of link type " + data_link_name(frame.data_link) + "; known are " + kLinkTypesText;
+    });
+    return false;
+  }
+  std::span<const std::uint8_t> payload;
+  switch (extractor_.extract(*link, frame.bytes, frame.stamp_ns, payload)) {
+    case FrameKind::kOtherPort:
+      tallies_.other_port.add([this] { return place() + "is for another UDP port"; });
+      return false;
+    case FrameKind::kOtherProtocol:
+      tallies_.other_protocol.add([this] { return place() + "is no UDP over IPv4"; });
+      return false;
+    case FrameKind::kMalformed:
+      tallies_.malformed.add([this] { return place() + "the lengths in its headers contradict each other"; });
+      return false;
+    case FrameKind::kFragment:
+      return false;
+    case FrameKind::kCutPayload:
+      tallies_.cut.add([this] { return place() + "the capture holds only its beginning"; });
+      break;
+    case FrameKind::kPayload:
+      break;
+  }
+  packet.stamp_ns = frame.stamp_ns;
+  packet.sender_ipv4 = extractor_.sender_ipv4();
+  packet.payload.assign(payload.begin(), payload.end());
+  return true;
 }
 
 bool PcapPackets::next(StampedPacket& packet) {

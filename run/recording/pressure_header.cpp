@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <initializer_list>
 #include <iterator>
 
 #include "core/errors.hpp"
+#include "run/recording/pressure_unit.hpp"
+#include "run/recording/unit_words.hpp"
 #include "run/text/number_text.hpp"
 
 namespace isobar::recording {
@@ -17,27 +20,27 @@ constexpr std::array kSeparators = {',', ';', '\t'};
 
 using Fields = std::vector<std::string_view>;
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
-
 bool is_time(std::string_view name) {
-  const std::string text = lower(name);
+  const std::string text = lower_case(name);
   return text.starts_with("time") || text.starts_with("date") || text.starts_with("stamp") || text == "t" ||
          text == "t_ns" || text == "t_us" || text == "t_ms" || text == "t_s";
 }
 
+/// For headers in which no column begins like a time.
+bool may_be_time(std::string_view name) {
+  constexpr std::array kWords = {"time", "timestamp", "stamp",   "datetime",
+                                 "date", "zeit",      "uhrzeit", "datum"};
+  return std::any_of(kWords.begin(), kWords.end(), [&](const char* word) { return has_word(name, word); });
+}
+
 bool is_pressure(std::string_view name) {
-  const std::string text = lower(name);
-  return text.find("press") != std::string::npos || text.starts_with("baro") || has_word(text, "p") ||
-         has_word(text, "pa") || has_word(text, "hpa") || has_word(text, "mbar") || has_word(text, "kpa");
+  const std::string text = lower_case(name);
+  return text.find("press") != std::string::npos || text.find("druck") != std::string::npos ||
+         text.starts_with("baro") || has_word(text, "p") || !units_in(name, &unit_of_word).empty();
 }
 
 bool is_temperature(std::string_view name) {
-  const std::string text = lower(name);
+  const std::string text = lower_case(name);
   return text.find("temp") != std::string::npos || has_word(text, "ta") || has_word(text, "degc");
 }
 
@@ -75,6 +78,94 @@ struct Search {
   }
 };
 
+/// The column of whole seconds and the one of the rest below a second, as ROS 2 writes them: header.stamp.sec.
+struct TimePair {
+  std::string_view first;
+  std::string_view second;
+  TimeLayout layout = TimeLayout::kOneColumn;
+};
+
+/// Last word of a name; `rest` is what stands before it.
+std::string last_word(std::string_view name, std::string& rest) {
+  std::size_t begin = name.size();
+  while (begin > 0 && std::isalnum(static_cast<unsigned char>(name[begin - 1])) != 0) --begin;
+  rest = lower_case(name.substr(0, begin));
+  return lower_case(name.substr(begin));
+}
+
+bool is_one_of(const std::string& word, std::initializer_list<const char*> words) {
+  return std::any_of(words.begin(), words.end(), [&](const char* other) { return word == other; });
+}
+
+std::vector<TimePair> second_pairs(const Fields& fields) {
+  std::vector<TimePair> pairs;
+  std::string rest;
+  std::string other_rest;
+  for (const std::string_view seconds : fields) {
+    if (!is_one_of(last_word(seconds, rest), {"sec", "secs", "second", "seconds"})) continue;
+    for (const std::string_view below : fields) {
+      const std::string word = last_word(below, other_rest);
+      if (rest != other_rest) continue;
+      if (is_one_of(word, {"nsec", "nsecs", "nanosec", "nanosecs", "nanoseconds"})) {
+        pairs.push_back({seconds, below, TimeLayout::kSecondsAndNanoseconds});
+      } else if (is_one_of(word, {"usec", "usecs", "microsec", "microseconds"})) {
+        pairs.push_back({seconds, below, TimeLayout::kSecondsAndMicroseconds});
+      }
+    }
+  }
+  return pairs;
+}
+
+/// True when a name has one of `wanted` as a word and else only zones.
+bool is_only(std::string_view name, std::initializer_list<const char*> wanted) {
+  bool found = false;
+  for (const std::string& word : unit_words(name)) {
+    if (is_one_of(word, wanted)) {
+      found = true;
+    } else if (!is_one_of(word, {"utc", "gmt", "local", "lt"})) {
+      return false;
+    }
+  }
+  return found;
+}
+
+std::vector<TimePair> date_pairs(const Fields& fields) {
+  std::vector<TimePair> pairs;
+  for (const std::string_view date : fields) {
+    if (!is_only(date, {"date", "datum", "day"})) continue;
+    for (const std::string_view time : fields) {
+      if (is_only(time, {"time", "zeit", "uhrzeit", "heure"})) {
+        pairs.push_back({date, time, TimeLayout::kDateAndTime});
+      }
+    }
+  }
+  return pairs;
+}
+
+/// The columns of the time: a pair, the one named by the user with its other half, or the only candidate.
+void find_time(Search& search, const PressureColumns& wanted, PressureHeader& header) {
+  std::vector<TimePair> pairs = second_pairs(search.fields);
+  // A unit on the command line says that the column is a number and no time of day.
+  if (wanted.time_unit.empty() || wanted.time.empty()) {
+    const std::vector<TimePair> dates = date_pairs(search.fields);
+    pairs.insert(pairs.end(), dates.begin(), dates.end());
+  }
+  std::erase_if(pairs, [&](const TimePair& pair) {
+    const auto in_pair = [&](std::string_view name) { return name == pair.first || name == pair.second; };
+    const bool other_candidate = std::any_of(search.fields.begin(), search.fields.end(),
+                                             [&](auto name) { return is_time(name) && !in_pair(name); });
+    return wanted.time.empty() ? other_candidate : !in_pair(wanted.time);
+  });
+  if (pairs.size() == 1) {
+    header.time = pairs.front().first;
+    header.time_rest = pairs.front().second;
+    header.time_layout = pairs.front().layout;
+    return;
+  }
+  const bool begins_like_one = std::any_of(search.fields.begin(), search.fields.end(), is_time);
+  header.time = search.find(wanted.time, begins_like_one ? is_time : may_be_time, "time");
+}
+
 /// A line interpreted as the header.
 struct Attempt {
   PressureHeader header;
@@ -85,7 +176,7 @@ struct Attempt {
 Attempt try_header(const Fields& fields, const PressureColumns& wanted) {
   Attempt attempt;
   Search search{fields};
-  attempt.header.time = search.find(wanted.time, is_time, "time");
+  find_time(search, wanted, attempt.header);
   attempt.header.pressure = search.find(wanted.pressure, is_pressure, "pressure");
   attempt.found = (attempt.header.time.empty() ? 0U : 1U) + (attempt.header.pressure.empty() ? 0U : 1U);
   if (wanted.needs_temperature) {
@@ -107,7 +198,7 @@ Attempt try_header(const Fields& fields, const PressureColumns& wanted) {
 }  // namespace
 
 bool has_word(std::string_view name, std::string_view word) {
-  const std::string text = lower(name);
+  const std::string text = lower_case(name);
   const auto is_part = [&text](std::size_t k) {
     return k < text.size() && std::isalnum(static_cast<unsigned char>(text[k])) != 0;
   };

@@ -15,8 +15,9 @@ struct PressureColumns {
   std::string time;
   std::string pressure;
   std::string temperature;
-  std::string pressure_unit;  ///< Pa, hPa, mbar or kPa
-  std::string time_unit;      ///< ns, us, ms, s
+  std::string pressure_unit;     ///< see unit_of_word()
+  std::string temperature_unit;  ///< C, K, F
+  std::string time_unit;         ///< ns, us, ms, s
   bool needs_temperature = true;
 };
 
@@ -27,9 +28,10 @@ struct PressureLog {
   std::vector<std::string> notes;       ///< detected columns and units; refused rows, counted
 };
 
-/// Reads one file. Separators: comma, semicolon or tab. Other lines may precede the header, and lines of
-/// units follow it. Rows that are broken, not numbers, implausible or not newer than the row before are
-/// skipped and counted in the notes.
+/// Reads one file. Separators: comma, semicolon or tab; with the latter two, decimals may have a comma. Other lines may
+/// precede the header, and lines of units follow it. Time is one column, a date and a time, or seconds and nanoseconds;
+/// see row_times.hpp for whole seconds and for a clock that is set back. Rows that are broken, not numbers,
+/// implausible or late are skipped and counted in the notes.
 /// @throws DataError "file:line: rule" when the file or a column is missing, columns or units are ambiguous,
 ///           or no row is usable
 /// @throws UsageError when a unit in `columns` is unknown

@@ -3,146 +3,37 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdio>
 #include <optional>
 #include <system_error>
+#include <utility>
 
-#include "core/plausibility.hpp"
 #include "run/recording/base_clock.hpp"
-#include "run/recording/pcap_packets.hpp"
+#include "run/recording/recording_streams.hpp"
 #include "run/recording/sample_csv.hpp"
-#include "run/recording/stamp_order.hpp"
+#include "run/recording/time_base.hpp"
 
 namespace isobar::recording {
 namespace {
-
-void store(const ImuSample& sample, Event& event) { event.imu = sample; }
-void store(const PressureSample& sample, Event& event) { event.pressure = sample; }
-void store(const WheelSample& sample, Event& event) { event.wheel = sample; }
-
-void add_count(std::vector<Count>& counts, const std::string& name, std::uint64_t count,
-               const std::string& first_message = {}) {
-  if (count > 0) {
-    counts.push_back({name, count, first_message});
-  }
-}
-
-/// One file of the recording, with its next event.
-class Stream {
- public:
-  Stream() = default;
-  virtual ~Stream() = default;
-  Stream(const Stream&) = delete;
-  Stream& operator=(const Stream&) = delete;
-
-  virtual bool advance() = 0;  ///< false at the end
-  [[nodiscard]] virtual std::int64_t stamp_ns() const = 0;
-  virtual void give(Event& event) = 0;  ///< the current event
-  virtual void count(std::vector<Count>& counts) const = 0;
-  [[nodiscard]] virtual std::uint64_t bytes_read() const = 0;
-};
-
-template <typename Sample>
-class SampleStream : public Stream {
- public:
-  SampleStream(std::string name, EventKind kind, text::CsvReader&& csv, std::int64_t offset_ns,
-               const StampGuardConfig& guard)
-      : name_(std::move(name)), kind_(kind), csv_(std::move(csv)), offset_ns_(offset_ns), order_(guard) {}
-
-  bool advance() override {
-    return order_.next(current_, [this](Sample& sample) {
-      while (next_sample(csv_, sample, malformed_, implausible_)) {
-        sample.stamp_ns += offset_ns_;
-        if (const char* rule = implausible_stamp(sample.stamp_ns); rule != nullptr) {
-          implausible_.add([&] { return csv_.lines().place() + rule + ", on the robot's clock"; });
-          continue;
-        }
-        ++rows_;
-        return true;
-      }
-      return false;
-    });
-  }
-  [[nodiscard]] std::int64_t stamp_ns() const override { return current_.stamp_ns; }
-  void give(Event& event) override {
-    event.kind = kind_;
-    event.stamp_ns = current_.stamp_ns;
-    event.packet = {};
-    store(current_, event);
-  }
-  void count(std::vector<Count>& counts) const override {
-    const StampGuard& guard = order_.guard();
-    add_count(counts, name_ + ": good rows", rows_);
-    add_count(counts, name_ + ": malformed rows", malformed_.count, malformed_.first_message);
-    add_count(counts, name_ + ": implausible rows", implausible_.count, implausible_.first_message);
-    add_count(counts, name_ + ": repeated stamps", order_.counts().duplicates);
-    add_count(counts, name_ + ": reordered rows", guard.reordered());
-    add_count(counts, name_ + ": rows too late to be sorted in", order_.counts().too_late);
-    add_count(counts, name_ + ": absurd stamps", order_.counts().absurd);
-    add_count(counts, name_ + ": gaps", guard.gaps());
-    add_count(counts, name_ + ": clock set back", guard.steps_back());
-  }
-  [[nodiscard]] std::uint64_t bytes_read() const override { return csv_.lines().bytes_read(); }
-
- private:
-  std::string name_;
-  EventKind kind_;
-  text::CsvReader csv_;
-  std::int64_t offset_ns_;
-  StampOrder<Sample> order_;
-  Sample current_;
-  std::uint64_t rows_ = 0;
-  Tally malformed_;
-  Tally implausible_;
-};
-
-class LidarStream : public Stream {
- public:
-  LidarStream(const std::filesystem::path& file, const LidarPorts& ports, const StampGuardConfig& guard)
-      : packets_(file, ports, guard) {}
-
-  bool advance() override {
-    const bool more = packets_.next(next_);
-    count_ += more ? 1 : 0;
-    return more;
-  }
-  [[nodiscard]] std::int64_t stamp_ns() const override { return next_.stamp_ns; }
-  void give(Event& event) override {
-    std::swap(given_, next_);  // the event's bytes stay valid during the advance() that follows
-    event.kind = EventKind::kLidarPacket;
-    event.stamp_ns = given_.stamp_ns;
-    event.packet = given_.payload;
-    event.sender_ipv4 = given_.sender_ipv4;
-  }
-  void count(std::vector<Count>& counts) const override {
-    const PcapPackets::Tallies& tallies = packets_.tallies();
-    const auto add = [&counts](const char* what, const Tally& tally) {
-      add_count(counts, std::string("lidar: ") + what, tally.count, tally.first_message);
-    };
-    add_count(counts, "lidar: packets", count_);
-    add("frames for another port", tallies.other_port);
-    add("frames of another protocol", tallies.other_protocol);
-    add("malformed frames", tallies.malformed);
-    add("packets cut by the capture", tallies.cut);
-    add("absurd stamps", tallies.absurd_stamp);
-    add("file truncated", tallies.file_truncated);
-    add_count(counts, "lidar: packets put together from IP fragments", packets_.extractor().reassembled());
-    add_count(counts, "lidar: packets with IP fragments missing", packets_.extractor().incomplete());
-    add_count(counts, "lidar: gaps", packets_.guard().gaps());
-    add_count(counts, "lidar: clock set back", packets_.guard().steps_back());
-  }
-  [[nodiscard]] std::uint64_t bytes_read() const override { return packets_.bytes_read(); }
-
- private:
-  PcapPackets packets_;
-  StampedPacket next_;
-  StampedPacket given_;
-  std::uint64_t count_ = 0;
-};
 
 std::uint64_t size_of(const std::filesystem::path& file) {
   std::error_code error;
   const auto size = std::filesystem::file_size(file, error);
   return error ? 0 : size;
+}
+
+/// Steps of the clock that were taken out.
+void add_steps(const TimeBase& time_base, std::vector<Count>& counts) {
+  if (time_base.steps() == 0) return;
+  const std::int64_t step_ns = time_base.first_step_ns();
+  const double step_s = 1e-9 * static_cast<double>(step_ns);
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(),
+                "the clock was set %s by %.3f s at %.3f s since 1970: time goes on without that step",
+                step_ns < 0 ? "back" : "forward", std::abs(step_s),
+                1e-9 * static_cast<double>(time_base.first_step_at_ns()));
+  counts.push_back({"clock of the recording set", time_base.steps(), text.data()});
 }
 
 }  // namespace
@@ -153,19 +44,22 @@ struct RecordingReader::Impl {
   std::vector<std::string> warnings;
   BaseClock base_clock;
   std::vector<std::unique_ptr<Stream>> streams;
-  std::vector<bool> alive;
-  std::size_t given = 0;  // stream of the last event
-  bool started = false;
+  std::vector<TimeBase::Stream> clocks;  // of the streams
+  LidarClock lidar_clock;
+  std::optional<TimeBase> time_base;  // from the first event on
+  std::size_t given = 0;              // stream of the last event
   std::uint64_t bytes_total = 0;
 
   template <typename Made, typename... Arguments>
-  void open(const std::string& file, Arguments&&... arguments) {
+  void open(const std::string& file, bool robot_clock, Arguments&&... arguments) {
+    clocks.push_back({robot_clock, 0});
     bytes_total += size_of(folder / file);
     streams.push_back(std::make_unique<Made>(std::forward<Arguments>(arguments)...));
   }
 
   void open_all(const ReaderOptions& options);
   void tie_base();
+  void advance(std::size_t stream);
   bool next(Event& event);
 };
 
@@ -191,50 +85,54 @@ void RecordingReader::Impl::tie_base() {
 void RecordingReader::Impl::open_all(const ReaderOptions& options) {
   StampGuardConfig guard;
   guard.max_forward_ns = options.max_gap_ns;
+  guard.max_reorder_ns = options.max_reorder_ns;
   tie_base();
   // Order of events with equal stamps: inputs of the prior before the lidar packets registered with it.
   if (manifest.imu) {
-    open<SampleStream<ImuSample>>(manifest.imu->file, "imu", EventKind::kImu,
+    open<SampleStream<ImuSample>>(manifest.imu->file, true, "imu", EventKind::kImu,
                                   open_imu_csv(folder / manifest.imu->file), 0, guard);
   }
   if (manifest.barometer) {
-    open<SampleStream<PressureSample>>(manifest.barometer->file, "barometer", EventKind::kPressure,
+    open<SampleStream<PressureSample>>(manifest.barometer->file, true, "barometer", EventKind::kPressure,
                                        open_pressure_csv(folder / manifest.barometer->file), 0, guard);
   }
   if (manifest.base_barometer) {
-    open<SampleStream<PressureSample>>(
-        manifest.base_barometer->file, "base_barometer", EventKind::kBasePressure,
-        open_pressure_csv(folder / manifest.base_barometer->file), base_clock.offset_ns, guard);
+    open<SampleStream<PressureSample>>(manifest.base_barometer->file, manifest.base_barometer->robot_clock,
+                                       "base_barometer", EventKind::kBasePressure,
+                                       open_pressure_csv(folder / manifest.base_barometer->file),
+                                       base_clock.offset_ns, guard);
   }
   if (manifest.wheel) {
-    open<SampleStream<WheelSample>>(manifest.wheel->file, "wheel", EventKind::kWheel,
+    open<SampleStream<WheelSample>>(manifest.wheel->file, true, "wheel", EventKind::kWheel,
                                     open_wheel_csv(folder / manifest.wheel->file), 0, guard);
   }
   if (manifest.lidar) {
-    open<LidarStream>(manifest.lidar->file, folder / manifest.lidar->file,
+    open<LidarStream>(manifest.lidar->file, true, folder / manifest.lidar->file,
                       LidarPorts{manifest.lidar->port, manifest.lidar->info_port}, guard);
   }
 }
 
+void RecordingReader::Impl::advance(std::size_t stream) {
+  if (!streams[stream]->advance()) {
+    time_base->end(stream);
+    return;
+  }
+  time_base->take(stream, streams[stream]->stamp_ns(),
+                  [&] { return streams[stream]->elapsed_ns(lidar_clock); });
+}
+
 bool RecordingReader::Impl::next(Event& event) {
-  if (!started) {
-    started = true;
-    for (const auto& stream : streams) {
-      alive.push_back(stream->advance());
-    }
-  } else if (given < streams.size() && alive[given]) {
-    alive[given] = streams[given]->advance();
+  if (!time_base) {
+    if (manifest.lidar) clocks.back().period_ns = lidar_clock.period_ns;
+    time_base.emplace(clocks);
+    for (std::size_t i = 0; i < streams.size(); ++i) advance(i);
+  } else if (given < streams.size()) {
+    advance(given);
   }
-  given = streams.size();
-  for (std::size_t i = 0; i < streams.size(); ++i) {
-    if (alive[i] && (given == streams.size() || streams[i]->stamp_ns() < streams[given]->stamp_ns())) {
-      given = i;
-    }
-  }
-  if (given == streams.size()) {
-    return false;
-  }
-  streams[given]->give(event);
+  const std::optional<std::size_t> chosen = time_base->choose();
+  given = chosen.value_or(streams.size());
+  if (!chosen) return false;
+  streams[given]->give(time_base->shift_ns(given), event);
   return true;
 }
 
@@ -251,6 +149,7 @@ RecordingReader::RecordingReader(const std::filesystem::path& folder, const Read
 
 RecordingReader::~RecordingReader() = default;
 
+void RecordingReader::use_lidar_clock(LidarClock clock) { impl_->lidar_clock = std::move(clock); }
 bool RecordingReader::next(Event& event) { return impl_->next(event); }
 const Manifest& RecordingReader::manifest() const { return impl_->manifest; }
 const std::vector<std::string>& RecordingReader::warnings() const { return impl_->warnings; }
@@ -261,7 +160,16 @@ std::vector<Count> RecordingReader::counts() const {
   for (const auto& stream : impl_->streams) {
     stream->count(counts);
   }
+  if (impl_->time_base) add_steps(*impl_->time_base, counts);
   return counts;
+}
+
+const PortsSeen& RecordingReader::other_ports() const {
+  static const PortsSeen none;
+  for (const auto& stream : impl_->streams) {
+    if (stream->other_ports() != nullptr) return *stream->other_ports();
+  }
+  return none;
 }
 
 double RecordingReader::progress() const {

@@ -3,13 +3,16 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/samples.hpp"
 #include "run/recording/manifest.hpp"
+#include "run/recording/ports_seen.hpp"
 
 namespace isobar::recording {
 
@@ -39,9 +42,19 @@ struct BaseClock {
   std::string reason;          ///< a sentence for the status
 };
 
+/// The lidar's own clock in its packets, by which a step of the clock that stamped a recording is told from a pause.
+struct LidarClock {
+  std::int64_t period_ns = 0;  ///< after which it wraps; 0: never
+  /// Time from one payload to a later one on that clock, 0 … period_ns; nothing where they do not tell it.
+  std::function<std::optional<std::int64_t>(std::span<const std::uint8_t>, std::span<const std::uint8_t>)>
+      elapsed_ns;
+};
+
 struct ReaderOptions {
   /// Largest step forward of a sensor's clock without confirmation by a second sample [ns].
   std::int64_t max_gap_ns = 2'000'000'000;
+  /// Largest step backward of a sample that came late; a longer one, confirmed, is a step of the clock [ns].
+  std::int64_t max_reorder_ns = 200'000'000;
 };
 
 /// Reader of a recording folder: events in order of host time, bounded memory, deterministic.
@@ -55,7 +68,11 @@ class RecordingReader {
   RecordingReader(const RecordingReader&) = delete;
   RecordingReader& operator=(const RecordingReader&) = delete;
 
-  /// The next event in order of time; false at the end. Broken rows and packets are skipped and counted.
+  /// Before the first next(): tells steps of the clock from pauses (time_base.hpp).
+  void use_lidar_clock(LidarClock clock);
+
+  /// The next event in order of time; false at the end. Broken rows and packets are skipped and counted. Where the clock of
+  /// the recording was set, time goes on without the step, on the clock before it.
   bool next(Event& event);
 
   [[nodiscard]] const Manifest& manifest() const;
@@ -63,6 +80,8 @@ class RecordingReader {
   [[nodiscard]] const BaseClock& base_clock() const;
   /// Counters that are not zero. Cheap enough for once a second.
   [[nodiscard]] std::vector<Count> counts() const;
+  /// Packets of the lidar's capture for ports that the recording does not name.
+  [[nodiscard]] const PortsSeen& other_ports() const;
   /// Fraction of the bytes read, 0 … 1, for a progress bar.
   [[nodiscard]] double progress() const;
 

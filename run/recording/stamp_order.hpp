@@ -35,7 +35,8 @@ class StampOrder {
     std::uint64_t too_late = 0;
   };
 
-  explicit StampOrder(const StampGuardConfig& config) : guard_(config) {}
+  explicit StampOrder(const StampGuardConfig& config)
+      : guard_(config), max_forward_ns_(config.max_forward_ns) {}
 
   /// The next sample in order; false at the end.
   /// @param read bool(Sample&): reads the next sample of the file, false at its end
@@ -112,14 +113,22 @@ class StampOrder {
     const auto ahead = std::find_if(ordered_.begin(), ordered_.end(),
                                     [to_ns](const Sample& sample) { return sample.stamp_ns > to_ns; });
     const bool nothing_before = ahead == ordered_.begin() && !handed_out_;
-    const bool goes_on = nothing_before ? ordered_.size() <= kMaxAbsurdAtStart
-                                        : ahead != ordered_.begin() || newest_out_ns_ <= to_ns;
+    const bool goes_on = nothing_before
+                             ? ordered_.size() <= kMaxAbsurdAtStart
+                             : (ahead != ordered_.begin() || newest_out_ns_ <= to_ns) && jumps_ahead(ahead);
     if (goes_on) {
       counts_.absurd += static_cast<std::uint64_t>(ordered_.end() - ahead);
       ordered_.erase(ahead, ordered_.end());
     } else {
       stepped_ = true;
     }
+  }
+
+  /// Absurd stamps begin with a jump forward; stamps before a step back do not.
+  [[nodiscard]] bool jumps_ahead(typename std::deque<Sample>::const_iterator ahead) const {
+    if (ahead == ordered_.end()) return true;
+    const std::int64_t before_ns = ahead == ordered_.begin() ? newest_out_ns_ : std::prev(ahead)->stamp_ns;
+    return ahead->stamp_ns - before_ns > max_forward_ns_;
   }
 
   void insert(Sample&& sample) {
@@ -146,6 +155,7 @@ class StampOrder {
   }
 
   StampGuard guard_;
+  std::int64_t max_forward_ns_;
   Counts counts_;
   std::deque<Sample> ordered_;     // the look-ahead, by stamp
   std::deque<Sample> after_step_;  // samples after a step back of the clock

@@ -23,8 +23,13 @@ std::span<const std::uint8_t> ip_packet(LinkType link, std::span<const std::uint
   std::size_t type_at = 0;
   switch (link) {
     case LinkType::kRawIp:
+    case LinkType::kRawIpOpenBsd:
+    case LinkType::kRawIpFile:
+    case LinkType::kIpv4:
+    case LinkType::kIpv6:
       return frame;
     case LinkType::kLoopback:
+    case LinkType::kLoop:
       too_short = frame.size() < 4;
       return too_short ? frame.first(0) : frame.subspan(4);
     case LinkType::kEthernet:
@@ -59,8 +64,10 @@ std::span<const std::uint8_t> ip_packet(LinkType link, std::span<const std::uint
 }  // namespace
 
 std::optional<LinkType> link_type_of(int data_link) {
-  for (const LinkType link : {LinkType::kLoopback, LinkType::kEthernet, LinkType::kRawIp,
-                              LinkType::kLinuxCooked, LinkType::kLinuxCooked2}) {
+  for (const LinkType link :
+       {LinkType::kLoopback, LinkType::kEthernet, LinkType::kRawIp, LinkType::kRawIpOpenBsd,
+        LinkType::kRawIpFile, LinkType::kLoop, LinkType::kLinuxCooked, LinkType::kIpv4, LinkType::kIpv6,
+        LinkType::kLinuxCooked2}) {
     if (static_cast<int>(link) == data_link) {
       return link;
     }
@@ -105,11 +112,12 @@ FrameKind UdpExtractor::extract_ip(std::span<const std::uint8_t> ip, std::int64_
 }
 
 FrameKind UdpExtractor::extract_udp(std::span<const std::uint8_t> udp, bool cut,
-                                    std::span<const std::uint8_t>& payload) const {
+                                    std::span<const std::uint8_t>& payload) {
   if (udp.size() < kUdpHeaderBytes) {
     return FrameKind::kMalformed;
   }
   if (!ports_.has(read_be16(udp, 2))) {
+    other_ports_.add(read_be16(udp, 2));
     return FrameKind::kOtherPort;
   }
   const std::size_t length = read_be16(udp, 4);

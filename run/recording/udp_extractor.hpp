@@ -9,17 +9,27 @@
 #include <span>
 #include <vector>
 
+#include "run/recording/ports_seen.hpp"
+
 namespace isobar::recording {
 
 /// Headers in front of the IP packet. Values are libpcap's DLT_ numbers.
 enum class LinkType : int {
-  kLoopback = 0,  ///< 4 bytes of address family
+  kLoopback = 0,  ///< 4 bytes of address family, in the byte order of the capturing machine
   kEthernet = 1,
   kRawIp = 12,
+  kRawIpOpenBsd = 14,
+  kRawIpFile = 101,    ///< as files number it
+  kLoop = 108,         ///< 4 bytes of address family, big-endian
   kLinuxCooked = 113,  ///< capture on "any"
+  kIpv4 = 228,
+  kIpv6 = 229,  ///< holds no IPv4
   kLinuxCooked2 = 276,
 };
 [[nodiscard]] std::optional<LinkType> link_type_of(int data_link);
+/// The known ones, for errors.
+inline constexpr const char* kLinkTypesText =
+    "Ethernet, Linux cooked (v1, v2), raw IP, IPv4 and loopback (NULL, LOOP)";
 
 /// Destination ports of a lidar's packets.
 struct LidarPorts {
@@ -62,6 +72,9 @@ class UdpExtractor {
   /// identification.
   [[nodiscard]] std::uint64_t incomplete() const { return incomplete_; }
   [[nodiscard]] std::uint64_t reassembled() const { return reassembled_; }
+  /// Packets for other ports.
+  [[nodiscard]] const PortsSeen& other_ports() const { return other_ports_; }
+  [[nodiscard]] const LidarPorts& ports() const { return ports_; }
 
  private:
   static constexpr std::size_t kSlots = 4;
@@ -80,13 +93,13 @@ class UdpExtractor {
 
   FrameKind extract_ip(std::span<const std::uint8_t> ip, std::int64_t stamp_ns,
                        std::span<const std::uint8_t>& payload);
-  FrameKind extract_udp(std::span<const std::uint8_t> udp, bool cut,
-                        std::span<const std::uint8_t>& payload) const;
+  FrameKind extract_udp(std::span<const std::uint8_t> udp, bool cut, std::span<const std::uint8_t>& payload);
   FrameKind add_fragment(std::span<const std::uint8_t> ip, std::span<const std::uint8_t> part,
                          std::int64_t stamp_ns, std::span<const std::uint8_t>& payload);
   Slot& slot_for(std::span<const std::uint8_t> ip, std::int64_t stamp_ns);
 
   LidarPorts ports_;
+  PortsSeen other_ports_;
   std::uint32_t sender_ipv4_ = 0;
   std::uint64_t clock_ = 0;
   std::uint64_t incomplete_ = 0;

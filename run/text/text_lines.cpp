@@ -2,12 +2,8 @@
 #include "run/text/text_lines.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
-#include <system_error>
 #include <utility>
-
-#include "core/errors.hpp"
 
 namespace isobar::text {
 namespace {
@@ -17,15 +13,8 @@ constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 }  // namespace
 
-TextLines::TextLines(const std::filesystem::path& file) : name_(file.string()), buffer_(kBufferBytes) {
-  if (std::filesystem::is_directory(file)) {
-    throw DataError(name_ + ": is a folder, must be a file");
-  }
-  file_.reset(std::fopen(file.c_str(), "rb"));
-  if (file_ == nullptr) {
-    throw DataError(name_ + ": cannot be read: " + std::strerror(errno));
-  }
-}
+TextLines::TextLines(const std::filesystem::path& file)
+    : name_(file.string()), source_(std::make_unique<TextSource>(file)), buffer_(kBufferBytes) {}
 
 TextLines::TextLines(std::string_view text, std::string name)
     : name_(std::move(name)), buffer_(text.size() + 1), end_(text.size()), at_end_(true) {
@@ -36,27 +25,21 @@ bool TextLines::refill() {
   std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
   end_ -= begin_;
   begin_ = 0;
-  const std::size_t count = std::fread(buffer_.data() + end_, 1, buffer_.size() - end_, file_.get());
+  const std::size_t count = source_->read(buffer_.data() + end_, buffer_.size() - end_);
   end_ += count;
-  bytes_read_ += count;
   at_end_ = count == 0;
   return !at_end_;
 }
 
+std::string TextLines::damage() const {
+  if (source_ == nullptr || source_->damage().empty()) return {};
+  return name_ + ": the compressed file is damaged: " + source_->damage();
+}
+
 void TextLines::skip_to_last(std::uint64_t bytes) {
-  if (file_ == nullptr) {
-    return;
-  }
-  std::error_code error;
-  const std::uint64_t size = std::filesystem::file_size(name_, error);
-  const std::uint64_t position = bytes_read_ - (end_ - begin_);
-  if (error || size < bytes || size - bytes <= position ||
-      std::fseek(file_.get(), static_cast<long>(size - bytes), SEEK_SET) != 0) {
-    return;
-  }
+  if (source_ == nullptr || !source_->skip_to_last(bytes, end_ - begin_)) return;
   begin_ = 0;
   end_ = 0;
-  bytes_read_ = size - bytes;
   at_end_ = false;
   std::string_view part_of_a_line;
   next(part_of_a_line);

@@ -3,17 +3,18 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "run/text/text_source.hpp"
+
 namespace isobar::text {
 
 /// Line reader in bounded memory. A line ends with \n or \r\n (optional on the last one); a UTF-8 byte-order
-/// mark is skipped. A line longer than kMaxLineBytes reads as an empty line with too_long() set.
+/// mark is skipped, and files are read as TextSource describes. A line longer than kMaxLineBytes reads as an empty line with too_long() set.
 class TextLines {
  public:
   static constexpr std::size_t kMaxLineBytes = 4096;
@@ -43,21 +44,20 @@ class TextLines {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// "name:line: " of the current line.
   [[nodiscard]] std::string place() const { return name_ + ":" + std::to_string(line_number_) + ": "; }
-  [[nodiscard]] std::uint64_t bytes_read() const { return bytes_read_; }
+  /// Of the file as it lies on the disk.
+  [[nodiscard]] std::uint64_t bytes_read() const { return source_ == nullptr ? 0 : source_->bytes_read(); }
+  /// "name: rule" when a compressed file ended early; empty: it did not, or has not yet.
+  [[nodiscard]] std::string damage() const;
 
  private:
   bool refill();
 
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   std::string name_;
-  std::unique_ptr<std::FILE, Closer> file_;
+  std::unique_ptr<TextSource> source_;  // nullptr: the whole text is in buffer_
   std::vector<char> buffer_;
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
   std::size_t line_number_ = 0;
-  std::uint64_t bytes_read_ = 0;
   bool too_long_ = false;
   bool without_end_ = false;
   bool at_end_ = false;

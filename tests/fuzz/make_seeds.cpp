@@ -131,6 +131,13 @@ void recording_seeds() {
   writer.close();
   const std::string capture = load(folder / "lidar.pcap");
   save("fuzz_pcap", "nanoseconds", capture);
+  // A pcapng file: a section, an interface with nanoseconds, an empty packet.
+  save("fuzz_pcap", "blocks",
+       std::string(
+           "\x0A\x0D\x0D\x0A\x1C\0\0\0\x4D\x3C\x2B\x1A\1\0\0\0\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF\x1C\0\0\0"
+           "\1\0\0\0\x20\0\0\0\1\0\0\0\0\0\0\0\x09\0\1\0\x09\0\0\0\0\0\0\0\x20\0\0\0"
+           "\6\0\0\0\x20\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x20\0\0\0",
+           92));
   save("fuzz_recording", "all",
        load(folder / "imu.csv") + "\x01" + load(folder / "barometer.csv") + "\x01" +
            load(folder / "base_barometer.csv") + "\x01" + load(folder / "wheel.csv") + "\x01" +
@@ -177,6 +184,11 @@ int main(int count, char** arguments) {
   save("fuzz_pressure_log", "logger",
        "\"TOA5\",\"X\"\r\n\"TIMESTAMP\",\"P_Avg\",\"Ta\"\r\n\"TS\",\"hPa\",\"degC\"\r\n"
        "\"2020-04-04 00:00:00\",986.5,20\r\n\"2020-04-04T00:01:00+02:00\",nan,20\r\n");
+  save("fuzz_pressure_log", "two_columns",
+       "Datum;Uhrzeit;Luftdruck (mm Hg);Temp "
+       "(F)\n14.11.2023;23:59:59,5;760,1;73,4\n14.11.2023;22:59:59;760,1;73,4\n");
+  save("fuzz_pressure_log", "seconds",
+       "header.stamp.sec,header.stamp.nanosec,fluid_pressure\n1700000000,0,101000\n1700000000,0,101001\n");
   save("fuzz_dps310", "sound", std::string(600, '\0'));
   for (char sensor = 0; sensor < 4; ++sensor) {
     save("fuzz_barometers", "sound" + std::to_string(sensor),

@@ -77,6 +77,75 @@ TEST_CASE("isobar altitude writes heights, and each mistake has its exit code") 
   CHECK(altitude({path("one.csv")}) == 65);
 }
 
+TEST_CASE("a thermometer hotter than any air needs --air; one that is not the only one does not matter") {
+  const TemporaryFolder folder;
+  const auto path = [&](const char* name) { return (folder.path() / name).string(); };
+  const auto with_temperature = [](std::string text, const char* temperature) {
+    for (std::size_t at = text.find(",17.0\n"); at != std::string::npos; at = text.find(",17.0\n", at + 1)) {
+      text.replace(at, 5, temperature);
+    }
+    return text;
+  };
+  write_text_file(path("cool.csv"), log(0.0, 0.05, 2));
+  for (const char* hot : {",50.0", ",73.4"}) {
+    write_text_file(path("hot.csv"), with_temperature(log(0.2, 0.03, 1), hot));
+    CHECK(altitude({path("hot.csv")}) == 65);
+    CHECK(altitude({path("hot.csv"), "--air", "23"}) == 0);
+    CHECK(altitude({path("hot.csv"), "--base", path("cool.csv")}) == 0);
+  }
+}
+
+TEST_CASE(
+    "equal values of a coarse station are measurements, those of a chip that is polled too fast are "
+    "repeats") {
+  const TemporaryFolder folder;
+  const auto path = [&](const char* name) { return (folder.path() / name).string(); };
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  std::string coarse = "t_ns,pressure_pa\n";
+  std::string polled = coarse;
+  std::string minutes = coarse;
+  for (int i = 0; i < 1000; ++i) {
+    const std::string t = std::to_string(1'760'000'000'000'000'000 + 500'000'000LL * i) + ",";
+    coarse += t + std::to_string(10 * std::lround(10'100.0 + 0.3 * normal(random))) + "\n";
+    const std::string value = std::to_string(101'000.0 + 0.3 * normal(random));
+    polled +=
+        t + value + "\n" + std::to_string(1'760'000'000'250'000'000 + 500'000'000LL * i) + "," + value + "\n";
+    minutes += std::to_string(1'760'000'000'000'000'000 + 60'000'000'000LL * i) + "," +
+               std::to_string(100'000 + i / 2) + ".25\n";
+  }
+  write_text_file(path("coarse.csv"), coarse);
+  write_text_file(path("polled.csv"), polled);
+  write_text_file(path("minutes.csv"), minutes);
+  CHECK(tools::read_new_values(path("coarse.csv")).samples.size() == 1000);
+  CHECK(tools::read_new_values(path("polled.csv")).samples.size() == 1000);
+  CHECK(tools::read_new_values(path("minutes.csv")).samples.size() == 1000);
+}
+
+TEST_CASE(
+    "clocks of two logs that overlap are trusted, whatever their lengths; others cannot both be right") {
+  const auto log_from = [](std::int64_t first_s, std::int64_t last_s) {
+    tools::PressureLog log;
+    for (const std::int64_t t : {first_s, last_s}) {
+      log.samples.push_back({});
+      log.samples.back().stamp_ns = (1'760'000'000 + t) * 1'000'000'000;
+    }
+    return log;
+  };
+  const tools::PressureLog moved = log_from(0, 110);
+  for (const auto& [first_s, last_s] :
+       {std::pair{5, 112}, {5, 115}, {-30, 90}, {20, 300}, {-100, 10}, {3, 113}}) {
+    CAPTURE(first_s);
+    tools::PressureLog standing = log_from(first_s, last_s);
+    const std::int64_t before_ns = standing.samples.front().stamp_ns;
+    CHECK(tools::tie_clocks(moved, standing).find("trusted") != std::string::npos);
+    CHECK(standing.samples.front().stamp_ns == before_ns);
+  }
+  tools::PressureLog apart = log_from(28'800, 28'910);
+  CHECK(tools::tie_clocks(moved, apart).find("off by 28800.0 s") != std::string::npos);
+  CHECK(apart.samples.front().stamp_ns == moved.samples.front().stamp_ns);
+}
+
 TEST_CASE("with an IMU at any mounting angle the height of an elevator ride has no lag") {
   // 20 s at rest, 1.5 m/s for 10 s with 1 m/s^2 at both ends, 10 s at rest; the IMU lies on its side.
   const auto accel = [](double t) {
