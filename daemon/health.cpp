@@ -102,7 +102,9 @@ void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, He
   for (std::size_t kind = 0; kind < datagram::kKinds; ++kind) {
     const double rate_hz = per_second(now.prior.samples[kind], last_.prior.samples[kind], elapsed_s);
     const auto which = static_cast<datagram::Kind>(kind);
-    if (which == datagram::Kind::kImu && !usable_sensors(now.contradictions).imu) {
+    // A fault of the device comes before a contradiction of its samples.
+    const bool has_fault = now.imu.present && now.imu.device.fault[0] != '\0';
+    if (which == datagram::Kind::kImu && !has_fault && !usable_sensors(now.contradictions).imu) {
       add_entry(report, kNames[kind], HealthLevel::kWarning,
                 "samples come and are not used: see the contradictions", rate_hz);
     } else if (which == datagram::Kind::kImu && !config_.imu.present()) {

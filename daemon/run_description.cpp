@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/run_description.hpp"
 
+#include <filesystem>
 #include <string>
 #include <utility>
 
@@ -14,7 +15,11 @@ recording::Manifest manifest_of(const Config& config) {
   manifest.lidar->model = config.lidar.model;
   manifest.lidar->port = config.lidar.port;
   manifest.lidar->mount = config.lidar.mount;
-  manifest.imu->mount = config.imu.mount;
+  if (!config.lidar.calibration_file.empty()) {
+    manifest.lidar->calibration_file = std::filesystem::absolute(config.lidar.calibration_file).string();
+  }
+  // Samples of a lidar's IMU are in the lidar's frame.
+  manifest.imu->mount = config.imu.source == ImuSource::kLidar ? config.lidar.mount : config.imu.mount;
   manifest.barometer->mount = config.barometer.mount;
   manifest.base_barometer->robot_clock = true;
   manifest.reference.reset();
