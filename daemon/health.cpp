@@ -15,8 +15,8 @@
 #include "daemon/imu_source.hpp"
 #include "daemon/input_health.hpp"
 #include "daemon/run_health.hpp"
+#include "daemon/stage_settings.hpp"
 #include "daemon/status_figures.hpp"
-#include "drivers/lidar_models/lidar_models.hpp"
 
 namespace isobar {
 
@@ -33,10 +33,8 @@ std::string input_of(const Config& config, datagram::Kind kind) {
                       (kind == Kind::kWheel && config.wheel.source == WheelSource::kDds);
   if (by_dds) return "DDS";
   if (kind == Kind::kImu && config.imu.source == ImuSource::kLidar) {
-    const LidarModel* lidar = find_lidar_model(config.lidar.model);
-    const int port =
-        config.lidar.info_port != 0 || lidar == nullptr ? config.lidar.info_port : lidar->info_port;
-    return "UDP port " + std::to_string(port) + ", from the lidar";
+    const int port = info_port_of(config.lidar);
+    return "UDP port " + std::to_string(port != 0 ? port : config.lidar.port) + ", from the lidar";
   }
   if (kind == Kind::kPressure && config.barometer.source == BarometerSource::kImu) return "the IMU";
   const bool both = kind == Kind::kBasePressure && config.dds.receive_base_pressure;

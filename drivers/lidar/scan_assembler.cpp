@@ -132,7 +132,7 @@ std::int64_t ScanAssembler::delay_after_gaps(PacketColumns& columns) const {
   std::int64_t delay_ns = 0;
   if (turn_rate_ <= 0.0) return delay_ns;
   for (std::size_t i = 1; i < static_cast<std::size_t>(columns.count); ++i) {
-    const std::uint32_t step = (columns.turn[i] + kFullTurn - columns.turn[i - 1]) % kFullTurn;
+    const std::uint32_t step = turn_between(columns.turn[i - 1], columns.turn[i]);
     if (step >= BlindSector::kLeast && step <= kFullTurn - BlindSector::kLeast) {
       delay_ns += std::llround(step / turn_rate_);
     }
@@ -157,7 +157,7 @@ void ScanAssembler::remember(const Packet& packet) {
   have_last_ = true;
   last_device_ns_ = packet.device_ns + packet.delay_ns;
   last_turn_ = columns.last_turn();
-  const std::uint32_t swept = (last_turn_ + kFullTurn - columns.first_turn()) % kFullTurn;
+  const std::uint32_t swept = turn_between(columns.first_turn(), last_turn_);
   const std::int64_t swept_ns = columns.last_offset_ns();
   if (swept < kFullTurn / 4 && swept_ns > 0) {
     turn_rate_ = static_cast<double>(swept) / static_cast<double>(swept_ns);
@@ -230,7 +230,7 @@ bool ScanAssembler::is_next_turn(std::uint32_t previous, std::uint32_t turn) con
 bool ScanAssembler::ends_field(const PacketColumns& columns) const {
   if (!blind_.known()) return false;
   const auto packet = static_cast<std::uint32_t>(turn_rate_ * static_cast<double>(columns.duration_ns));
-  const std::uint32_t rest = (blind_.from() + kFullTurn - columns.last_turn()) % kFullTurn;
+  const std::uint32_t rest = turn_between(columns.last_turn(), blind_.from());
   return rest < packet || rest > kFullTurn - BlindSector::kTolerance;
 }
 
