@@ -66,6 +66,7 @@ void add_bmp581(bmp581::Settings& bmp581, std::vector<Setting>& settings) {
   add_place(s, bmp581.bus, bmp581.address, {"0x47", "0x46"},
             "I2C address of the sensor. 0x47, or 0x46 where its pin SDO is tied to ground.");
   std::vector<std::string> rates;
+  rates.reserve(bmp581::kRates.size());
   for (const bmp581::Rate& rate : bmp581::kRates) rates.push_back(std::to_string(rate.hz));
   s.choice(
       "rate_hz", &bmp581.rate_hz, rates,

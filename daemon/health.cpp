@@ -15,9 +15,9 @@
 #include "daemon/imu_source.hpp"
 #include "daemon/input_health.hpp"
 #include "daemon/run_health.hpp"
+#include "daemon/stage_settings.hpp"
 #include "daemon/status_figures.hpp"
 #include "daemon/wheel_source.hpp"
-#include "drivers/lidar_models/lidar_models.hpp"
 
 namespace isobar {
 
@@ -34,10 +34,8 @@ std::string input_of(const Config& config, datagram::Kind kind) {
                       (kind == Kind::kWheel && config.wheel.source == WheelSource::kDds);
   if (by_dds) return "DDS";
   if (kind == Kind::kImu && config.imu.source == ImuSource::kLidar) {
-    const LidarModel* lidar = find_lidar_model(config.lidar.model);
-    const int port =
-        config.lidar.info_port != 0 || lidar == nullptr ? config.lidar.info_port : lidar->info_port;
-    return "UDP port " + std::to_string(port) + ", from the lidar";
+    const int port = info_port_of(config.lidar);
+    return "UDP port " + std::to_string(port != 0 ? port : config.lidar.port) + ", from the lidar";
   }
   if (kind == Kind::kPressure && config.barometer.source == BarometerSource::kImu) return "the IMU";
   const bool both = kind == Kind::kBasePressure && config.dds.receive_base_pressure;
@@ -103,7 +101,9 @@ void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, He
   for (std::size_t kind = 0; kind < datagram::kKinds; ++kind) {
     const double rate_hz = per_second(now.prior.samples[kind], last_.prior.samples[kind], elapsed_s);
     const auto which = static_cast<datagram::Kind>(kind);
-    if (which == datagram::Kind::kImu && !usable_sensors(now.contradictions).imu) {
+    // A fault of the device comes before a contradiction of its samples.
+    const bool has_fault = now.imu.present && now.imu.device.fault[0] != '\0';
+    if (which == datagram::Kind::kImu && !has_fault && !usable_sensors(now.contradictions).imu) {
       add_entry(report, kNames[kind], HealthLevel::kWarning,
                 "samples come and are not used: see the contradictions", rate_hz);
     } else if (which == datagram::Kind::kImu && !config_.imu.present()) {

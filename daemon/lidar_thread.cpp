@@ -6,17 +6,6 @@
 
 namespace isobar {
 
-namespace {
-
-/// The port of the other packets; 0: the model has none.
-std::uint16_t info_port_of(const LidarSettings& lidar) {
-  const LidarModel* model = find_lidar_model(lidar.model);
-  const std::uint16_t port = lidar.info_port != 0 || model == nullptr ? lidar.info_port : model->info_port;
-  return port == lidar.port ? 0 : port;
-}
-
-}  // namespace
-
 LidarStatus status_of_clouds(std::uint64_t scans, std::int64_t last_scan_ns, const StreamPace& pace) {
   LidarStatus status;
   status.counters.scans = scans;

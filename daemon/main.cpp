@@ -77,9 +77,8 @@ class RobotGraph final : public Graph {
         lidar_(config.lidar.source == LidarSource::kDriver
                    ? std::make_unique<LidarThread>(stages_, config.lidar, scheduling_.lidar)
                    : nullptr),
-        check_({.imu = stages_.imu_of_lidar ? config.lidar.mount : config.imu.mount,
-                .lidar = config.lidar.mount},
-               config.imu.present(), scheduling_.check),
+        check_({.imu = imu_mount(config), .lidar = config.lidar.mount}, config.imu.present(),
+               scheduling_.check),
         output_(files_.checkpoint_file().empty()
                     ? nullptr
                     : std::make_unique<OutputThread>(

@@ -27,8 +27,7 @@ class CheckedInputs {
   explicit CheckedInputs(const Config& used)
       : sender_(used.lidar.sender),
         assembler_(make_lidar_decoder(stage_settings(used).lidar)),
-        check_({.imu = used.imu.source == ImuSource::kLidar ? used.lidar.mount : used.imu.mount,
-                .lidar = used.lidar.mount}),
+        check_({.imu = imu_mount(used), .lidar = used.lidar.mount}),
         scan_(std::make_unique<Scan>()),
         has_imu_(used.imu.present()),
         imu_of_lidar_(used.imu.source == ImuSource::kLidar),

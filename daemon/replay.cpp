@@ -168,6 +168,23 @@ void refuse_empty_run(const ReplaySummary& summary, const recording::RecordingRe
                   ": no lidar scan could be decoded: " + silent_lidar_text(reader, pipeline.assembler()));
 }
 
+/// Feeds all events to the pipeline.
+/// @return time from the first to the last event [s]
+double feed(recording::RecordingReader& reader, const UsableSensors& usable, LockStep& pipeline,
+            const std::function<void(double)>& progress) {
+  recording::Event event;
+  std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
+  std::int64_t last_ns = std::numeric_limits<std::int64_t>::min();
+  for (std::uint64_t events = 0; reader.next(event); ++events) {
+    first_ns = std::min(first_ns, event.stamp_ns);
+    last_ns = std::max(last_ns, event.stamp_ns);
+    if (is_used(event.kind, usable)) pipeline.handle(event);
+    if (events % 512 == 0) progress(kCheckShare + (1.0 - kCheckShare) * reader.progress());
+  }
+  pipeline.finish();
+  return last_ns > first_ns ? seconds_between(first_ns, last_ns) : 0.0;
+}
+
 }  // namespace
 
 ReplaySummary replay(const std::filesystem::path& recording, const Config& config,
@@ -194,16 +211,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   const auto store =
       FileTileStore::create(files::RunOutput::map_directory(out), map_header(used), map_limits(used));
   LockStep pipeline(stage_settings(used), sink, store.get());
-  recording::Event event;
-  std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
-  std::int64_t last_ns = std::numeric_limits<std::int64_t>::min();
-  for (std::uint64_t events = 0; reader.next(event); ++events) {
-    first_ns = std::min(first_ns, event.stamp_ns);
-    last_ns = std::max(last_ns, event.stamp_ns);
-    if (is_used(event.kind, check.usable)) pipeline.handle(event);
-    if (events % 512 == 0) progress(kCheckShare + (1.0 - kCheckShare) * reader.progress());
-  }
-  pipeline.finish();
+  summary.recorded_s = feed(reader, check.usable, pipeline, progress);
   output.flush();
   const std::vector<files::RunCount> map_counts = counts_of_map(*store, output);
 
@@ -212,7 +220,6 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   summary.registered = output.registered();
   summary.from_prior = output.from_prior();
   summary.map_points = output.map_points();
-  summary.recorded_s = last_ns > first_ns ? seconds_between(first_ns, last_ns) : 0.0;
   summary.counts = collect_counts(reader, pipeline);
   run_counts::append(summary.counts, map_counts);
   add_contradictions(contradictions, summary.counts);

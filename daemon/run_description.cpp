@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "config/config_io.hpp"
+#include "daemon/stage_settings.hpp"
 #include "drivers/clock/robot_clock.hpp"
 
 namespace isobar {
@@ -18,8 +19,7 @@ recording::Manifest manifest_of(const Config& config) {
   if (!config.lidar.calibration_file.empty()) {
     manifest.lidar->calibration_file = std::filesystem::absolute(config.lidar.calibration_file).string();
   }
-  // Samples of a lidar's IMU are in the lidar's frame.
-  manifest.imu->mount = config.imu.source == ImuSource::kLidar ? config.lidar.mount : config.imu.mount;
+  manifest.imu->mount = imu_mount(config);
   manifest.barometer->mount = config.barometer.mount;
   manifest.base_barometer->robot_clock = true;
   manifest.reference.reset();

@@ -7,6 +7,12 @@
 
 namespace isobar {
 
+std::uint16_t info_port_of(const LidarSettings& lidar) {
+  const LidarModel* model = find_lidar_model(lidar.model);
+  const std::uint16_t port = lidar.info_port != 0 || model == nullptr ? lidar.info_port : model->info_port;
+  return port == lidar.port ? 0 : port;
+}
+
 StageSettings stage_settings(const Config& config) {
   StageSettings settings;
   settings.lidar.model = config.lidar.model;
@@ -20,8 +26,7 @@ StageSettings stage_settings(const Config& config) {
   settings.prior = config.prior;
   settings.prior.has_imu = config.imu.present();
   settings.imu_of_lidar = config.imu.source == ImuSource::kLidar;
-  // Decoders give the samples of a lidar's IMU in the lidar's frame.
-  settings.prior.T_base_imu = (settings.imu_of_lidar ? config.lidar.mount : config.imu.mount).T_base_sensor();
+  settings.prior.T_base_imu = imu_mount(config).T_base_sensor();
   settings.prior.p_base_port = config.barometer.mount.xyz_m;
   settings.registration = config.registration;
   settings.registration.has_imu = config.imu.present();

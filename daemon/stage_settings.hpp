@@ -28,6 +28,14 @@ struct StageSettings {
   Eigen::Isometry3d T_base_lidar = Eigen::Isometry3d::Identity();
 };
 
+/// Mount of the IMU: that of the lidar where it is the lidar's, since decoders give its samples in the lidar's frame.
+[[nodiscard]] inline const Mount& imu_mount(const Config& config) {
+  return config.imu.source == ImuSource::kLidar ? config.lidar.mount : config.imu.mount;
+}
+
+/// UDP port of the lidar's other packets; 0: its model has none, or the port of the data.
+[[nodiscard]] std::uint16_t info_port_of(const LidarSettings& lidar);
+
 /// Settings of a live run.
 /// @throws ConfigError for a lidar model without a driver
 StageSettings stage_settings(const Config& config);

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cinttypes>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -56,10 +57,11 @@ class PointsFile {
       const ScanPoint& p = scan.points[i];
       if (ply_) ply_->add(p.x_m, p.y_m, p.z_m, p.intensity);
       if (!csv_) continue;
-      const int length = std::snprintf(
-          line.data(), line.size(), "%u,%lld,%.6f,%.6f,%.6f,%u,%u\n", scan.sequence,
-          static_cast<long long>(scan.stamp_ns + p.time_4us * kPointTimeUnitNs), static_cast<double>(p.x_m),
-          static_cast<double>(p.y_m), static_cast<double>(p.z_m), unsigned{p.ring}, unsigned{p.intensity});
+      const std::int64_t time_ns = scan.stamp_ns + p.time_4us * kPointTimeUnitNs;
+      const int length =
+          std::snprintf(line.data(), line.size(), "%u,%" PRId64 ",%.6f,%.6f,%.6f,%u,%u\n", scan.sequence,
+                        time_ns, static_cast<double>(p.x_m), static_cast<double>(p.y_m),
+                        static_cast<double>(p.z_m), unsigned{p.ring}, unsigned{p.intensity});
       csv_->write(line.data(), static_cast<std::size_t>(length));
     }
   }

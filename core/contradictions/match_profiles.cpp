@@ -34,7 +34,8 @@ std::size_t wrapped(int bin) { return static_cast<std::size_t>((bin % kTurnBins 
 /// Turn that brings the ranges together, without any way.
 int search_turn(const ScanProfile& before, const ScanProfile& after) {
   // Ranges with their ends repeated, so that no index of the inner loop wraps; negative: none.
-  std::array<float, ScanProfile::kBins + 2 * kTurnSearchBins> ranges_m{};
+  constexpr std::size_t kRanges = std::size_t{2} * kTurnSearchBins + ScanProfile::kBins;
+  std::array<float, kRanges> ranges_m{};
   for (int i = 0; i < static_cast<int>(ranges_m.size()); ++i) {
     const ScanProfile::Bin& bin = before.bins[wrapped(i - kTurnSearchBins)];
     ranges_m[static_cast<std::size_t>(i)] = bin.valid ? bin.range_m : -1.0F;

@@ -83,8 +83,8 @@ std::optional<double> compare_accelerations(const MotionSeries& accelerometer, c
   double rolled2 = 0.0;
   int changes = 0;
   const std::int64_t end = std::min(accelerometer.end(), wheels.end());
-  for (std::int64_t cell = std::max(accelerometer.first(), wheels.first()); cell + 2 * kWindowCells <= end;
-       cell += kWindowCells) {
+  for (std::int64_t cell = std::max(accelerometer.first(), wheels.first());
+       cell + std::int64_t{2} * kWindowCells <= end; cell += kWindowCells) {
     const PlanarSum before = wheels.sum(cell, kWindowCells);
     const PlanarSum after = wheels.sum(cell + kWindowCells, kWindowCells);
     // Between the middles of both seconds, where the accelerometer's change is summed.

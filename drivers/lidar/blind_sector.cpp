@@ -9,14 +9,14 @@ namespace isobar {
 
 namespace {
 
-std::uint32_t ahead(std::uint32_t from, std::uint32_t to) { return (to + kFullTurn - from) % kFullTurn; }
-
-std::uint32_t apart(std::uint32_t a, std::uint32_t b) { return std::min(ahead(a, b), ahead(b, a)); }
+std::uint32_t apart(std::uint32_t a, std::uint32_t b) {
+  return std::min(turn_between(a, b), turn_between(b, a));
+}
 
 }  // namespace
 
 std::uint32_t BlindSector::add(std::uint32_t from, std::uint32_t to, std::uint32_t lost) {
-  const std::uint32_t step = ahead(from, to);
+  const std::uint32_t step = turn_between(from, to);
   if (step > kFullTurn - kLeast) return 0;  // a step back: reordered, or the motor's jitter
   if (known_ && (holds(from) || holds(to))) *this = {};
   swept_ = std::min(swept_ + step, 2 * kFullTurn);
@@ -36,18 +36,17 @@ std::uint32_t BlindSector::add(std::uint32_t from, std::uint32_t to, std::uint32
 }
 
 bool BlindSector::crossed(std::uint32_t from, std::uint32_t to) const {
-  return known_ && ahead(from, to) >= width_ / 2 && ahead(from, to) <= kFullTurn - kLeast &&
-         ahead(from, from_ + width_ / 2) <= ahead(from, to);
+  return known_ && turn_between(from, to) >= width_ / 2 && turn_between(from, to) <= kFullTurn - kLeast &&
+         turn_between(from, from_ + width_ / 2) <= turn_between(from, to);
 }
 
 bool BlindSector::holds(std::uint32_t turn) const {
-  const std::uint32_t inside = ahead(from_, turn);
+  const std::uint32_t inside = turn_between(from_, turn);
   return known_ && inside > kTolerance && inside + kTolerance < width_;
 }
 
 bool BlindSector::is_same(std::uint32_t from, std::uint32_t width) const {
-  return apart(from, from_) <= kTolerance &&
-         apart((from + width) % kFullTurn, (from_ + width_) % kFullTurn) <= kTolerance;
+  return apart(from, from_) <= kTolerance && apart(from + width, from_ + width_) <= kTolerance;
 }
 
 }  // namespace isobar

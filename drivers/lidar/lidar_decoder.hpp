@@ -16,6 +16,10 @@ namespace isobar {
 
 /// Counts of a turn [0.01 deg].
 inline constexpr std::uint32_t kFullTurn = 36'000;
+/// Way from one position of the turn on to another [0.01 deg], below kFullTurn; both are below two turns.
+[[nodiscard]] constexpr std::uint32_t turn_between(std::uint32_t from, std::uint32_t to) {
+  return (to + 2 * kFullTurn - from) % kFullTurn;
+}
 
 enum class DecodeStatus : std::uint8_t {
   kOk,          ///< decoded

@@ -35,7 +35,7 @@ DecodeResult ScanAssembler::add_packet(std::span<const std::uint8_t> payload, st
   Packet packet;
   const DecodeStatus status = decoder_->read(payload, packet.columns);
   if (status != DecodeStatus::kOk) {
-    count(status);
+    count_refused(status, counters_);
     return {status, false};
   }
   if (seen(packet.columns)) {
@@ -64,25 +64,6 @@ bool ScanAssembler::take_imu(ImuSample& sample) {
   if (!decoder_->take_imu(sample) || counters_.packets == 0) return false;
   sample.stamp_ns = anchor_.to_host_ns(sample.stamp_ns);
   return true;
-}
-
-void ScanAssembler::count(DecodeStatus status) {
-  switch (status) {
-    case DecodeStatus::kNoPoints:
-      ++counters_.no_points;
-      break;
-    case DecodeStatus::kTruncated:
-      ++counters_.truncated;
-      break;
-    case DecodeStatus::kOversized:
-      ++counters_.oversized;
-      break;
-    case DecodeStatus::kWrongModel:
-      ++counters_.wrong_model;
-      break;
-    default:
-      ++counters_.garbage;
-  }
 }
 
 bool ScanAssembler::seen(const PacketColumns& columns) {
@@ -127,14 +108,16 @@ DecodeResult ScanAssembler::add_in_order(Packet& packet, bool stepped, std::int6
 }
 
 /// The sensor stamps the first column only; after a gap within a packet the others fire later by the time of
-/// the way across it.
+/// the way across it. A packet that fits into a scan crosses less than a turn; what goes beyond is no gap.
 std::int64_t ScanAssembler::delay_after_gaps(PacketColumns& columns) const {
   std::int64_t delay_ns = 0;
   if (turn_rate_ <= 0.0) return delay_ns;
+  const auto longest_ns = static_cast<double>(kMaxScanNs - columns.last_offset_ns() - columns.column_ns);
   for (std::size_t i = 1; i < static_cast<std::size_t>(columns.count); ++i) {
-    const std::uint32_t step = (columns.turn[i] + kFullTurn - columns.turn[i - 1]) % kFullTurn;
+    const std::uint32_t step = turn_between(columns.turn[i - 1], columns.turn[i]);
     if (step >= BlindSector::kLeast && step <= kFullTurn - BlindSector::kLeast) {
-      delay_ns += std::llround(step / turn_rate_);
+      const double gap_ns = step / turn_rate_;
+      if (static_cast<double>(delay_ns) + gap_ns < longest_ns) delay_ns += std::llround(gap_ns);
     }
     columns.offset_ns[i] += delay_ns;
   }
@@ -157,7 +140,7 @@ void ScanAssembler::remember(const Packet& packet) {
   have_last_ = true;
   last_device_ns_ = packet.device_ns + packet.delay_ns;
   last_turn_ = columns.last_turn();
-  const std::uint32_t swept = (last_turn_ + kFullTurn - columns.first_turn()) % kFullTurn;
+  const std::uint32_t swept = turn_between(columns.first_turn(), last_turn_);
   const std::int64_t swept_ns = columns.last_offset_ns();
   if (swept < kFullTurn / 4 && swept_ns > 0) {
     turn_rate_ = static_cast<double>(swept) / static_cast<double>(swept_ns);
@@ -168,7 +151,7 @@ DecodeResult ScanAssembler::add_reordered(const Packet& packet, Scan& current) {
   ++counters_.reordered;
   if (!scan_open_) open(packet.device_ns, current);
   const std::int64_t early_ns = scan_start_ns_ - packet.device_ns;
-  if (early_ns > kMaxLateNs || scan_end_ns_ - packet.device_ns > kMaxScanNs ||
+  if (early_ns > kMaxLateNs || scan_end_ns_ - packet.device_ns > kMaxScanNs || is_too_long_with(packet) ||
       is_full(current, packet.columns.count)) {
     ++counters_.too_late;
     return {DecodeStatus::kTooLate, false};
@@ -205,11 +188,8 @@ int ScanAssembler::first_column_of_next_scan(const Packet& packet, bool stepped,
   if (!have_last_) return columns.count;
   const std::int64_t gap_ns = since_last_ns(packet);
   const bool turn_missed = turn_rate_ * static_cast<double>(gap_ns) > 0.9 * kFullTurn;
-  const std::int64_t length_ns = std::max(columns.duration_ns, columns.last_offset_ns() + columns.column_ns);
-  const bool too_long = scan_open_ && packet.device_ns + length_ns - scan_start_ns_ > kMaxScanNs;
-  if (stepped || gap_ns < 0 || turn_missed || too_long || (scan_open_ && is_full(current, columns.count))) {
-    return 0;
-  }
+  const bool full = scan_open_ && (is_too_long_with(packet) || is_full(current, columns.count));
+  if (stepped || gap_ns < 0 || turn_missed || full) return 0;
   if (field_ended_) return columns.count;
   std::uint32_t previous = last_turn_;
   for (int column = 0; column < columns.count; ++column) {
@@ -230,7 +210,7 @@ bool ScanAssembler::is_next_turn(std::uint32_t previous, std::uint32_t turn) con
 bool ScanAssembler::ends_field(const PacketColumns& columns) const {
   if (!blind_.known()) return false;
   const auto packet = static_cast<std::uint32_t>(turn_rate_ * static_cast<double>(columns.duration_ns));
-  const std::uint32_t rest = (blind_.from() + kFullTurn - columns.last_turn()) % kFullTurn;
+  const std::uint32_t rest = turn_between(columns.last_turn(), blind_.from());
   return rest < packet || rest > kFullTurn - BlindSector::kTolerance;
 }
 
@@ -243,6 +223,13 @@ bool ScanAssembler::begins_field(const PacketColumns& columns) const {
     previous = columns.turn[i];
   }
   return false;
+}
+
+/// Whether the scan would last longer than its points' times can say if it took the packet.
+bool ScanAssembler::is_too_long_with(const Packet& packet) const {
+  const PacketColumns& columns = packet.columns;
+  const std::int64_t length_ns = std::max(columns.duration_ns, columns.last_offset_ns() + columns.column_ns);
+  return packet.device_ns + length_ns - scan_start_ns_ > kMaxScanNs;
 }
 
 bool ScanAssembler::is_full(const Scan& current, int columns) const {

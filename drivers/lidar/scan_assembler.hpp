@@ -12,6 +12,7 @@
 #include "core/time/clock_anchor.hpp"
 #include "core/time/clock_continuity.hpp"
 #include "drivers/lidar/blind_sector.hpp"
+#include "drivers/lidar/lidar_counters.hpp"
 #include "drivers/lidar/lidar_decoder.hpp"
 
 namespace isobar {
@@ -20,24 +21,6 @@ struct DecodeResult {
   DecodeStatus status = DecodeStatus::kOk;
   /// The scan passed to add_packet() is complete: publish it and pass another one to the next call.
   bool scan_complete = false;
-};
-
-/// Counters since construction; one writer.
-struct LidarCounters {
-  std::uint64_t packets = 0;    ///< data packets decoded
-  std::uint64_t no_points = 0;  ///< packets of position, device information or IMU
-  std::uint64_t truncated = 0;
-  std::uint64_t oversized = 0;
-  std::uint64_t garbage = 0;
-  std::uint64_t wrong_model = 0;
-  std::uint64_t duplicated = 0;
-  std::uint64_t reordered = 0;    ///< decoded into the open scan
-  std::uint64_t too_late = 0;     ///< reordered too late for the open scan, not decoded
-  std::uint64_t lost = 0;         ///< missing packets, from gaps in the sensor's time
-  std::uint64_t clock_steps = 0;  ///< steps of the sensor's or the host's clock
-  std::uint64_t returns = 0;      ///< points written
-  std::uint64_t scans = 0;        ///< scans completed
-  std::uint64_t divided = 0;  ///< of these, full before their turn ended: more points than Scan::kMaxPoints
 };
 
 /// Assembles the packets of any lidar model into scans of one turn. No I/O, no clock, no allocation after
@@ -88,7 +71,6 @@ class ScanAssembler {
     std::span<const std::uint8_t> payload;
   };
 
-  void count(DecodeStatus status);
   bool seen(const PacketColumns& columns);
   DecodeResult add_in_order(Packet& packet, bool stepped, std::int64_t offset_before_ns, Scan& current);
   DecodeResult add_reordered(const Packet& packet, Scan& current);
@@ -103,6 +85,7 @@ class ScanAssembler {
   [[nodiscard]] bool is_next_turn(std::uint32_t previous, std::uint32_t turn) const;
   [[nodiscard]] bool begins_field(const PacketColumns& columns) const;
   [[nodiscard]] bool ends_field(const PacketColumns& columns) const;
+  [[nodiscard]] bool is_too_long_with(const Packet& packet) const;
   [[nodiscard]] bool is_full(const Scan& current, int columns) const;
   void remember(const Packet& packet);
   void open(std::int64_t device_ns, Scan& current);

@@ -74,6 +74,7 @@ const LidarModel* find_lidar_model(std::string_view name) {
 
 std::vector<std::string> lidar_model_names() {
   std::vector<std::string> names;
+  names.reserve(kModels.size());
   for (const LidarModel& model : kModels) names.emplace_back(model.name);
   return names;
 }

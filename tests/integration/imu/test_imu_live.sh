@@ -29,6 +29,7 @@ pids+=("$!")
 cat >"$work/isobard.toml" <<TOML
 [imu]
 source = "vn100"
+rpy_deg = [180.0, 0.0, 0.0] # a VN-100 with its label up
 [imu.vn100]
 port = "$work/imu"
 [barometer]

@@ -92,13 +92,13 @@ kill -9 "$recorder"
 killed_at=$(date +%s.%N)
 last=$(tail -n 2 "$work/killed/imu.csv" | head -n 1 | cut -d, -f1)
 awk -v k="$killed_at" -v l="$last" 'BEGIN { exit !(k - l * 1e-9 < 1.5) }' || fail "the recording ends more than a second before the kill"
-replays "$work/killed"
-ok "kill -9 of the recorder loses at most a second, and the rest replays"
 
-# kill -9 of isobard: the next one saves the black box of the run.
+# kill -9 of isobard, while the player still sends: the next one saves the black box of the run.
 kill -9 "$daemon"
 killed_at=$(date +%s.%N)
 wait "$play"
+replays "$work/killed"
+ok "kill -9 of the recorder loses at most a second, and the rest replays"
 start_isobard again
 wait_for 'black box saved (crash)' "$work/again.log"
 crash=$(echo "$work"/again/blackbox/*-crash)
