@@ -3,6 +3,8 @@
 // back by minutes.
 #include <doctest/doctest.h>
 
+#include <array>
+#include <cmath>
 #include <memory>
 #include <random>
 
@@ -59,6 +61,24 @@ TEST_CASE("No scan lasts longer than its points' times can say, whatever azimuth
   }
   if (stream.flush(*scan)) check();
   CHECK(scans > 1'000);
+}
+
+TEST_CASE("A packet that is late by its clock but lies minutes after the open scan is too late for it") {
+  VelodyneStream stream;
+  const auto scan = std::make_unique<Scan>();
+  // The clock leaps ahead and then back by two minutes, both too early to be believed; then it goes on as before.
+  constexpr std::array<std::uint32_t, 4> kStampsUs{0, 263'144, 3'469'659'854U, 1'000};
+  std::int64_t host_ns = kHostStart;
+  for (std::size_t packet = 0; packet < kStampsUs.size(); ++packet) {
+    PacketPlan plan;
+    plan.first_azimuth_deg = 10.0 * static_cast<double>(packet);
+    plan.timestamp_us = kStampsUs[packet];
+    stream.add_packet(build_packet(plan), host_ns, *scan);
+    host_ns += 1'327'000;
+  }
+  CHECK(stream.counters().too_late == 1);
+  REQUIRE(stream.flush(*scan));
+  CHECK(scan->end_stamp_ns - scan->stamp_ns <= kLongestScanNs);
 }
 
 }  // namespace isobar::test::test_impossible_packets
