@@ -147,7 +147,7 @@ TEST_CASE("mistakes end with their exit code: usage 64, data 65") {
   CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--window", "-1"}) == 64);
   CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--model", "A_cubic"}) == 64);
   CHECK(calibrate_exit({"--sensor", day, path("day1.csv"), "--reference", station, "--paired"}) == 64);
-  CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--sensor-unit", "psi"}) == 64);
+  CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--sensor-unit", "fathom"}) == 64);
   CHECK(calibrate_exit({"--sensor", day, "--reference", path("none.csv")}) == 65);
   CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--sensor-pressure", "P"}) == 65);
   CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--sensor-unit", "kPa"}) == 65);
