@@ -130,7 +130,7 @@ void add_columns(CLI::App& command, const std::string& role, recording::Pressure
   command
       .add_option("--" + role + "-time-unit", columns.time_unit,
                   "unit of a numeric time (default: from header or values)")
-      ->option_text("ns|us|ms|s");
+      ->option_text("ns|us|ms|s|min|h");
 }
 
 /// Adds the options that select logs and columns.

@@ -27,7 +27,8 @@ recording::PressureColumns parse_columns(const std::string& text);
 inline constexpr const char* kColumnsHelp =
     "TIME[:UNIT],PRESSURE[:UNIT][,TEMPERATURE[:UNIT]]: columns and units, if the header does not name them; "
     "time in "
-    "ns, us, ms or s, pressure in Pa, hPa, kPa, bar, mmHg, torr, inHg, psi or atm, temperature in C, K or F";
+    "ns, us, ms, s, min or h, pressure in Pa, hPa, kPa, bar, mmHg, torr, inHg, psi or atm, temperature in C, "
+    "K or F";
 
 /// Air temperature without --air and without a thermometer.
 inline constexpr double kDefaultAirC = 20.0;

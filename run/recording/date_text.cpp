@@ -2,8 +2,10 @@
 #include "run/recording/date_text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <string>
+#include <utility>
 
 #include "run/text/number_text.hpp"
 
@@ -36,17 +38,29 @@ bool take(std::string_view& text, char expected) {
   return true;
 }
 
-bool take_day(std::string_view& text, std::int64_t& days) {
+/// Removes one or two digits from the front.
+bool take_one_or_two(std::string_view& text, int& value) {
+  const bool two = text.size() > 1 && text[1] >= '0' && text[1] <= '9';
+  return take_digits(text, two ? 2 : 1, value);
+}
+
+/// With `american`, "m/d/yyyy" as well: only beside AM or PM is that no day before a month.
+bool take_day(std::string_view& text, bool american, std::int64_t& days) {
   int year = 0;
   int month = 0;
   int day = 0;
+  const std::string_view whole = text;
+  const bool month_first = american && take_one_or_two(text, month) && take(text, '/') &&
+                           take_one_or_two(text, day) && take(text, '/') && take_digits(text, 4, year);
+  if (!month_first) text = whole;
   const char separator = text.size() > 4 ? text[4] : '-';
   const bool year_first = separator == '-' || separator == '/';
   const bool parsed =
-      year_first ? take_digits(text, 4, year) && take(text, separator) && take_digits(text, 2, month) &&
-                       take(text, separator) && take_digits(text, 2, day)
-                 : take_digits(text, 2, day) && take(text, '.') && take_digits(text, 2, month) &&
-                       take(text, '.') && take_digits(text, 4, year);
+      month_first  ? true
+      : year_first ? take_digits(text, 4, year) && take(text, separator) && take_digits(text, 2, month) &&
+                         take(text, separator) && take_digits(text, 2, day)
+                   : take_digits(text, 2, day) && take(text, '.') && take_digits(text, 2, month) &&
+                         take(text, '.') && take_digits(text, 4, year);
   if (!parsed) return false;
   const std::chrono::year_month_day date{std::chrono::year(year),
                                          std::chrono::month(static_cast<unsigned>(month)),
@@ -70,6 +84,29 @@ bool take_seconds(std::string_view& text, std::int64_t& ns) {
   const bool fits = length >= 2 && text::parse_seconds(digits, ns) && ns < kNsPerMinute;
   text.remove_prefix(length);
   return fits;
+}
+
+enum class HalfDay : std::uint8_t { kNone, kAm, kPm };
+
+/// Removes AM or PM from the end.
+HalfDay take_half_day(std::string_view& text) {
+  constexpr std::array<std::pair<std::string_view, HalfDay>, 4> kEnds{
+      {{"AM", HalfDay::kAm}, {"am", HalfDay::kAm}, {"PM", HalfDay::kPm}, {"pm", HalfDay::kPm}}};
+  for (const auto& [end, half] : kEnds) {
+    if (!text.ends_with(end)) continue;
+    text.remove_suffix(end.size());
+    text = text::trimmed(text);
+    return half;
+  }
+  return HalfDay::kNone;
+}
+
+/// 12:30 AM is half past midnight, 12:30 PM half past noon.
+bool to_whole_day(HalfDay half, std::int64_t& of_day_ns) {
+  if (half == HalfDay::kNone) return true;
+  if (of_day_ns < kDayNs / 24 || of_day_ns >= kDayNs / 24 * 13) return false;  // a clock of 1 to 12 hours
+  of_day_ns = of_day_ns % (kDayNs / 2) + (half == HalfDay::kPm ? kDayNs / 2 : 0);
+  return true;
 }
 
 /// "h:mm" or "hh:mm", seconds optional; 24:00 is the end of a day, and nothing follows it (ISO 8601).
@@ -117,8 +154,10 @@ bool parse_date(std::string_view text, std::int64_t& stamp_ns) {
   std::int64_t days = 0;
   std::int64_t of_day_ns = 0;
   std::int64_t zone_minutes = 0;
-  if (!take_day(text, days) || (!take(text, ' ') && !take(text, 'T')) || !take_time(text, of_day_ns) ||
-      !take_zone(text, zone_minutes) || !text.empty()) {
+  const HalfDay half = take_half_day(text);
+  if (!take_day(text, half != HalfDay::kNone, days) || (!take(text, ' ') && !take(text, 'T')) ||
+      !take_time(text, of_day_ns) || !take_zone(text, zone_minutes) || !text.empty() ||
+      !to_whole_day(half, of_day_ns)) {
     return false;
   }
   stamp_ns = (days * 24 * 60 - zone_minutes) * 60 * 1'000'000'000 + of_day_ns;
@@ -127,7 +166,8 @@ bool parse_date(std::string_view text, std::int64_t& stamp_ns) {
 
 bool parse_time_of_day(std::string_view text, std::int64_t& of_day_ns) {
   text = text::trimmed(text);
-  return take_time(text, of_day_ns) && text.empty();
+  const HalfDay half = take_half_day(text);
+  return take_time(text, of_day_ns) && text.empty() && to_whole_day(half, of_day_ns);
 }
 
 }  // namespace isobar::recording

@@ -28,8 +28,9 @@ bool is_time(std::string_view name) {
 
 /// For headers in which no column begins like a time.
 bool may_be_time(std::string_view name) {
-  constexpr std::array kWords = {"time", "timestamp", "stamp",   "datetime",
-                                 "date", "zeit",      "uhrzeit", "datum"};
+  constexpr std::array kWords = {"time",    "timestamp", "stamp",   "datetime", "date",   "zeit",
+                                 "uhrzeit", "datum",     "elapsed", "uptime",   "millis", "micros",
+                                 "seconds", "minutes",   "hours",   "t_min",    "t_h"};
   return std::any_of(kWords.begin(), kWords.end(), [&](const char* word) { return has_word(name, word); });
 }
 

@@ -49,7 +49,7 @@ std::string with_value(const text::CsvReader& csv, const std::string& rule, std:
 void read_rows(text::CsvReader& csv, const Columns& columns, const PressureHeader& header, TimeColumn& time,
                RawLog& log) {
   const auto number = [&](std::size_t column, double& value) {
-    return text::parse_number(with_decimal_point(csv.field(column), header.format.separator), value);
+    return text::parse_number(with_decimal_point(csv.field(column)), value);
   };
   std::size_t below_header = 0;
   for (auto row = csv.next(); row != text::CsvReader::Row::kEnd; row = csv.next()) {

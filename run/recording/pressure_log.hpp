@@ -17,7 +17,7 @@ struct PressureColumns {
   std::string temperature;
   std::string pressure_unit;     ///< see unit_of_word()
   std::string temperature_unit;  ///< C, K, F
-  std::string time_unit;         ///< ns, us, ms, s
+  std::string time_unit;         ///< ns, us, ms, s, min, h
   bool needs_temperature = true;
 };
 

@@ -142,8 +142,25 @@ double pascals_per(PressureUnit unit) {
 
 std::optional<PressureUnit> unit_of_word(std::string_view word) {
   const std::string lower = lower_case(word);
-  if (lower == "mbar" || lower == "mb" || lower == "millibar") return PressureUnit::kHectopascal;
-  if (lower == "psia") return PressureUnit::kPsi;
+  struct Spelling {
+    std::string_view word;
+    PressureUnit unit;
+  };
+  constexpr std::array<Spelling, 12> kSpellings{{{"mbar", PressureUnit::kHectopascal},
+                                                 {"mb", PressureUnit::kHectopascal},
+                                                 {"millibar", PressureUnit::kHectopascal},
+                                                 {"millibars", PressureUnit::kHectopascal},
+                                                 {"hectopascal", PressureUnit::kHectopascal},
+                                                 {"hectopascals", PressureUnit::kHectopascal},
+                                                 {"pascal", PressureUnit::kPa},
+                                                 {"pascals", PressureUnit::kPa},
+                                                 {"kilopascal", PressureUnit::kKilopascal},
+                                                 {"kilopascals", PressureUnit::kKilopascal},
+                                                 {"atmospheres", PressureUnit::kAtm},
+                                                 {"psia", PressureUnit::kPsi}}};
+  for (const Spelling& spelling : kSpellings) {
+    if (lower == spelling.word) return spelling.unit;
+  }
   for (const auto& [unit, name] : kPressureUnitNames.entries) {
     if (lower == lower_case(name)) return unit;
   }

@@ -16,16 +16,48 @@ namespace {
 constexpr double kMostNs = 9.2e18;
 constexpr std::int64_t kNsPerS = 1'000'000'000;
 constexpr std::int64_t kNsPerDay = 86'400 * kNsPerS;
-constexpr std::array<TimeUnit, 4> kTimeUnits = {{{"ns", 1.0}, {"us", 1e3}, {"ms", 1e6}, {"s", 1e9}}};
+constexpr std::array<TimeUnit, 6> kTimeUnits = {
+    {{"ns", 1.0}, {"us", 1e3}, {"ms", 1e6}, {"s", 1e9}, {"min", 60e9}, {"h", 3600e9}}};
+constexpr const TimeUnit* kNanosecond = kTimeUnits.data();
+constexpr const TimeUnit* kSecond = &kTimeUnits[3];
+
+struct UnitWord {
+  const char* word;
+  const char* unit;
+};
+/// Words of a column's name that name its unit, besides the units themselves.
+constexpr std::array<UnitWord, 17> kUnitWords = {{{"nanoseconds", "ns"},
+                                                  {"nanosec", "ns"},
+                                                  {"nsec", "ns"},
+                                                  {"nanos", "ns"},
+                                                  {"microseconds", "us"},
+                                                  {"microsec", "us"},
+                                                  {"usec", "us"},
+                                                  {"micros", "us"},
+                                                  {"milliseconds", "ms"},
+                                                  {"millisec", "ms"},
+                                                  {"msec", "ms"},
+                                                  {"millis", "ms"},
+                                                  {"seconds", "s"},
+                                                  {"sec", "s"},
+                                                  {"secs", "s"},
+                                                  {"minutes", "min"},
+                                                  {"hours", "h"}}};
+
+/// Whether a column's name says that its times are in this unit.
+bool says_unit(std::string_view column, std::string_view unit) {
+  return has_word(column, unit) ||
+         std::any_of(kUnitWords.begin(), kUnitWords.end(), [&](const UnitWord& known) {
+           return unit == known.unit && has_word(column, known.word);
+         });
+}
 
 }  // namespace
 
-std::string with_decimal_point(std::string_view text, char separator) {
+std::string with_decimal_point(std::string_view text) {
   std::string number(text);
   const std::size_t comma = number.find(',');
-  if (separator == ',' || comma == std::string::npos || number.find(',', comma + 1) != std::string::npos) {
-    return number;
-  }
+  if (comma == std::string::npos || number.find(',', comma + 1) != std::string::npos) return number;
   if (number.find('.', comma) != std::string::npos) return number;
   number[comma] = '.';
   // Points before the comma group thousands.
@@ -35,20 +67,18 @@ std::string with_decimal_point(std::string_view text, char separator) {
 }
 
 TimeColumn::TimeColumn(const PressureHeader& header, const std::string& unit)
-    : name_(header.time),
-      rest_name_(header.time_rest),
-      layout_(header.time_layout),
-      separator_(header.format.separator) {
+    : name_(header.time), rest_name_(header.time_rest), layout_(header.time_layout) {
   for (const TimeUnit& known : kTimeUnits) {
     if (unit == known.name) {
       use(known, "as the command line says");
+      unit_is_chosen_ = true;
     }
   }
   if (!unit.empty() && unit_ == nullptr) {
-    throw UsageError("unit of time: must be ns, us, ms or s (got '" + unit + "')");
+    throw UsageError("unit of time: must be ns, us, ms, s, min or h (got '" + unit + "')");
   }
   for (const TimeUnit& known : kTimeUnits) {
-    if (unit_ == nullptr && has_word(name_, known.name)) {
+    if (unit_ == nullptr && says_unit(name_, known.name)) {
       use(known, "as the column's name says");
     }
   }
@@ -62,8 +92,10 @@ bool TimeColumn::parse(std::string_view text, std::string_view rest, const std::
     return parse_date(both, stamp_ns);
   }
   if (layout_ != TimeLayout::kOneColumn) return parse_pair(text, rest, stamp_ns);
-  if (unit_ == nullptr && parse_text(text, stamp_ns)) return true;
-  return !is_date_ && !is_time_of_day_ && parse_number(with_decimal_point(text, separator_), place, stamp_ns);
+  // "time (h:m:s)": letters that are units of numbers as well.
+  const bool may_be_text = unit_ == nullptr || (!unit_is_chosen_ && text.find(':') != std::string_view::npos);
+  if (may_be_text && parse_text(text, stamp_ns)) return true;
+  return !is_date_ && !is_time_of_day_ && parse_number(with_decimal_point(text), place, stamp_ns);
 }
 
 bool TimeColumn::parse_pair(std::string_view text, std::string_view rest, std::int64_t& stamp_ns) {
@@ -109,10 +141,10 @@ bool TimeColumn::parse_number(const std::string& text, const std::string& place,
   if (unit_ == nullptr) {
     guess(number, place);
   }
-  if (unit_ == &kTimeUnits.front()) {
+  if (unit_ == kNanosecond) {
     return text::parse_number(text, stamp_ns);
   }
-  if (unit_ == &kTimeUnits.back() && text::parse_seconds(text, stamp_ns)) {
+  if (unit_ == kSecond && text::parse_seconds(text, stamp_ns)) {
     return true;
   }
   const double ns = number * unit_->ns;
@@ -145,6 +177,7 @@ void TimeColumn::guess(double number, const std::string& place) {
   constexpr double kYear2000S = 946'684'800.0;
   constexpr double kYear2100S = 4'102'444'800.0;
   for (const TimeUnit& unit : kTimeUnits) {
+    if (&unit > kSecond) break;  // nobody counts minutes or hours from 1970
     const double seconds = number * unit.ns * 1e-9;
     if (seconds >= kYear2000S && seconds <= kYear2100S) {
       use(unit, "the only unit in which it is a date of this century");
@@ -152,7 +185,7 @@ void TimeColumn::guess(double number, const std::string& place) {
     }
   }
   throw DataError(place + "the unit of time cannot be told from column '" + name_ +
-                  "': say whether it is ns, us, ms or s");
+                  "': say whether it is ns, us, ms, s, min or h");
 }
 
 }  // namespace isobar::recording

@@ -15,8 +15,8 @@ struct TimeUnit {
   double ns;
 };
 
-/// `text` with a decimal point for a decimal comma, where commas separate no fields: "1.013,25" is 1013.25.
-[[nodiscard]] std::string with_decimal_point(std::string_view text, char separator);
+/// A field with a decimal point for its decimal comma: "1.013,25" is 1013.25.
+[[nodiscard]] std::string with_decimal_point(std::string_view text);
 
 /// Parser of the time of a log's rows: dates as text, times of day, or numbers in the unit that is named or that gives a
 /// date of this century.
@@ -46,9 +46,9 @@ class TimeColumn {
   std::string name_;
   std::string rest_name_;
   TimeLayout layout_;
-  char separator_;
   const TimeUnit* unit_ = nullptr;
   const char* reason_ = "";
+  bool unit_is_chosen_ = false;  // on the command line
   bool is_date_ = false;
   bool is_time_of_day_ = false;
   std::int64_t day_ = 0;  // of the last time of day

@@ -10,10 +10,25 @@
 
 namespace isobar::text {
 
+namespace {
+
+/// End of the first field. A separator between quotation marks divides nothing (RFC 4180).
+std::size_t end_of_field(std::string_view line, char separator) {
+  const std::size_t begin = line.find_first_not_of(' ');
+  if (begin == std::string_view::npos || line[begin] != '"') return line.find(separator);
+  std::size_t close = line.find('"', begin + 1);
+  while (close != std::string_view::npos && line.substr(close + 1).starts_with('"')) {
+    close = line.find('"', close + 2);  // a doubled mark stands for one
+  }
+  return line.find(separator, close == std::string_view::npos ? 0 : close);
+}
+
+}  // namespace
+
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields) {
   fields.clear();
   for (;;) {
-    const auto end = line.find(separator);
+    const auto end = end_of_field(line, separator);
     fields.push_back(trimmed(line.substr(0, end)));
     if (end == std::string_view::npos) {
       return;

@@ -17,7 +17,8 @@ struct CsvFormat {
   std::size_t header_line = 1;  ///< the line that names the columns
 };
 
-/// Splits a line into fields; blanks and quotation marks around a field are removed.
+/// Splits a line into fields; blanks and quotation marks around a field are removed, separators between quotation
+/// marks are kept.
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields);
 
 /// CSV reader. The first line (or another, see CsvFormat) names the columns, in any order; unknown columns,

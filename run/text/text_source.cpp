@@ -6,7 +6,7 @@
 namespace isobar::text {
 namespace {
 
-constexpr std::size_t kRawBytes = 32 * 1024;
+constexpr std::size_t kRawBytes = std::size_t{32} * 1024;
 constexpr std::size_t kLongestUtf8 = 4;
 constexpr std::uint32_t kReplacement = 0xFFFD;  // for halves of surrogate pairs
 
@@ -18,6 +18,10 @@ bool is_low_surrogate(std::uint32_t unit) { return unit >= 0xDC00 && unit < 0xE0
 TextSource::TextSource(const std::filesystem::path& file) : file_(file) {
   if (file_.head().starts_with("\xFF\xFE")) encoding_ = Encoding::kUtf16Little;
   if (file_.head().starts_with("\xFE\xFF")) encoding_ = Encoding::kUtf16Big;
+  // Without a byte order mark: every second byte of Latin letters is 0.
+  const std::string_view head = file_.head();
+  if (head.size() >= 4 && head[0] == 0 && head[1] != 0 && head[2] == 0) encoding_ = Encoding::kUtf16Big;
+  if (head.size() >= 4 && head[0] != 0 && head[1] == 0 && head[3] == 0) encoding_ = Encoding::kUtf16Little;
   if (encoding_ != Encoding::kBytes) raw_.resize(kRawBytes);
 }
 

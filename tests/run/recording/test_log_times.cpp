@@ -130,6 +130,48 @@ TEST_CASE("date and time in two columns are one time, with decimal commas where 
   CHECK(log_of("Time;p_hPa;Temp\n1586000000,25;985,5;20,5\n").samples[0].temperature_c == 20.5);
 }
 
+TEST_CASE(
+    "a clock of twice twelve hours, with the month first as its loggers write it, is a clock of a day") {
+  const auto time_of = [](const char* text) {
+    return log_of("Time,Pressure (Pa)\n" + std::string(text) + ",100000\n").samples.at(0).stamp_ns /
+           kSecondNs;
+  };
+  constexpr std::int64_t kDayS = 1'699'920'000;  // 2023-11-14
+  CHECK(time_of("11/14/2023 10:13:20 PM") == kDayS + 22 * 3'600 + 13 * 60 + 20);
+  CHECK(time_of("11/14/2023 12:30:00 AM") == kDayS + 30 * 60);
+  CHECK(time_of("11/14/2023 12:30:00 pm") == kDayS + 12 * 3'600 + 30 * 60);
+  CHECK(time_of("1/5/2024 9:05 AM") == 1'704'412'800 + 9 * 3'600 + 5 * 60);
+  CHECK(time_of("2023-11-14 1:00:00 PM") == kDayS + 13 * 3'600);
+  CHECK(time_of("10:13:20 PM") == 22 * 3'600 + 13 * 60 + 20);
+  for (const char* no_time : {"11/14/2023 13:00:00 PM", "11/14/2023 0:30:00 AM", "11/14/2023 22:13:20"}) {
+    CAPTURE(no_time);  // no hours of such a clock; and without AM or PM, 11/12 may be in November or December
+    CHECK_THROWS_AS(time_of(no_time), DataError);
+  }
+}
+
+TEST_CASE("the unit of a counted time is read from the words of loggers") {
+  const auto second_ns = [](const std::string& column, const char* second_row) {
+    const PressureLog log = log_of(column + ",p_Pa\n0,100000\n" + second_row + ",100001\n");
+    return log.samples.at(1).stamp_ns - log.samples.at(0).stamp_ns;
+  };
+  CHECK(second_ns("millis", "31") == 31 * kMillisecondNs);
+  CHECK(second_ns("micros", "31250") == kRowNs);
+  CHECK(second_ns("seconds", "0.03125") == kRowNs);
+  CHECK(second_ns("elapsed (min)", "0.5") == 30 * kSecondNs);
+  CHECK(second_ns("hours", "0.25") == 900 * kSecondNs);
+  CHECK_THROWS_WITH_AS(second_ns("elapsed", "1"), doctest::Contains("the unit of time cannot be told"),
+                       DataError);
+  const PressureLog letters = log_of("time (h:m:s),p_Pa\n08:00:00.25,100000\n08:00:01.5,100001\n");
+  CHECK(letters.samples.at(1).stamp_ns - letters.samples.at(0).stamp_ns == 1'250 * kMillisecondNs);
+}
+
+TEST_CASE("a decimal comma between quotation marks is one, where commas separate fields") {
+  const PressureLog log = log_of("\"t_s\",\"p_hPa\",\"Temp (C)\"\n\"100,25\",\"1.013,25\",\"20,5\"\n");
+  CHECK(log.samples.at(0).stamp_ns == 100'250'000'000);
+  CHECK(log.samples.at(0).pressure_pa == doctest::Approx(101'325.0));
+  CHECK(log.samples.at(0).temperature_c == 20.5);
+}
+
 TEST_CASE("a time of day alone goes on across midnight") {
   const PressureLog log =
       log_of("Time,Pressure (Pa)\n" +

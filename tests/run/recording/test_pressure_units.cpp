@@ -52,6 +52,8 @@ TEST_CASE("every unit of pressure that a header names is converted, however it i
                                                                  {"Pressure (mm Hg)", "760"},
                                                                  {"Pressure [Torr]", "760"},
                                                                  {"pressure_torr", "760"},
+                                                                 {"Pressure (Pascal)", "101325"},
+                                                                 {"Pressure [hectopascals]", "1013.25"},
                                                                  {"Pressure (inHg)", "29.92126"},
                                                                  {"Pressure (in. Hg)", "29.92126"},
                                                                  {"Pressure (inches of mercury)", "29.92126"},

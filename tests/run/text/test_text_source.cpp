@@ -27,10 +27,10 @@ void write_gzip(const std::filesystem::path& file, const std::string& bytes) {
   REQUIRE(gzclose(out) == Z_OK);
 }
 
-/// Text of code points below 0x10000 in UTF-16 with a byte-order mark.
-std::string utf16(const std::u16string& text, bool big_endian) {
+/// Text of code points below 0x10000 in UTF-16.
+std::string utf16(const std::u16string& text, bool big_endian, bool mark = true) {
   std::string bytes;
-  for (const char16_t unit : u"\uFEFF" + text) {
+  for (const char16_t unit : (mark ? u"\uFEFF" : u"") + text) {
     const char low = static_cast<char>(unit & 0xFFU);
     const char high = static_cast<char>(unit >> 8U);
     bytes += big_endian ? high : low;
@@ -58,6 +58,17 @@ std::string many_rows(int count) {
 }
 
 }  // namespace
+
+TEST_CASE("UTF-16 without a byte-order mark is told by the zeros of its Latin letters") {
+  const TemporaryFolder scratch;
+  for (const bool big_endian : {false, true}) {
+    const std::filesystem::path file = scratch.path() / "log.csv";
+    write(file, utf16(u"Zeit;Temp \u00B0C\n1;2\n", big_endian, false));
+    CHECK(lines_of(file) == std::vector<std::string>{"Zeit;Temp \xC2\xB0"
+                                                     "C",
+                                                     "1;2"});
+  }
+}
 
 TEST_CASE("files in UTF-16 of either byte order read as UTF-8, surrogate pairs and broken halves included") {
   const TemporaryFolder folder;
