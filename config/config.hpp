@@ -20,6 +20,7 @@
 #include "drivers/encoder/settings.hpp"
 #include "drivers/icp20100/settings.hpp"
 #include "drivers/iio/settings.hpp"
+#include "drivers/lidar/lidar_time.hpp"
 #include "drivers/ms5611/settings.hpp"
 #include "drivers/vn100/settings.hpp"
 #include "drivers/xsens/settings.hpp"
@@ -46,9 +47,10 @@ struct LidarSettings {
   std::uint16_t port = 2368;        ///< UDP port of the data packets
   std::uint16_t info_port = 0;      ///< UDP port of its IMU, position or device information; 0: the model's
   std::string calibration_file;     ///< of this sensor, see LidarConfig; empty: none
-  std::string sender;               ///< IPv4 address of the lidar; empty: the first that sends
-  Mount mount;                      ///< of the sensor in base_link
-  double min_range_m = 0.3;         ///< these four: see LidarLimits
+  LidarTime time = LidarTime::kReceive;  ///< clock that stamps the points
+  std::string sender;                    ///< IPv4 address of the lidar; empty: the first that sends
+  Mount mount;                           ///< of the sensor in base_link
+  double min_range_m = 0.3;              ///< these four: see LidarLimits
   double max_range_m = 300.0;
   double mask_start_deg = 0.0;
   double mask_end_deg = 0.0;

@@ -23,6 +23,14 @@ void add_lidar_settings(LidarSettings& lidar, std::vector<Setting>& settings) {
          "Hesai (CSV) or of a RoboSense (CSV). A relative path starts at the folder of this configuration. "
          "Empty: "
          "nominal angles, or those that the sensor sends.");
+  s.choice(
+      "time", &lidar.time, kLidarTimeNames.names(),
+      "Clock that stamps the points. receive: the kernel's receive times, which are late by the time of a "
+      "packet: 1 "
+      "ms for a VLP-16, 7 to 17 ms for an Ouster. sensor: the lidar's own, where it follows GPS, PPS or PTP "
+      "and "
+      "this machine's clock the same source (chrony, ptp4l); while it is not locked, or more than 50 ms off, "
+      "receive times are used and lidar/clock in the health report says so.");
   s.text("address", lidar.address, TextRule::kIpv4,
          "IPv4 address on which packets are received. 0.0.0.0: every interface.");
   s.number("port", &lidar.port, "", 1, 65'535,

@@ -9,6 +9,27 @@
 #include "daemon/lidar_sender.hpp"
 
 namespace isobar {
+namespace {
+
+using ipc::HealthLevel;
+
+/// State of the lidar's clock, and whether it stamps the points where it is to.
+void add_lidar_clock(ipc::HealthReport& report, LidarTime wanted, const LidarStatus& lidar) {
+  const std::string state(kLidarSyncTexts.name(lidar.sync));
+  if (wanted == LidarTime::kSensor && lidar.counters.scans > 0) {
+    const std::string reason =
+        may_stamp(lidar.sync) ? "its seconds are not those of this machine's clock" : state;
+    add_entry(
+        report, "lidar/clock", lidar.sensor_stamps ? HealthLevel::kOk : HealthLevel::kWarning,
+        lidar.sensor_stamps ? "stamps the points; " + state : "receive times stamp the points: " + reason,
+        0.0);
+  } else if (lidar.sync != LidarSync::kUnknown) {
+    const bool is_faulty = lidar.sync == LidarSync::kFault;
+    add_entry(report, "lidar/clock", is_faulty ? HealthLevel::kWarning : HealthLevel::kOk, state, 0.0);
+  }
+}
+
+}  // namespace
 
 using ipc::HealthLevel;
 using ipc::HealthReport;
@@ -32,11 +53,7 @@ void HealthMonitor::fill_lidar(const StatusSnapshot& now, double elapsed_s, Heal
   } else {
     add_stream(report, "lidar", now.lidar.last_packet_ns, now.now_ns, kSensorSilenceNs, rate_hz, where);
   }
-  if (now.lidar.sync != LidarSync::kUnknown) {
-    const bool is_faulty = now.lidar.sync == LidarSync::kFault;
-    add_entry(report, "lidar/clock", is_faulty ? HealthLevel::kWarning : HealthLevel::kOk,
-              std::string(kLidarSyncTexts.name(now.lidar.sync)), 0.0);
-  }
+  add_lidar_clock(report, config_.lidar.time, now.lidar);
   add_senders(report, "lidar", now.lidar.sender, now.now_ns, "lidar.sender chooses");
   if (counters.wrong_model > before.wrong_model) {
     add_entry(report, "lidar/model", HealthLevel::kError, now.lidar.wrong_model_message.data(),

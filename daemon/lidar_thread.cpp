@@ -18,7 +18,7 @@ LidarThread::LidarThread(const StageSettings& stages, const LidarSettings& lidar
     : receiver_(lidar.address, lidar.port),
       configured_sender_(lidar.sender.empty() ? 0 : ipv4_of(lidar.sender)),
       sender_(lidar.sender),
-      assembler_(make_lidar_decoder(stages.lidar)),
+      assembler_(make_lidar_decoder(stages.lidar), stages.lidar.time),
       publisher_(ipc::topics::kLidarScan),
       deadline_(settings.deadline_ms),
       worker_(std::move(settings), receiver_, [this] { loop(); }) {
@@ -111,6 +111,7 @@ void LidarThread::report() noexcept {
   draft_status_.sender = sender_.status();
   draft_status_.clock_jumped_ns = assembler_.clock_jumped_ns();
   draft_status_.sync = assembler_.decoder().sync();
+  draft_status_.sensor_stamps = assembler_.sensor_stamps();
   draft_status_.punctuality = deadline_.status();
   draft_status_.dropped_by_kernel = receiver_.dropped_by_kernel();
   status_.put(draft_status_);

@@ -35,6 +35,7 @@ struct LidarStatus {
   SenderStatus sender;                       ///< port 0
   std::int64_t clock_jumped_ns = 0;          ///< last jump of the lidar's clock, robot clock; 0: never
   LidarSync sync = LidarSync::kUnknown;      ///< state of the lidar's clock
+  bool sensor_stamps = false;                ///< the last scan was stamped by that clock
   DeadlineStatus punctuality;                ///< from the end of a scan to its publication
   /// Names the configured and the received model; empty while all packets are of the configured one.
   std::array<char, 120> wrong_model_message{};

@@ -14,7 +14,7 @@ constexpr ScanQueueConfig kLockStepQueue{.reach_ns = 0, .wait_ns = 1, .admission
 
 LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileStorage* storage)
     : sender_(settings.lidar_sender),
-      assembler_(make_lidar_decoder(settings.lidar)),
+      assembler_(make_lidar_decoder(settings.lidar), settings.lidar.time),
       prior_estimator_(settings.prior),
       registration_(settings.registration, settings.method, settings.T_base_lidar, sink),
       map_(settings.map, settings.T_base_lidar, storage),

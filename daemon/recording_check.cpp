@@ -26,7 +26,7 @@ class CheckedInputs {
  public:
   explicit CheckedInputs(const Config& used)
       : sender_(used.lidar.sender),
-        assembler_(make_lidar_decoder(stage_settings(used).lidar)),
+        assembler_(make_lidar_decoder(stage_settings(used).lidar), used.lidar.time),
         check_({.imu = imu_mount(used), .lidar = used.lidar.mount}),
         scan_(std::make_unique<Scan>()),
         has_imu_(used.imu.present()),

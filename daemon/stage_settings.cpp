@@ -17,6 +17,7 @@ StageSettings stage_settings(const Config& config) {
   StageSettings settings;
   settings.lidar.model = config.lidar.model;
   settings.lidar.calibration_file = config.lidar.calibration_file;
+  settings.lidar.time = config.lidar.time;
   settings.lidar_sender = config.lidar.sender;
   settings.lidar.limits.min_range_m = config.lidar.min_range_m;
   settings.lidar.limits.max_range_m = config.lidar.max_range_m;

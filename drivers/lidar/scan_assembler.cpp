@@ -24,8 +24,9 @@ ClockAnchorConfig clock_of(const LidarDecoder& decoder) {
 
 }  // namespace
 
-ScanAssembler::ScanAssembler(std::unique_ptr<LidarDecoder> decoder)
+ScanAssembler::ScanAssembler(std::unique_ptr<LidarDecoder> decoder, LidarTime time)
     : decoder_(std::move(decoder)),
+      time_(time),
       anchor_(clock_of(*decoder_)),
       continuity_(decoder_->period_ns()),
       pending_bytes_(decoder_->longest_packet()) {}
@@ -62,7 +63,7 @@ bool ScanAssembler::flush(Scan& current) {
 
 bool ScanAssembler::take_imu(ImuSample& sample) {
   if (!decoder_->take_imu(sample) || counters_.packets == 0) return false;
-  sample.stamp_ns = anchor_.to_host_ns(sample.stamp_ns);
+  sample.stamp_ns += sensor_offset_ns(anchor_.offset_ns()).value_or(anchor_.offset_ns());
   return true;
 }
 
@@ -274,7 +275,16 @@ void ScanAssembler::take_pending(Scan& current) {
   append(pending_packet_, pending_column_, pending_packet_.columns.count, current);
 }
 
+/// The offset of the sensor's clock, if that is to stamp the points and can.
+std::optional<std::int64_t> ScanAssembler::sensor_offset_ns(std::int64_t measured_ns) const {
+  if (time_ == LidarTime::kReceive || !may_stamp(decoder_->sync())) return std::nullopt;
+  return whole_seconds_ns(measured_ns);
+}
+
 void ScanAssembler::complete(std::int64_t offset_ns, Scan& current) {
+  const std::optional<std::int64_t> by_sensor_ns = sensor_offset_ns(offset_ns);
+  sensor_stamps_ = by_sensor_ns.has_value();
+  offset_ns = by_sensor_ns.value_or(offset_ns);
   current.stamp_ns = scan_start_ns_ + offset_ns;
   current.end_stamp_ns = scan_end_ns_ + offset_ns;
   scan_open_ = false;

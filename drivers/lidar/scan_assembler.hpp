@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "drivers/lidar/blind_sector.hpp"
 #include "drivers/lidar/lidar_counters.hpp"
 #include "drivers/lidar/lidar_decoder.hpp"
+#include "drivers/lidar/lidar_time.hpp"
 
 namespace isobar {
 
@@ -35,12 +37,13 @@ struct DecodeResult {
 ///     }
 ///     if (assembler.flush(*scan)) { publish(scan); }
 ///
-/// Point times within a scan come from the sensor's clock; ClockAnchor ties Scan::stamp_ns to the host's. A
+/// Point times within a scan come from the sensor's clock; ClockAnchor ties Scan::stamp_ns to the host's, with
+/// LidarTime::kSensor the seconds that both count. A
 /// scan ends where the azimuth passes 0, with a reduced field of view at the end of the field, after a gap of
 /// about a turn, at a step of the sensor's clock, and when it is full. No point is lost.
 class ScanAssembler {
  public:
-  explicit ScanAssembler(std::unique_ptr<LidarDecoder> decoder);
+  explicit ScanAssembler(std::unique_ptr<LidarDecoder> decoder, LidarTime time = LidarTime::kReceive);
 
   /// Decodes a packet.
   /// @param payload UDP payload
@@ -62,6 +65,8 @@ class ScanAssembler {
   [[nodiscard]] const LidarDecoder& decoder() const { return *decoder_; }
   /// Host stamp of the packet that showed the last jump of the sensor's clock (ClockContinuity); 0: none yet.
   [[nodiscard]] std::int64_t clock_jumped_ns() const { return clock_jumped_ns_; }
+  /// Whether the last scan was stamped by the sensor's clock.
+  [[nodiscard]] bool sensor_stamps() const { return sensor_stamps_; }
 
  private:
   struct Packet {
@@ -93,8 +98,11 @@ class ScanAssembler {
   void wait_for_next_scan(const Packet& packet, int first, std::uint32_t lost);
   void take_pending(Scan& current);
   void complete(std::int64_t offset_ns, Scan& current);
+  [[nodiscard]] std::optional<std::int64_t> sensor_offset_ns(std::int64_t measured_ns) const;
 
   std::unique_ptr<LidarDecoder> decoder_;
+  LidarTime time_;
+  bool sensor_stamps_ = false;
   ClockAnchor anchor_;
   ClockContinuity continuity_;
   LidarCounters counters_;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "drivers/lidar/lidar_decoder.hpp"
+#include "drivers/lidar/lidar_time.hpp"
 
 namespace isobar {
 
@@ -21,6 +22,7 @@ struct LidarConfig {
   /// The sensor's own calibration (RoboSense, Hesai: angles; Ouster: metadata); empty: nominal angles, where
   /// the model has them.
   std::string calibration_file;
+  LidarTime time = LidarTime::kReceive;  ///< what stamps the points, for ScanAssembler
 };
 
 /// A model with a decoder.
