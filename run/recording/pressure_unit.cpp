@@ -70,8 +70,13 @@ std::optional<UnitFinding<Unit>> named_unit(const UnitClues& clues, const Quanti
   for (const bool whole : {false, true}) {
     const std::string unknown = unknown_in(whole ? clues.units_line : clues.column_name, whole, quantity);
     if (!unknown.empty()) {
-      throw DataError(place + "the header names '" + unknown + "' as the unit of " + quantity.name +
-                      ", which is not known: name a known one with --columns …," + quantity.remedy);
+      throw DataError(std::string(place)
+                          .append("the header names '")
+                          .append(unknown)
+                          .append("' as the unit of ")
+                          .append(quantity.name)
+                          .append(", which is not known: name a known one with --columns …,")
+                          .append(quantity.remedy));
     }
   }
   std::vector<Unit> named = units_in(clues.column_name, quantity.unit_of);
@@ -105,9 +110,14 @@ UnitFinding<PressureUnit> guessed(const UnitClues& clues, const std::string& pla
     if (!mmhg && !inhg) {
       return {unit, "the only unit in which its median, " + median + ", is an air pressure"};
     }
-    throw DataError(place + "the unit of pressure cannot be told: its median, " + median +
-                    ", is an air pressure in " + std::string(kPressureUnitNames.name(unit)) + " and in " +
-                    (mmhg ? "mmHg" : "inHg") + ": name one with --columns …," + kPressureQuantity.remedy);
+    throw DataError(std::string(place)
+                        .append("the unit of pressure cannot be told: its median, ")
+                        .append(median)
+                        .append(", is an air pressure in ")
+                        .append(kPressureUnitNames.name(unit))
+                        .append(mmhg ? " and in mmHg" : " and in inHg")
+                        .append(": name one with --columns …,")
+                        .append(kPressureQuantity.remedy));
   }
   throw DataError(place + "the unit of pressure is unknown: its median, " + median +
                   ", is not an air pressure in Pa, hPa or kPa");

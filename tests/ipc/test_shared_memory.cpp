@@ -222,12 +222,14 @@ TEST_CASE("attached processes notice a killed broker, and the next broker starts
   CHECK(next_reader.wait(10s) == 0);
 }
 
-/// Sends priors until the attached peer says that it has received one.
+/// Sends priors until the attached peer says that it has received one. Each is higher than the one before, which the
+/// peer demands of all that wait in its queue.
 void send_until_received(Publisher<Prior>& priors, ChildProcess& reader) {
   std::string line;
+  Prior prior;
   while (!reader.read_line(line, 5ms)) {
-    Prior prior;
-    prior.height_m = 1.0;
+    REQUIRE(reader.running());
+    prior.height_m += 1.0;
     REQUIRE(priors.send(prior));
   }
   CHECK(line == "received");
