@@ -154,8 +154,9 @@ TEST_CASE("captures of loopback, raw IP and IPv4 give the payloads, of every num
                                                                  {14, ip_packet_for()},
                                                                  {101, ip_packet_for()},
                                                                  {228, ip_packet_for()}};
-  for (const auto& [link, frame] : links) {
-    CAPTURE(link);
+  for (const auto& entry : links) {
+    const auto& [link, frame] = entry;
+    INFO(entry.first);
     const Contents contents = read(pcap_header(link) + pcap_record(frame));
     REQUIRE(contents.packets.size() == 1);
     CHECK(contents.packets[0].payload == Bytes(100, 7));

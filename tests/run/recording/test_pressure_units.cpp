@@ -68,8 +68,9 @@ TEST_CASE("every unit of pressure that a header names is converted, however it i
                                                                  {"PressureHPA", "1013.25"},
                                                                  {"kPa", "101.325"},
                                                                  {"Pressure (avg) (Pa)", "101325"}};
-  for (const auto& [column, value] : columns) {
-    CAPTURE(column);
+  for (const auto& entry : columns) {
+    const auto& [column, value] = entry;
+    INFO(entry.first);
     CHECK(pressure_of(column, value) == doctest::Approx(101'325.0).epsilon(1e-6));
   }
 }
@@ -80,8 +81,9 @@ TEST_CASE(
       {"pressure_cmHg", "76"},    {"Pressure (ftH2O)", "33.9"},   {"pressure_psig", "1000"},
       {"Pressure (in)", "1000"},  {"Pressure (lb/ft^2)", "1000"}, {"Pressure [counts]", "98000"},
       {"pressure_dbar", "101325"}};
-  for (const auto& [column, value] : columns) {
-    CAPTURE(column);
+  for (const auto& entry : columns) {
+    const auto& [column, value] = entry;
+    INFO(entry.first);
     CHECK(contains(error_of(column, value), "as the unit of pressure, which is not known"));
   }
   CHECK(error_of("Pressure (station)", "985").empty());
@@ -103,18 +105,18 @@ TEST_CASE("temperatures in degF and K are converted, other units are errors") {
                              "Temp (\xC2\xB0"
                              "F)",
                              "Temp (\xE2\x84\x89)", "TempF", "temperature [degF]", "Temp Fahrenheit"}) {
-    CAPTURE(column);
+    INFO(std::string_view(column));
     CHECK(temperature_of(column, "73.4") == doctest::Approx(23.0));
   }
   for (const char* column : {"temperature_K", "Temp (K)", "temp_kelvin"}) {
-    CAPTURE(column);
+    INFO(std::string_view(column));
     CHECK(temperature_of(column, "296.15") == doctest::Approx(23.0));
   }
   for (const char* column : {"temperature_C",
                              "Temp (\xC2\xB0"
                              "C)",
                              "Temp (\xE2\x84\x83)", "Temp", "airTempC", "temp (board)"}) {
-    CAPTURE(column);
+    INFO(std::string_view(column));
     CHECK(temperature_of(column, "23") == doctest::Approx(23.0));
   }
   const auto error = [](const char* column, const char* value) -> std::string {
