@@ -165,7 +165,7 @@ struct Rig {
   Turning turning;
   WheelThread wheels;
   ipc::Subscriber<WheelSample> reader{ipc::topics::kWheel};
-  ipc::Waiter waiter{{&reader.raw()}};
+  ipc::Waiter waiter = ipc::Waiter({&reader.raw()});
   HealthMonitor monitor{config_of()};
   WheelSample last;
   WheelSample sum;

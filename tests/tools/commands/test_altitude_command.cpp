@@ -133,9 +133,9 @@ TEST_CASE(
     return log;
   };
   const tools::PressureLog moved = log_from(0, 110);
-  for (const auto& [first_s, last_s] :
-       {std::pair{5, 112}, {5, 115}, {-30, 90}, {20, 300}, {-100, 10}, {3, 113}}) {
-    CAPTURE(first_s);
+  for (const auto& span : {std::pair{5, 112}, {5, 115}, {-30, 90}, {20, 300}, {-100, 10}, {3, 113}}) {
+    const auto& [first_s, last_s] = span;
+    INFO(span.first);
     tools::PressureLog standing = log_from(first_s, last_s);
     const std::int64_t before_ns = standing.samples.front().stamp_ns;
     CHECK(tools::tie_clocks(moved, standing).find("trusted") != std::string::npos);
