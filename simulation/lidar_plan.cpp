@@ -127,8 +127,8 @@ constexpr LidarPlan xt16() {
   return plan;
 }
 
-/// RoboSense RS-Helios-16P: 30 deg, 55.56 us a cycle, 1.73 us a laser; beams stagger by 3.8 deg and start 35 mm
-/// from the axis. Data sheet: accuracy +-2 cm, 0.2 to 150 m.
+/// RoboSense RS-Helios-16P: 30 deg, 55.56 us a cycle, firing times by table; beams stagger by 3.8 deg and start
+/// 35 mm from the axis. Data sheet: accuracy +-2 cm, 0.2 to 150 m.
 constexpr LidarPlan helios16p() {
   LidarPlan plan;
   plan.name = "Helios-16P";
@@ -137,8 +137,9 @@ constexpr LidarPlan helios16p() {
   plan.info_port = 7788;
   plan.product = 6;
   plan.cycle_s = 55.56e-6;
-  plan.slot_s = 1.73e-6;
-  plan.slot = groups_of(1);
+  plan.slot_s = 1e-6;
+  plan.slot = {0.0,   3.15,  6.30,  9.45,  13.26, 17.08, 20.56, 23.71,
+               26.53, 27.77, 31.49, 32.73, 36.46, 38.94, 41.42, 43.91};
   plan.elevation_deg = ladder(15.0, -2.0);
   plan.azimuth_ahead_deg = repeated(std::array{3.8, -3.8});
   plan.distance_unit_m = 0.0025;
@@ -155,6 +156,7 @@ constexpr LidarPlan rs_lidar16() {
   plan.product = 1;
   plan.cycle_s = 55.5e-6;
   plan.slot_s = 2.8e-6;
+  plan.slot = groups_of(1);
   plan.azimuth_ahead_deg = {};
   for (std::size_t i = 0; i < 8; ++i) {
     plan.elevation_deg[i] = -15.0 + 2.0 * static_cast<double>(i);

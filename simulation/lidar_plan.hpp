@@ -50,7 +50,7 @@ struct LidarPlan {
   std::size_t columns = 0;         ///< of a turn; kColumns
   double first_s = 0.0;            ///< from the start of a cycle to its first firing
   double slot_s = 0.0;             ///< from a group of lasers to the next
-  Angles slot{};                   ///< by laser: number of its group
+  Angles slot{};                   ///< by laser: its firing, in slot_s after the first
   Angles elevation_deg{};
   Angles azimuth_ahead_deg{};  ///< of the beam before the rotor
   double zero_deg = 0.0;       ///< direction of azimuth 0 in the sensor's frame, clockwise from its x axis
