@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every simulated lidar against the project's decoder of its model, in a room whose walls are known in closed form.
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -60,13 +61,15 @@ Trajectory driving() {
 std::unique_ptr<ScanAssembler> assembler_of(const LidarPlan& plan) {
   recording::LidarEntry entry;
   describe_lidar(plan, entry);
-  const auto folder = std::filesystem::temp_directory_path();
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("isobar-simulated-lidars-" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
   write_lidar_calibration(plan, folder);
   LidarConfig config;
   config.model = entry.model;
   if (!entry.calibration_file.empty()) config.calibration_file = folder / entry.calibration_file;
   auto assembler = std::make_unique<ScanAssembler>(make_lidar_decoder(config));
-  if (!entry.calibration_file.empty()) std::filesystem::remove(config.calibration_file);
+  std::filesystem::remove_all(folder);
   if (plan.info_port != 0) {
     const auto unused = std::make_unique<Scan>();
     CHECK(assembler->add_packet(encode_angles(plan), 0, *unused).status == DecodeStatus::kNoPoints);
