@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
-#include <thread>
 
 #include "core/errors.hpp"
 #include "run/files/stl_file.hpp"
@@ -15,6 +14,8 @@
 #include "simulation/barometer_model.hpp"
 #include "simulation/imu_model.hpp"
 #include "simulation/lidar_model.hpp"
+#include "simulation/lidar_plan.hpp"
+#include "simulation/lidar_recording.hpp"
 #include "simulation/scenario.hpp"
 #include "simulation/scenario_list.hpp"
 #include "simulation/wheel_model.hpp"
@@ -199,30 +200,12 @@ void write_truth(const Run& run) {
   }
 }
 
-/// Packets in batches, each split among all cores; a packet depends on its number alone.
-void write_lidar(const Run& run, const std::function<void(double)>& progress) {
-  const LidarModel lidar(run.scenario.world, run.scenario.trajectory, run.lidar.T_base_sensor(),
-                         LidarErrors::draw(run.random("lidar errors")), run.request.seed);
-  const auto total = static_cast<std::uint64_t>(run.duration_s / LidarModel::packet_time_s(1));
-  const std::uint64_t workers = std::clamp(std::thread::hardware_concurrency(), 1U, 16U);
-  constexpr std::uint64_t kBatch = 512;
-  std::vector<ReceivedPacket> batch(kBatch);
-  const auto begin = static_cast<std::uint64_t>(run.deviations().start_at_s / LidarModel::packet_time_s(1));
-  for (std::uint64_t first = begin; first < total; first += kBatch) {
-    const std::uint64_t count = std::min(kBatch, total - first);
-    const auto work = [&](std::uint64_t worker) {
-      for (std::uint64_t i = worker; i < count; i += workers) batch[i] = lidar.packet(first + i);
-    };
-    {
-      std::vector<std::jthread> helpers;
-      for (std::uint64_t worker = 1; worker < workers; ++worker) helpers.emplace_back(work, worker);
-      work(0);
-    }
-    for (std::uint64_t i = 0; i < count; ++i) {
-      run.writer.add_packet(run.robot.stamp_ns(batch[i].receive_time_s), batch[i].bytes);
-    }
-    if (progress) progress(static_cast<double>(first + count) / static_cast<double>(total));
-  }
+void write_lidar(const Run& run, const LidarPlan& plan, const std::function<void(double)>& progress) {
+  const LidarModel lidar(plan, run.scenario.world, run.scenario.trajectory, run.lidar.T_base_sensor(),
+                         LidarErrors::draw(run.random("lidar errors"), plan), run.request.seed);
+  const LidarSpan span{run.deviations().start_at_s, run.duration_s};
+  const auto stamp_ns = [&run](double time_s) { return run.robot.stamp_ns(time_s); };
+  write_lidar_packets(plan, lidar, span, stamp_ns, run.writer, progress);
 }
 
 /// "lidar rpy_deg [0.1, -0.2, 0.0] xyz_m [0.1, 0, 0.55]"
@@ -242,6 +225,7 @@ recording::Manifest make_manifest(const ScenarioRequest& request, const Scenario
   for (const std::string& option : deviations.options()) manifest.description += "; --" + option;
   manifest.description += "; true mounts: " + mount_text("lidar", true_lidar(request, scenario)) + ", " +
                           mount_text("imu", true_imu(request, scenario));
+  describe_lidar(find_lidar_plan(request.lidar), *manifest.lidar);
   manifest.lidar->mount = scenario.mounts.lidar;
   manifest.imu->mount = scenario.mounts.imu;
   manifest.barometer->mount.xyz_m = scenario.mounts.pressure_port_m;
@@ -278,12 +262,15 @@ Scenario make_scenario(const ScenarioRequest& request) {
 }  // namespace
 
 std::string recording_name(const ScenarioRequest& request) {
-  return request.name + "-" + std::to_string(request.seed) + (request.short_form ? "-short" : "") +
+  std::string lidar = request.lidar == kUsualLidar ? "" : "-" + request.lidar;
+  std::replace(lidar.begin(), lidar.end(), ' ', '-');
+  return request.name + "-" + std::to_string(request.seed) + (request.short_form ? "-short" : "") + lidar +
          request.deviations.suffix();
 }
 
 void simulate(const ScenarioRequest& request, const std::filesystem::path& out_dir,
               const std::function<void(double)>& progress) {
+  const LidarPlan& plan = find_lidar_plan(request.lidar);
   const Scenario scenario = make_scenario(request);
   RecordingWriter writer(out_dir, make_manifest(request, scenario));
   const Run run(request, scenario, writer);
@@ -292,7 +279,8 @@ void simulate(const ScenarioRequest& request, const std::filesystem::path& out_d
   write_pressure(run);
   write_truth(run);
   files::write_stl(out_dir / files::kSurfacesFile, scenario.world.standing().triangles());
-  write_lidar(run, progress);
+  write_lidar_calibration(plan, out_dir);
+  write_lidar(run, plan, progress);
   writer.close();
 }
 

@@ -13,13 +13,16 @@
 
 namespace isobar::simulation {
 
+inline constexpr const char* kUsualLidar = "VLP-16";
+
 /// Arguments of simulate().
 struct ScenarioRequest {
   std::string name;         ///< one of scenarios()
   std::uint64_t seed = 1;   ///< random seed of world, path and sensor errors
   bool short_form = false;  ///< a reduced run of 30 to 60 s
   double stop_after_s = std::numeric_limits<double>::infinity();  ///< ends the recording at this time
-  Deviations deviations{};  ///< faults asked for, besides the usual errors
+  Deviations deviations{};          ///< faults asked for, besides the usual errors
+  std::string lidar = kUsualLidar;  ///< model, as in lidar.model
 };
 
 /// Name and description of a scenario.
@@ -32,15 +35,16 @@ struct ScenarioInfo {
 /// All scenarios, those of the paper's experiments first.
 [[nodiscard]] std::vector<ScenarioInfo> scenarios();
 
-/// Name of the recording of a request, for files: "SCENARIO-SEED", with "-short" and the deviations.
+/// Name of the recording of a request, for files: "SCENARIO-SEED", with "-short", any lidar but a VLP-16, and the
+/// deviations.
 [[nodiscard]] std::string recording_name(const ScenarioRequest& request);
 
-/// Writes a complete recording (recording.toml, lidar.pcap, CSV files, reference.tum, segments.csv, surfaces.stl) to
-/// `out_dir`, which is created if missing. The manifest holds the mounts that the robot believes; its
+/// Writes a complete recording (recording.toml, lidar.pcap, CSV files, reference.tum, segments.csv, surfaces.stl, an
+/// Ouster's metadata) to `out_dir`, which is created if missing. The manifest holds the mounts that the robot believes; its
 /// description the deviations and the true mounts. On one machine, the same request gives byte-identical files,
 /// independent of the number of cores. `progress` is called with 0 … 1 from the calling thread; it may be
 /// empty.
-/// @throws UsageError when the scenario is unknown
+/// @throws UsageError when scenario or lidar is unknown; it lists the known ones
 /// @throws DataError when the folder cannot take a recording
 /// @throws ServiceError when a file cannot be written
 void simulate(const ScenarioRequest& request, const std::filesystem::path& out_dir,

@@ -22,6 +22,7 @@
 #include "tools/commands.hpp"
 #include "tools/deviation_options.hpp"
 #include "tools/experiment_recording.hpp"
+#include "tools/lidar_option.hpp"
 #include "tools/method_option.hpp"
 #include "tools/progress.hpp"
 #include "tools/report/figures_json.hpp"
@@ -131,8 +132,8 @@ void evaluate_all(const ExperimentOptions& options, const std::filesystem::path&
   input.run = evaluation::evaluate_methods(evaluation::load_reference(recording), sources);
   input.title = title_of(options.request.name) + ", seed " + std::to_string(options.request.seed);
   input.description = "Simulated recording \"" + options.request.name + "\"" +
-                      (options.request.short_form ? " in its short form" : "") +
-                      deviations_text(options.request.deviations) +
+                      (options.request.short_form ? " in its short form" : "") + ", lidar " +
+                      options.request.lidar + deviations_text(options.request.deviations) +
                       ", replayed with each method on the same sensor data.";
   input.command = command;
   report::print_table(stdout, input.run);
@@ -169,6 +170,7 @@ void add_experiment_command(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   command.add_flag("--short", options.request.short_form, "the short form of the scenario");
+  add_lidar_option(command, options.request);
   command.add_option(
       "--out", options.out,
       "folder for recording, runs and report (default: out/SCENARIO-SEED and the faults asked for)");

@@ -9,6 +9,7 @@
 #include "core/errors.hpp"
 #include "tools/commands.hpp"
 #include "tools/deviation_options.hpp"
+#include "tools/lidar_option.hpp"
 #include "tools/progress.hpp"
 #include "tools/subcommand.hpp"
 
@@ -49,6 +50,7 @@ void add_simulate_command(CLI::App& app) {
       ->check(CLI::NonNegativeNumber);
   command.add_option("--out", options.out_dir, "folder for the recording, created if missing");
   command.add_flag("--short", options.request.short_form, "30 to 60 s instead of the whole run");
+  add_lidar_option(command, options.request);
   command.add_option("--stop-after", options.request.stop_after_s, "end the run after this time [s]");
   add_deviation_options(command, options.request.deviations);
   command.add_flag("--list", options.list, "list the scenarios and exit");

@@ -52,6 +52,7 @@ struct RecordingWriter::Files {
   std::optional<TextFile> segments;
   std::optional<bool> imu_has_attitude;  // set by the first sample
   std::vector<std::uint8_t> frame;
+  std::vector<std::uint8_t> fragment;
   std::uint16_t identification = 0;
 
   std::array<std::optional<TextFile>*, 6> text_files() {
@@ -115,7 +116,12 @@ void RecordingWriter::add_packet(std::int64_t stamp_ns, std::span<const std::uin
     throw std::logic_error("RecordingWriter: no UDP packet is that long");
   }
   build_udp_frame(payload, port, files_->identification++, files_->frame, sender_ipv4);
-  files_->lidar->write(stamp_ns, files_->frame);
+  const std::size_t fragments = fragment_count(files_->frame.size());
+  if (fragments == 1) files_->lidar->write(stamp_ns, files_->frame);
+  for (std::size_t i = 0; fragments > 1 && i < fragments; ++i) {
+    build_fragment(files_->frame, i, files_->fragment);
+    files_->lidar->write(stamp_ns, files_->fragment);
+  }
 }
 
 void RecordingWriter::add_imu(const ImuSample& sample) {

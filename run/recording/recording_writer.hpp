@@ -34,7 +34,8 @@ class RecordingWriter {
   RecordingWriter(const RecordingWriter&) = delete;
   RecordingWriter& operator=(const RecordingWriter&) = delete;
 
-  /// UDP payload from the lidar (at most 65507 bytes), as Ethernet/IPv4/UDP in a nanosecond pcap.
+  /// UDP payload from the lidar (at most 65507 bytes), as Ethernet/IPv4/UDP in a nanosecond pcap; in IP fragments
+  /// where it does not fit into a frame of Ethernet, as a capture of the link shows it.
   void add_packet(std::int64_t stamp_ns, std::span<const std::uint8_t> payload);
   /// As above, to another destination port: a Velodyne's position packets go to 8308.
   /// @param sender_ipv4 host byte order

@@ -70,4 +70,21 @@ void build_udp_frame(std::span<const std::uint8_t> payload, std::uint16_t port, 
   put_u16(udp + 6, checksum == 0 ? 0xFFFF : checksum);  // 0 would mean "no checksum"
 }
 
+void build_fragment(std::span<const std::uint8_t> frame, std::size_t index,
+                    std::vector<std::uint8_t>& fragment) {
+  constexpr std::size_t kHeaders = kEthernetHeaderBytes + kIpv4HeaderBytes;
+  constexpr std::size_t kMoreFragments = 0x2000;
+  const auto content = frame.subspan(kHeaders);
+  const std::size_t begin = index * kFragmentBytes;
+  const std::size_t size = std::min(kFragmentBytes, content.size() - begin);
+  const auto part = content.subspan(begin, size);
+  fragment.assign(frame.begin(), frame.begin() + kHeaders);
+  fragment.insert(fragment.end(), part.begin(), part.end());
+  std::uint8_t* ip = fragment.data() + kEthernetHeaderBytes;
+  put_u16(ip + 2, kIpv4HeaderBytes + size);
+  put_u16(ip + 6, begin / 8 + (begin + size < content.size() ? kMoreFragments : 0));
+  put_u16(ip + 10, 0);
+  put_u16(ip + 10, internet_checksum(internet_sum({ip, kIpv4HeaderBytes})));
+}
+
 }  // namespace isobar::recording

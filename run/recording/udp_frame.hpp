@@ -29,4 +29,20 @@ inline constexpr std::uint32_t kVelodyneIpv4 = 0xC0A8'01C9;
 void build_udp_frame(std::span<const std::uint8_t> payload, std::uint16_t port, std::uint16_t identification,
                      std::vector<std::uint8_t>& frame, std::uint32_t source_ipv4 = kVelodyneIpv4);
 
+/// Most bytes of an IP packet on Ethernet. A longer one travels in fragments (RFC 791).
+inline constexpr std::size_t kEthernetMtu = 1'500;
+/// Bytes that a fragment carries, of the IP packet behind its header; the last one carries the rest.
+inline constexpr std::size_t kFragmentBytes = kEthernetMtu - kIpv4HeaderBytes;
+static_assert(kFragmentBytes % 8 == 0);  // offsets count in 8 bytes
+
+/// Builds one fragment of a frame that build_udp_frame() has built.
+/// @param index below fragment_count(); a frame of one fragment is its own and is not built
+/// @param fragment overwritten
+void build_fragment(std::span<const std::uint8_t> frame, std::size_t index,
+                    std::vector<std::uint8_t>& fragment);
+/// Fragments that a frame travels in, 1 for one that fits into kEthernetMtu.
+[[nodiscard]] constexpr std::size_t fragment_count(std::size_t frame_bytes) {
+  return (frame_bytes - kEthernetHeaderBytes - kIpv4HeaderBytes + kFragmentBytes - 1) / kFragmentBytes;
+}
+
 }  // namespace isobar::recording

@@ -11,6 +11,7 @@
 #include "core/geometry.hpp"
 #include "drivers/lidar/scan_assembler.hpp"
 #include "drivers/velodyne/decoder.hpp"
+#include "simulation/lidar_plan.hpp"
 #include "simulation/route.hpp"
 
 namespace isobar::test::test_lidar_model {
@@ -51,7 +52,7 @@ template <typename PoseTime>
 std::vector<double> wall_errors(const LidarErrors& errors, double seconds, PoseTime pose_time_of) {
   const World room = make_room();
   const Trajectory drive = make_drive();
-  const LidarModel lidar(room, drive, kMount.T_base_sensor(), errors, 1);
+  const LidarModel lidar(find_lidar_plan("VLP-16"), room, drive, kMount.T_base_sensor(), errors, 1);
   const auto decoder = std::make_unique<ScanAssembler>(std::make_unique<velodyne::Decoder>(velodyne::kVlp16));
   const auto scan = std::make_unique<Scan>();
   std::vector<double> result;
@@ -64,7 +65,7 @@ std::vector<double> wall_errors(const LidarErrors& errors, double seconds, PoseT
       result.push_back(distance_to_walls(state.p_world + state.q_world_base * p_base));
     }
   };
-  for (std::uint64_t n = 0; LidarModel::packet_time_s(n) < seconds; ++n) {
+  for (std::uint64_t n = 0; lidar.packet_time_s(n) < seconds; ++n) {
     const ReceivedPacket packet = lidar.packet(n);
     const auto stamp_ns = static_cast<std::int64_t>(1e9 * packet.receive_time_s);
     if (decoder->add_packet(packet.bytes, stamp_ns, *scan).scan_complete) measure();
@@ -114,9 +115,9 @@ TEST_CASE("the sensor's clock starts at its offset, drifts and wraps every hour"
   errors.clock_drift = 1e-3;
   const World room = make_room();
   const Trajectory drive = make_drive();
-  const LidarModel lidar(room, drive, kMount.T_base_sensor(), errors, 1);
+  const LidarModel lidar(find_lidar_plan("VLP-16"), room, drive, kMount.T_base_sensor(), errors, 1);
   const auto clock_us = [&](std::uint64_t n) {
-    const Vlp16Bytes bytes = lidar.packet(n).bytes;
+    const PacketBytes bytes = lidar.packet(n).bytes;
     return static_cast<double>(bytes[1200] | bytes[1201] << 8 | bytes[1202] << 16) + 16777216.0 * bytes[1203];
   };
   CHECK(std::abs(clock_us(0) - 3'599'999'500.0) <= 1.0);

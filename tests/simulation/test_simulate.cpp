@@ -7,8 +7,12 @@
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "core/errors.hpp"
+#include "run/recording/manifest.hpp"
+#include "simulation/lidar_plan.hpp"
 
 namespace isobar::test::test_simulate {
 
@@ -101,6 +105,47 @@ TEST_CASE("an unknown scenario is a usage error that lists the known ones") {
   }
   for (const ScenarioInfo& info : scenarios()) CHECK(message.find(info.name) != std::string::npos);
   CHECK_FALSE(fs::exists(scratch / "run"));
+}
+
+TEST_CASE("an unknown lidar is a usage error that lists the known ones, before anything is written") {
+  const Scratch scratch;
+  ScenarioRequest request = brief("moulin", 1);
+  request.lidar = "VLP-17";
+  std::string message;
+  try {
+    simulate(request, scratch / "run", {});
+  } catch (const isobar::UsageError& error) {
+    message = error.what();
+  }
+  CHECK(message.find("VLP-17") != std::string::npos);
+  for (const LidarPlan& plan : lidar_plans()) CHECK(message.find(plan.name) != std::string::npos);
+  CHECK_FALSE(fs::exists(scratch / "run"));
+}
+
+TEST_CASE(
+    "a recording tells its lidar: model, ports and an Ouster's metadata; its name tells any but a VLP-16") {
+  const Scratch scratch;
+  ScenarioRequest request = brief("moulin", 1);
+  request.stop_after_s = 0.05;
+  const std::string usual = recording_name(request);
+  std::vector<std::string> warnings;
+  for (const LidarPlan& plan : lidar_plans()) {
+    CAPTURE(plan.name);
+    request.lidar = plan.name;
+    const std::string name = recording_name(request);
+    CHECK((name == usual) == (plan.name == kUsualLidar));
+    CHECK(name.find(' ') == std::string::npos);
+    const fs::path folder = scratch / name.c_str();
+    simulate(request, folder, {});
+    const auto manifest = isobar::recording::read_manifest(folder, warnings);
+    REQUIRE(manifest.lidar);
+    CHECK(manifest.lidar->model == plan.name);
+    CHECK(manifest.lidar->port == plan.port);
+    CHECK(manifest.lidar->info_port == plan.info_port);
+    CHECK(manifest.lidar->calibration_file.empty() == (plan.maker != LidarMaker::kOuster));
+    CHECK(fs::exists(folder / manifest.lidar->calibration_file));
+  }
+  CHECK(warnings.empty());
 }
 
 }  // namespace isobar::test::test_simulate

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "simulation/lidar_model.hpp"
+#include "simulation/lidar_plan.hpp"
 #include "simulation/scenario.hpp"
 
 namespace {
@@ -13,10 +14,10 @@ using namespace isobar::simulation;
 
 void packets(benchmark::State& state, Scenario (*make)(std::uint64_t, bool)) {
   const Scenario scenario = make(1, false);
-  const LidarModel lidar(scenario.world, scenario.trajectory, scenario.mounts.lidar.T_base_sensor(),
-                         LidarErrors::draw(Random(1)), 1);
-  const auto count =
-      static_cast<std::uint64_t>(scenario.trajectory.duration_s() / LidarModel::packet_time_s(1));
+  const LidarPlan& plan = find_lidar_plan("VLP-16");
+  const LidarModel lidar(plan, scenario.world, scenario.trajectory, scenario.mounts.lidar.T_base_sensor(),
+                         LidarErrors::draw(Random(1), plan), 1);
+  const auto count = static_cast<std::uint64_t>(scenario.trajectory.duration_s() / lidar.packet_time_s(1));
   std::uint64_t n = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(lidar.packet(n));

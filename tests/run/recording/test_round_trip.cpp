@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
 #include <random>
 #include <vector>
 
@@ -123,6 +126,40 @@ TEST_CASE("A written recording reads back bit for bit, merged in order of time")
   CHECK(read[static_cast<int>(EventKind::kLidarPacket)] == packets.size());
   CHECK(test::count_of(reader, "lidar: frames for another port") == 100);
   CHECK(reader.progress() == 1.0);
+}
+
+TEST_CASE("A packet longer than a frame of Ethernet is captured in fragments, and read back whole") {
+  Scratch scratch;
+  Manifest manifest;
+  manifest.lidar.emplace();
+  // One frame; fragments with a last one of a few bytes; an Ouster's; the longest.
+  std::vector<std::vector<std::uint8_t>> packets;
+  for (const std::size_t size : {1'472U, 1'473U, 2'952U, 2'953U, 6'464U, 65'507U}) {
+    packets.emplace_back(size);
+    for (std::size_t i = 0; i < size; ++i) packets.back()[i] = static_cast<std::uint8_t>(i * 7 + size);
+  }
+  RecordingWriter writer(scratch.path(), manifest);
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    writer.add_packet(kStart + static_cast<std::int64_t>(i) * 1'000'000, packets[i]);
+  }
+  writer.close();
+  std::ifstream file(scratch.path() / "lidar.pcap", std::ios::binary);
+  const std::string capture((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  std::size_t frames = 0;
+  for (std::size_t at = 24; at < capture.size(); ++frames) {  // headers of file and frames: 24 and 16 bytes
+    std::uint32_t size = 0;
+    std::memcpy(&size, capture.data() + at + 8, sizeof size);
+    CHECK(size <= 1'514);
+    at += 16 + size;
+  }
+  CHECK(frames == 1 + 2 + 2 + 3 + 5 + 45);
+  RecordingReader reader(scratch.path());
+  Event event;
+  for (const auto& packet : packets) {
+    REQUIRE(reader.next(event));
+    CHECK(std::equal(packet.begin(), packet.end(), event.packet.begin(), event.packet.end()));
+  }
+  CHECK_FALSE(reader.next(event));
 }
 
 TEST_CASE("Trajectories and segments survive writing and reading") {
