@@ -18,7 +18,7 @@
 #include "daemon/worker.hpp"
 #include "drivers/lidar/scan_assembler.hpp"
 #include "drivers/lidar_models/lidar_models.hpp"
-#include "drivers/udp/udp.hpp"
+#include "drivers/udp/udp_pair.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar {
@@ -45,7 +45,7 @@ struct LidarStatus {
                                            const StreamPace& pace);
 
 /// Decodes the lidar's UDP packets and publishes scans. Its other packets (position, device information, IMU)
-/// come to a second port; they are taken after each packet of the first one, and every 200 ms without.
+/// come to a second port.
 class LidarThread {
  public:
   /// @throws ConfigError for a calibration file that cannot be used; ServiceError when the port may not be used; an address or port that is not there yet is waited for
@@ -63,12 +63,12 @@ class LidarThread {
   void collect() { changes_.collect(); }
 
   [[nodiscard]] LidarStatus status() const noexcept { return status_.get(); }
-  [[nodiscard]] std::uint16_t port() const noexcept { return receiver_.port(); }
+  [[nodiscard]] std::uint16_t port() const noexcept { return receiver_.first().port(); }
   /// See UdpReceiver::waiting_for().
-  [[nodiscard]] std::string waiting_for() const { return receiver_.waiting_for(); }
+  [[nodiscard]] std::string waiting_for() const { return receiver_.first().waiting_for(); }
   /// The same of the second port.
   [[nodiscard]] std::string info_waiting_for() const {
-    return info_receiver_ ? info_receiver_->waiting_for() : std::string{};
+    return receiver_.second() != nullptr ? receiver_.second()->waiting_for() : std::string{};
   }
 
  private:
@@ -78,13 +78,12 @@ class LidarThread {
   };
   void loop() noexcept;
   void take_packet(const ReceivedDatagram& datagram) noexcept;
-  void take_information() noexcept;
+  void take_information(const ReceivedDatagram& datagram) noexcept;
   void publish_scan() noexcept;
   void report() noexcept;
   void pause() noexcept;
 
-  UdpReceiver receiver_;
-  std::optional<UdpReceiver> info_receiver_;
+  UdpPair receiver_;
   std::uint32_t configured_sender_;  ///< 0: any
   LidarSender sender_;
   ScanAssembler assembler_;
