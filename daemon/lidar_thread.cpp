@@ -1,10 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/lidar_thread.hpp"
 
+#include <algorithm>
+
 #include "daemon/receive_loop.hpp"
 #include "drivers/clock/robot_clock.hpp"
 
 namespace isobar {
+
+std::int64_t silence_limit_ns(const LidarStatus& lidar) {
+  constexpr std::int64_t kWithoutEvidenceNs = 1'000'000'000;
+  return lidar.waited_ns > lidar.last_packet_ns ? lidar.silence_ns
+                                                : std::max(lidar.silence_ns, kWithoutEvidenceNs);
+}
+
+bool is_silent(const LidarStatus& lidar, std::int64_t now_ns) {
+  return lidar.last_packet_ns != 0 && now_ns - lidar.last_packet_ns > silence_limit_ns(lidar);
+}
 
 LidarStatus status_of_clouds(std::uint64_t scans, std::int64_t last_scan_ns, const StreamPace& pace) {
   LidarStatus status;
@@ -39,12 +51,15 @@ void LidarThread::loop() noexcept {
       },
       [this] {
         tap_.end_round();
+        if (!took_packet_) draft_status_.waited_ns = RobotClock::now_ns();
+        took_packet_ = false;
         report();
         pause();
       });
 }
 
 void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
+  took_packet_ = true;
   changes_.take([this](const Change& change) {
     assembler_.set_limits(change.limits);
     deadline_.set_limit(change.deadline_ms);
@@ -77,6 +92,9 @@ void LidarThread::publish_scan() noexcept {
   const std::int64_t end_stamp_ns = (loaned_ != nullptr ? *loaned_ : spare_scan_).end_stamp_ns;
   pacing_.scan_ended(end_stamp_ns);
   draft_status_.pace.add(end_stamp_ns);
+  // A turn and a half without a packet is no pause of a reduced field of view.
+  turns_.scanned(end_stamp_ns);
+  if (draft_status_.pace.known()) draft_status_.silence_ns = turns_.silence_ns();
   if (loaned_ != nullptr) {
     publisher_.publish(loaned_);
     deadline_.note(end_stamp_ns, RobotClock::now_ns());

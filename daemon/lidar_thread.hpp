@@ -14,6 +14,7 @@
 #include "daemon/packet_pacing.hpp"
 #include "daemon/packet_tap.hpp"
 #include "daemon/seq_lock.hpp"
+#include "daemon/silence_bridge.hpp"
 #include "daemon/stage_settings.hpp"
 #include "daemon/worker.hpp"
 #include "drivers/lidar/scan_assembler.hpp"
@@ -31,6 +32,8 @@ struct LidarStatus {
   std::uint64_t info_refused = 0;            ///< packets of the second port that another machine sent
   std::uint64_t scans_without_memory = 0;    ///< complete scans dropped for want of a chunk in shared memory
   std::int64_t last_packet_ns = 0;           ///< robot clock; 0: none yet
+  std::int64_t waited_ns = 0;                ///< robot clock, end of the last wait without a data packet
+  std::int64_t silence_ns = 1'000'000'000;   ///< time without a packet that no working lidar takes
   StreamPace pace;                           ///< of the scans' ends
   SenderStatus sender;                       ///< port 0
   std::int64_t clock_jumped_ns = 0;          ///< last jump of the lidar's clock, robot clock; 0: never
@@ -39,6 +42,12 @@ struct LidarStatus {
   /// Names the configured and the received model; empty while all packets are of the configured one.
   std::array<char, 120> wrong_model_message{};
 };
+
+/// Time without a packet after which a lidar is silent [ns]. A second while its thread has not waited in vain since the
+/// last packet: the thread had no processor time, and packets may be waiting for it.
+[[nodiscard]] std::int64_t silence_limit_ns(const LidarStatus& lidar);
+/// Whether a lidar that has sent sends no longer.
+[[nodiscard]] bool is_silent(const LidarStatus& lidar, std::int64_t now_ns);
 
 /// What isobard knows of a lidar whose scans isobar-dds converts: their number and times.
 [[nodiscard]] LidarStatus status_of_clouds(std::uint64_t scans, std::int64_t last_scan_ns,
@@ -94,6 +103,8 @@ class LidarThread {
       spare_scan_;  ///< decoded into while no chunk is free, so that the next scan starts at the right packet
   PacketTap tap_;
   PacketPacing pacing_;
+  SilenceBridge turns_;       ///< learns how long a turn takes
+  bool took_packet_ = false;  ///< in this round
   Deadline deadline_;
   Handover<Change> changes_;
   LidarStatus draft_status_;
