@@ -13,7 +13,7 @@ namespace {
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kStart = 1'000'000 * kMs;
 
-/// The entry of the lidar in a report about a robot whose other sensors were never heard.
+/// The entry of the lidar in a report about a robot whose other sensors were never heard. Times must ascend.
 ipc::HealthEntry lidar_entry(HealthMonitor& monitor, const LidarStatus& lidar, std::int64_t now_ns) {
   StatusSnapshot status;
   status.now_ns = now_ns;
@@ -31,19 +31,22 @@ ipc::HealthEntry lidar_entry(HealthMonitor& monitor, const LidarStatus& lidar, s
 
 TEST_CASE(
     "a lidar is silent after two and a half turns once its thread waits in vain, after a second otherwise") {
-  HealthMonitor monitor{Config{}};
   LidarStatus lidar;
   lidar.last_packet_ns = kStart;
   lidar.silence_ns = 250 * kMs;    // 10 Hz
   lidar.waited_ns = kStart - kMs;  // the thread has not run since: packets may be waiting
   using ipc::HealthLevel;
-  CHECK(lidar_entry(monitor, lidar, kStart + 260 * kMs).level == HealthLevel::kOk);
-  CHECK(lidar_entry(monitor, lidar, kStart + 1'010 * kMs).level == HealthLevel::kError);
+  const auto entry_after = [&lidar](std::int64_t age_ns) {
+    HealthMonitor monitor{Config{}};
+    return lidar_entry(monitor, lidar, kStart + age_ns);
+  };
+  CHECK(entry_after(260 * kMs).level == HealthLevel::kOk);
+  CHECK(entry_after(1'010 * kMs).level == HealthLevel::kError);
   lidar.waited_ns = kStart + 200 * kMs;
-  CHECK(lidar_entry(monitor, lidar, kStart + 250 * kMs).level == HealthLevel::kOk);
+  CHECK(entry_after(250 * kMs).level == HealthLevel::kOk);
   CHECK_FALSE(is_silent(lidar, kStart + 250 * kMs));
   CHECK(is_silent(lidar, kStart + 251 * kMs));
-  const ipc::HealthEntry silent = lidar_entry(monitor, lidar, kStart + 251 * kMs);
+  const ipc::HealthEntry silent = entry_after(251 * kMs);
   CHECK(silent.level == HealthLevel::kError);
   CHECK(std::string(silent.message).starts_with("silent for 0.3 s on UDP port"));
   CHECK_FALSE(is_silent({}, kStart));  // never heard: not there yet
