@@ -3,6 +3,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <chrono>
+
 #include "daemon/health_entries.hpp"
 #include "daemon/health_reporter.hpp"
 #include "daemon/input_health.hpp"
@@ -25,6 +27,9 @@ std::vector<std::string> refusals_of(const WorkerGroup& workers, const RealtimeS
   return refusals;
 }
 
+/// A lidar at 10 Hz is silent after 250 ms; the report about it is due within 300 ms of its last packet.
+constexpr std::chrono::milliseconds kTick{25};
+
 /// The supervise loop: publishes health reports, logs level changes, and feeds the watchdog while no thread
 /// hangs.
 void supervise(Graph& graph, Service& service, Configuration& configuration,
@@ -40,21 +45,23 @@ void supervise(Graph& graph, Service& service, Configuration& configuration,
   WaitingLog waiting;
   ipc::Publisher<ipc::HealthReport> publisher(ipc::topics::kHealth);
   service.ready(configuration.status());
-  service.supervise([&] {
-    const std::int64_t now_ns = RobotClock::now_ns();
-    if (const std::int64_t step_ns = system_clock.note(read_clocks()); step_ns != 0) {
-      spdlog::warn("{}", step_text(step_ns));
-    }
-    configuration.poll(graph, service);
-    graph.collect();
-    if (!schedule.due(now_ns, graph.device_states())) return false;
-    ipc::HealthReport report;
-    const bool alive = reporter.fill(now_ns, report);
-    publisher.send(report);
-    for (const LevelChange& change : level_changes(report, known)) log_change(change);
-    for (const std::string& line : waiting.due(graph.waiting_for(), now_ns)) spdlog::warn("{}", line);
-    return alive;
-  });
+  service.supervise(
+      [&] {
+        const std::int64_t now_ns = RobotClock::now_ns();
+        if (const std::int64_t step_ns = system_clock.note(read_clocks()); step_ns != 0) {
+          spdlog::warn("{}", step_text(step_ns));
+        }
+        configuration.poll(graph, service);
+        graph.collect();
+        if (!schedule.due(now_ns, graph.device_states(), graph.lidar_is_silent(now_ns))) return false;
+        ipc::HealthReport report;
+        const bool alive = reporter.fill(now_ns, report);
+        publisher.send(report);
+        for (const LevelChange& change : level_changes(report, known)) log_change(change);
+        for (const std::string& line : waiting.due(graph.waiting_for(), now_ns)) spdlog::warn("{}", line);
+        return alive;
+      },
+      kTick);
 }
 
 }  // namespace

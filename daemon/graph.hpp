@@ -41,6 +41,8 @@ class Graph {
   /// State of the barometer attached to this machine, whose changes are reported at once; kStarting if
   /// there is none.
   [[nodiscard]] virtual DeviceStates device_states() const = 0;
+  /// Whether a lidar that was heard sends no longer, which is reported at once, as is its return.
+  [[nodiscard]] virtual bool lidar_is_silent(std::int64_t /*now_ns*/) const { return false; }
   /// What the inputs wait for, a sentence each; empty texts: nothing.
   [[nodiscard]] virtual std::vector<std::string> waiting_for() const { return {}; }
   /// Adds the health entries of all stages. Rates and growth of counters refer to the time since the last

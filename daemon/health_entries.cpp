@@ -54,7 +54,9 @@ void add_stream(HealthReport& report, const std::string& name, std::int64_t last
     add_entry(report, name, HealthLevel::kStale, "nothing received yet on " + where, 0.0);
   } else if (now_ns - last_ns > silence_ns) {
     const double silent_s = seconds_between(last_ns, now_ns);
-    add_entry(report, name, HealthLevel::kError, fmt::format("silent for {:.0f} s on {}", silent_s, where),
+    constexpr double kTenthsBelowS = 10.0;
+    add_entry(report, name, HealthLevel::kError,
+              fmt::format("silent for {:.{}f} s on {}", silent_s, silent_s < kTenthsBelowS ? 1 : 0, where),
               0.0);
   } else {
     add_entry(report, name, HealthLevel::kOk, fmt::format("{:.1f} per second", rate_hz), rate_hz);

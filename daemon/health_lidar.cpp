@@ -37,21 +37,24 @@ using ipc::HealthReport;
 void HealthMonitor::fill_lidar(const StatusSnapshot& now, double elapsed_s, HealthReport& report) const {
   const auto& counters = now.lidar.counters;
   const auto& before = last_.lidar.counters;
-  const double rate_hz =
-      per_second(counters.scans - counters.divided, before.scans - before.divided, elapsed_s);
+  const auto scans = static_cast<double>(counters.scans - counters.divided - (before.scans - before.divided));
+  const double rate_hz = elapsed_s > 0.0 ? scans / elapsed_s : 0.0;
+  // A report may follow the last one at once, with a scan in between.
+  constexpr double kMostInAShortTime = 2.0;
   const std::string where = config_.lidar.source == LidarSource::kDds
                                 ? "DDS, topic " + config_.dds.topics.points
                                 : "UDP port " + std::to_string(config_.lidar.port);
   if (!now.lidar_waits_for.empty()) {
     add_entry(report, "lidar", HealthLevel::kError, "waiting: " + now.lidar_waits_for, 0.0);
-  } else if (rate_hz > kFastestScanHz) {
+  } else if (scans > kFastestScanHz * elapsed_s + kMostInAShortTime) {
     add_entry(
         report, "lidar", HealthLevel::kError,
         fmt::format("{:.0f} scans per second on {}: no lidar turns that fast; do two send from one address?",
                     rate_hz, where),
         rate_hz);
   } else {
-    add_stream(report, "lidar", now.lidar.last_packet_ns, now.now_ns, kSensorSilenceNs, rate_hz, where);
+    add_stream(report, "lidar", now.lidar.last_packet_ns, now.now_ns, silence_limit_ns(now.lidar), rate_hz,
+               where);
   }
   add_lidar_clock(report, config_.lidar.time, now.lidar);
   add_senders(report, "lidar", now.lidar.sender, now.now_ns, "lidar.sender chooses");

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/input_tap.hpp"
 
-#include <algorithm>
-
 namespace isobar {
 
 void InputTap::drain_packets(recording::InputLog& log) {
   while (const auto group = packets_.take()) {
-    const auto count = std::min(group->count, ipc::LidarPackets::kMaxPackets);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const ipc::LidarPacket& packet = group->packets[i];
-      const auto bytes = std::min<std::size_t>(packet.byte_count, ipc::LidarPacket::kMaxBytes);
-      (void)log.add_packet(packet.stamp_ns, packet.sender_ipv4, {packet.bytes, bytes});
+    const auto packets = group->valid_packets();
+    if (next_packet_ && group->first_number > *next_packet_) {
+      lost_packets_ += group->first_number - *next_packet_;
     }
-    if (!lost_before_) lost_before_ = group->lost;
-    lost_packets_ = group->lost - *lost_before_;
+    next_packet_ = group->first_number + packets.size();
+    for (const ipc::LidarPacket& packet : packets) {
+      const bool is_added =
+          packet.port == ipc::LidarPort::kInformation
+              ? log.add_information(packet.stamp_ns, packet.sender_ipv4, group->payload(packet))
+              : log.add_packet(packet.stamp_ns, packet.sender_ipv4, group->payload(packet));
+      lost_packets_ += is_added ? 0 : 1;
+    }
   }
 }
 
@@ -38,9 +40,7 @@ void InputTap::drain(recording::InputLog& log) {
 }
 
 std::uint64_t InputTap::lost() const noexcept {
-  // A dropped group of packets counts as a full one: all are, but the last one before a silence.
-  return packets_.dropped() * ipc::LidarPackets::kMaxPackets + imu_.dropped() + barometer_.dropped() +
-         base_barometer_.dropped() + wheel_.dropped() + lost_packets_;
+  return lost_packets_ + imu_.dropped() + barometer_.dropped() + base_barometer_.dropped() + wheel_.dropped();
 }
 
 }  // namespace isobar

@@ -16,7 +16,7 @@ namespace isobar {
 class InputTap {
  public:
   /// Longest time between two calls of drain() that loses nothing [ns]: the queue of the lidar's packets holds
-  /// 0.4 s of a dual-return HDL-32E, that of the IMU 0.25 s at 1 kHz.
+  /// 0.12 s of the busiest lidar (PacketTap::kMaxAgeNs), that of the IMU 0.25 s at 1 kHz.
   static constexpr std::int64_t kDrainEveryNs = 50'000'000;
 
   /// Appends all waiting inputs to `log`.
@@ -39,8 +39,8 @@ class InputTap {
   PathChoice imu_path_{PathChoice::kSensorTakeoverNs};
   PathChoice wheel_path_{PathChoice::kSensorTakeoverNs};
   ipc::Subscriber<WheelSample> wheel_{ipc::topics::kWheel};
-  std::optional<std::uint64_t> lost_before_;  ///< LidarPackets::lost of the first message
-  std::uint64_t lost_packets_ = 0;            ///< the growth of it since
+  std::optional<std::uint64_t> next_packet_;  ///< LidarPackets::first_number of the next group
+  std::uint64_t lost_packets_ = 0;
 };
 
 }  // namespace isobar

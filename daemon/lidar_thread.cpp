@@ -1,10 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/lidar_thread.hpp"
 
+#include <algorithm>
+
 #include "daemon/receive_loop.hpp"
 #include "drivers/clock/robot_clock.hpp"
 
 namespace isobar {
+
+std::int64_t silence_limit_ns(const LidarStatus& lidar) {
+  constexpr std::int64_t kWithoutEvidenceNs = 1'000'000'000;
+  return lidar.waited_ns > lidar.last_packet_ns ? lidar.silence_ns
+                                                : std::max(lidar.silence_ns, kWithoutEvidenceNs);
+}
+
+bool is_silent(const LidarStatus& lidar, std::int64_t now_ns) {
+  return lidar.last_packet_ns != 0 && now_ns - lidar.last_packet_ns > silence_limit_ns(lidar);
+}
 
 LidarStatus status_of_clouds(std::uint64_t scans, std::int64_t last_scan_ns, const StreamPace& pace) {
   LidarStatus status;
@@ -15,14 +27,13 @@ LidarStatus status_of_clouds(std::uint64_t scans, std::int64_t last_scan_ns, con
 }
 
 LidarThread::LidarThread(const StageSettings& stages, const LidarSettings& lidar, ThreadSettings settings)
-    : receiver_(lidar.address, lidar.port),
+    : receiver_(lidar.address, lidar.port, info_port_of(lidar)),
       configured_sender_(lidar.sender.empty() ? 0 : ipv4_of(lidar.sender)),
       sender_(lidar.sender),
       assembler_(make_lidar_decoder(stages.lidar), stages.lidar.time),
       publisher_(ipc::topics::kLidarScan),
       deadline_(settings.deadline_ms),
       worker_(std::move(settings), receiver_, [this] { loop(); }) {
-  if (const std::uint16_t port = info_port_of(lidar); port != 0) info_receiver_.emplace(lidar.address, port);
   if (stages.imu_of_lidar) imu_publisher_.emplace(ipc::topics::kImu);
 }
 
@@ -34,16 +45,21 @@ LidarThread::~LidarThread() {
 void LidarThread::loop() noexcept {
   loaned_ = publisher_.loan();
   receive_until_stopped(
-      receiver_, worker_.heartbeat(), [this](const ReceivedDatagram& datagram) { take_packet(datagram); },
+      receiver_, worker_.heartbeat(),
+      [this](const ReceivedDatagram& datagram) {
+        datagram.second ? take_information(datagram) : take_packet(datagram);
+      },
       [this] {
         tap_.end_round();
-        take_information();
+        if (!took_packet_) draft_status_.waited_ns = RobotClock::now_ns();
+        took_packet_ = false;
         report();
         pause();
       });
 }
 
 void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
+  took_packet_ = true;
   changes_.take([this](const Change& change) {
     assembler_.set_limits(change.limits);
     deadline_.set_limit(change.deadline_ms);
@@ -51,27 +67,24 @@ void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
   if (!sender_.admits(assembler_.decoder(), datagram.payload, datagram.sender.ipv4, datagram.stamp_ns))
     return;
   draft_status_.last_packet_ns = datagram.stamp_ns;
-  tap_.add(datagram);
+  tap_.add(datagram, ipc::LidarPort::kData);
   Scan& scan = loaned_ != nullptr ? *loaned_ : spare_scan_;
   if (assembler_.add_packet(datagram.payload, datagram.stamp_ns, scan).scan_complete) publish_scan();
 }
 
-void LidarThread::take_information() noexcept {
-  if (!info_receiver_) return;
-  ReceivedDatagram datagram;
-  while (info_receiver_->receive(datagram, 0) == UdpReceiver::Status::kDatagram) {
-    const std::uint32_t in_use = sender_.status().in_use.ipv4;
-    const std::uint32_t wanted = configured_sender_ != 0 ? configured_sender_ : in_use;
-    if ((wanted != 0 && datagram.sender.ipv4 != wanted) || assembler_.decoder().is_data(datagram.payload)) {
-      ++draft_status_.info_refused;
-      continue;
-    }
-    (void)assembler_.add_packet(datagram.payload, datagram.stamp_ns,
-                                loaned_ != nullptr ? *loaned_ : spare_scan_);
-    ImuSample sample;
-    while (imu_publisher_ && assembler_.take_imu(sample)) {
-      if (!imu_publisher_->send(sample)) ++draft_status_.samples_without_memory;
-    }
+void LidarThread::take_information(const ReceivedDatagram& datagram) noexcept {
+  const std::uint32_t in_use = sender_.status().in_use.ipv4;
+  const std::uint32_t wanted = configured_sender_ != 0 ? configured_sender_ : in_use;
+  if ((wanted != 0 && datagram.sender.ipv4 != wanted) || assembler_.decoder().is_data(datagram.payload)) {
+    ++draft_status_.info_refused;
+    return;
+  }
+  tap_.add(datagram, ipc::LidarPort::kInformation);
+  (void)assembler_.add_packet(datagram.payload, datagram.stamp_ns,
+                              loaned_ != nullptr ? *loaned_ : spare_scan_);
+  ImuSample sample;
+  while (imu_publisher_ && assembler_.take_imu(sample)) {
+    if (!imu_publisher_->send(sample)) ++draft_status_.samples_without_memory;
   }
 }
 
@@ -79,6 +92,9 @@ void LidarThread::publish_scan() noexcept {
   const std::int64_t end_stamp_ns = (loaned_ != nullptr ? *loaned_ : spare_scan_).end_stamp_ns;
   pacing_.scan_ended(end_stamp_ns);
   draft_status_.pace.add(end_stamp_ns);
+  // A turn and a half without a packet is no pause of a reduced field of view.
+  turns_.scanned(end_stamp_ns);
+  if (draft_status_.pace.known()) draft_status_.silence_ns = turns_.silence_ns();
   if (loaned_ != nullptr) {
     publisher_.publish(loaned_);
     deadline_.note(end_stamp_ns, RobotClock::now_ns());

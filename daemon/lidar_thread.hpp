@@ -14,11 +14,12 @@
 #include "daemon/packet_pacing.hpp"
 #include "daemon/packet_tap.hpp"
 #include "daemon/seq_lock.hpp"
+#include "daemon/silence_bridge.hpp"
 #include "daemon/stage_settings.hpp"
 #include "daemon/worker.hpp"
 #include "drivers/lidar/scan_assembler.hpp"
 #include "drivers/lidar_models/lidar_models.hpp"
-#include "drivers/udp/udp.hpp"
+#include "drivers/udp/udp_pair.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar {
@@ -31,6 +32,8 @@ struct LidarStatus {
   std::uint64_t info_refused = 0;            ///< packets of the second port that another machine sent
   std::uint64_t scans_without_memory = 0;    ///< complete scans dropped for want of a chunk in shared memory
   std::int64_t last_packet_ns = 0;           ///< robot clock; 0: none yet
+  std::int64_t waited_ns = 0;                ///< robot clock, end of the last wait without a data packet
+  std::int64_t silence_ns = 1'000'000'000;   ///< time without a packet that no working lidar takes
   StreamPace pace;                           ///< of the scans' ends
   SenderStatus sender;                       ///< port 0
   std::int64_t clock_jumped_ns = 0;          ///< last jump of the lidar's clock, robot clock; 0: never
@@ -41,12 +44,18 @@ struct LidarStatus {
   std::array<char, 120> wrong_model_message{};
 };
 
+/// Time without a packet after which a lidar is silent [ns]. A second while its thread has not waited in vain since the
+/// last packet: the thread had no processor time, and packets may be waiting for it.
+[[nodiscard]] std::int64_t silence_limit_ns(const LidarStatus& lidar);
+/// Whether a lidar that has sent sends no longer.
+[[nodiscard]] bool is_silent(const LidarStatus& lidar, std::int64_t now_ns);
+
 /// What isobard knows of a lidar whose scans isobar-dds converts: their number and times.
 [[nodiscard]] LidarStatus status_of_clouds(std::uint64_t scans, std::int64_t last_scan_ns,
                                            const StreamPace& pace);
 
 /// Decodes the lidar's UDP packets and publishes scans. Its other packets (position, device information, IMU)
-/// come to a second port; they are taken after each packet of the first one, and every 200 ms without.
+/// come to a second port.
 class LidarThread {
  public:
   /// @throws ConfigError for a calibration file that cannot be used; ServiceError when the port may not be used; an address or port that is not there yet is waited for
@@ -64,12 +73,12 @@ class LidarThread {
   void collect() { changes_.collect(); }
 
   [[nodiscard]] LidarStatus status() const noexcept { return status_.get(); }
-  [[nodiscard]] std::uint16_t port() const noexcept { return receiver_.port(); }
+  [[nodiscard]] std::uint16_t port() const noexcept { return receiver_.first().port(); }
   /// See UdpReceiver::waiting_for().
-  [[nodiscard]] std::string waiting_for() const { return receiver_.waiting_for(); }
+  [[nodiscard]] std::string waiting_for() const { return receiver_.first().waiting_for(); }
   /// The same of the second port.
   [[nodiscard]] std::string info_waiting_for() const {
-    return info_receiver_ ? info_receiver_->waiting_for() : std::string{};
+    return receiver_.second() != nullptr ? receiver_.second()->waiting_for() : std::string{};
   }
 
  private:
@@ -79,13 +88,12 @@ class LidarThread {
   };
   void loop() noexcept;
   void take_packet(const ReceivedDatagram& datagram) noexcept;
-  void take_information() noexcept;
+  void take_information(const ReceivedDatagram& datagram) noexcept;
   void publish_scan() noexcept;
   void report() noexcept;
   void pause() noexcept;
 
-  UdpReceiver receiver_;
-  std::optional<UdpReceiver> info_receiver_;
+  UdpPair receiver_;
   std::uint32_t configured_sender_;  ///< 0: any
   LidarSender sender_;
   ScanAssembler assembler_;
@@ -96,6 +104,8 @@ class LidarThread {
       spare_scan_;  ///< decoded into while no chunk is free, so that the next scan starts at the right packet
   PacketTap tap_;
   PacketPacing pacing_;
+  SilenceBridge turns_;       ///< learns how long a turn takes
+  bool took_packet_ = false;  ///< in this round
   Deadline deadline_;
   Handover<Change> changes_;
   LidarStatus draft_status_;

@@ -146,6 +146,9 @@ class RobotGraph final : public Graph {
             imu_ ? imu_->status().device.state : DeviceState{},
             wheels_ ? wheels_->status().device.state : DeviceState{}};
   }
+  [[nodiscard]] bool lidar_is_silent(std::int64_t now_ns) const override {
+    return lidar_ && is_silent(lidar_->status(), now_ns);
+  }
   [[nodiscard]] std::vector<std::string> waiting_for() const override {
     return {lidar_ ? lidar_->waiting_for() : std::string{}, samples_.waiting_for(),
             imu_ ? isobar::waiting_for(imu_->status()) : std::string{},

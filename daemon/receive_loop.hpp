@@ -8,10 +8,10 @@
 
 namespace isobar {
 
-/// Loop of a thread that receives datagrams: `take(datagram)` for each datagram; a beat and `report()` after
+/// Loop of a thread that receives datagrams from a UdpReceiver or a UdpPair: `take(datagram)` for each datagram; a beat and `report()` after
 /// each datagram and every 200 ms without one. Returns after the receiver was stopped. Neither may throw.
-template <class Take, class Report>
-void receive_until_stopped(UdpReceiver& receiver, Heartbeat& heartbeat, const Take& take,
+template <class Receiver, class Take, class Report>
+void receive_until_stopped(Receiver& receiver, Heartbeat& heartbeat, const Take& take,
                            const Report& report) noexcept {
   constexpr int kReportEveryMs = 200;
   // Pause of 10 ms: a socket that fails at once, repeatedly,

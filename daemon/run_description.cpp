@@ -15,6 +15,7 @@ recording::Manifest manifest_of(const Config& config) {
   recording::Manifest manifest = recording::Manifest::with_all_sensors();
   manifest.lidar->model = config.lidar.model;
   manifest.lidar->port = config.lidar.port;
+  manifest.lidar->info_port = info_port_of(config.lidar);
   manifest.lidar->mount = config.lidar.mount;
   if (!config.lidar.calibration_file.empty()) {
     manifest.lidar->calibration_file = std::filesystem::absolute(config.lidar.calibration_file).string();

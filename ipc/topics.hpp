@@ -142,7 +142,7 @@ inline constexpr Topic<PoseEstimate> kPose{"pose", 64, 0};
 inline constexpr Topic<RegisteredScan> kRegisteredScan{"registered_scan", 4, 0};
 inline constexpr Topic<MapCloud> kMapCloud{"map_cloud", 4, 1};
 inline constexpr Topic<HealthReport> kHealth{"health", 4, 1};
-inline constexpr Topic<LidarPackets> kLidarPackets{"lidar/packets", 128, 0};
+inline constexpr Topic<LidarPackets> kLidarPackets{"lidar/packets", 80, 0};
 inline constexpr Topic<RunDescription> kRunDescription{"run_description", 1, 1};
 inline constexpr Topic<BlackBoxOrder> kBlackBoxOrder{"black_box/order", 4, 0};
 inline constexpr Topic<BlackBoxState> kBlackBoxState{"black_box/state", 1, 1};
@@ -161,9 +161,9 @@ inline constexpr ChunkPool kChunkPools[] = {
     // NOLINT(modernize-avoid-c-arrays)
     {256, 4096},        // samples
     {1024, 1024},       // priors, poses
-    {18 * 1024, 160},   // lidar packets: all queues hold the same newest 128 messages
     {40 * 1024, 32},    // health
     {60 * 1024, 4},     // description of the run
+    {68 * 1024, 100},   // lidar packets: all queues hold the same newest 80 messages
     {1200 * 1024, 32},  // scans, registered scans, maps
 };
 

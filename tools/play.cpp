@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `isobar play`: sends a recording in real time: lidar packets to the lidar port, all other samples as
+// `isobar play`: sends a recording in real time: lidar packets to the lidar ports, all other samples as
 // datagrams (drivers/datagram/datagram.hpp) to the input port.
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -26,6 +26,7 @@ struct PlayOptions {
   std::filesystem::path recording;
   std::string address = "127.0.0.1";
   std::uint16_t lidar_port = 0;  ///< 0: the recording's
+  std::uint16_t info_port = 0;   ///< 0: the recording's
   std::uint16_t input_port = datagram::kDefaultPort;
   std::filesystem::path reference_out;
 };
@@ -50,11 +51,17 @@ void write_shifted_reference(const PlayOptions& options, const recording::Manife
   file.close();
 }
 
+LidarPlan lidar_plan(const PlayOptions& options, const recording::LidarEntry& lidar) {
+  LidarPlan plan{.port = lidar.port, .info_port = lidar.info_port, .recorded_info_port = lidar.info_port};
+  if (options.lidar_port != 0) plan.port = options.lidar_port;
+  if (options.info_port != 0 && lidar.info_port != 0) plan.info_port = options.info_port;
+  return plan;
+}
+
 void play(const PlayOptions& options) {
   recording::RecordingReader reader(options.recording);
   if (!reader.manifest().lidar) throw DataError(options.recording.string() + ": has no [lidar] to play");
-  Player player(options.address, options.lidar_port != 0 ? options.lidar_port : reader.manifest().lidar->port,
-                options.input_port);
+  Player player(options.address, lidar_plan(options, *reader.manifest().lidar), options.input_port);
 
   LidarConfig lidar;
   lidar.model = reader.manifest().lidar->model;
@@ -89,6 +96,8 @@ void add_play_command(CLI::App& app) {
       ->capture_default_str();
   command.add_option("--lidar-port", options.lidar_port,
                      "UDP port of the lidar packets (default: the recording's)");
+  command.add_option("--info-port", options.info_port,
+                     "UDP port of the lidar's packets for its second port (default: the recording's)");
   command.add_option("--input-port", options.input_port, "UDP port of the sample datagrams")
       ->capture_default_str();
   command.add_option("--reference-out", options.reference_out,

@@ -34,8 +34,12 @@ datagram::Sample sample_of(const recording::Event& event) {
 
 }  // namespace
 
-Player::Player(const std::string& address, std::uint16_t lidar_port, std::uint16_t input_port)
-    : lidar_(address, lidar_port), samples_(address, input_port) {}
+Player::Player(const std::string& address, const LidarPlan& lidar, std::uint16_t input_port)
+    : lidar_(address, lidar.port),
+      recorded_info_port_(lidar.recorded_info_port),
+      samples_(address, input_port) {
+  if (lidar.info_port != 0) information_.emplace(address, lidar.info_port);
+}
 
 std::int64_t Player::start(std::int64_t first_stamp_ns) {
   constexpr std::int64_t kPauseNs = 200'000'000;
@@ -54,7 +58,8 @@ std::int64_t Player::send_when_due(const recording::Event& event) {
 
 void Player::send(const recording::Event& event) {
   if (event.kind == recording::EventKind::kLidarPacket) {
-    lidar_.send(event.packet);
+    const bool is_information = information_ && event.port == recorded_info_port_;
+    (is_information ? *information_ : lidar_).send(event.packet);
     return;
   }
   datagram::Sample sample = sample_of(event);

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "drivers/datagram/datagram.hpp"
@@ -12,13 +13,20 @@
 
 namespace isobar::tools {
 
-/// Sends a recording in real time: lidar packets to the lidar port, all other samples as datagrams
+/// UDP ports that the lidar's packets are sent to.
+struct LidarPlan {
+  std::uint16_t port = 0;                ///< of its data
+  std::uint16_t info_port = 0;           ///< of its other packets; 0: there are none
+  std::uint16_t recorded_info_port = 0;  ///< that they have in the recording
+};
+
+/// Sends a recording in real time: lidar packets to the lidar ports, all other samples as datagrams
 /// (drivers/datagram/datagram.hpp) to the input port.
 class Player {
  public:
   /// @param address IPv4 address of the machine on which isobard runs
   /// @throws ServiceError when a socket cannot be opened
-  Player(const std::string& address, std::uint16_t lidar_port, std::uint16_t input_port);
+  Player(const std::string& address, const LidarPlan& lidar, std::uint16_t input_port);
 
   /// Maps the recording's time to the robot clock: the first event, with this stamp, is due in 200 ms. The
   /// pause lets the first samples of all streams go out in order.
@@ -32,6 +40,8 @@ class Player {
   void send(const recording::Event& event);
 
   UdpSender lidar_;
+  std::optional<UdpSender> information_;
+  std::uint16_t recorded_info_port_;
   UdpSender samples_;
   std::array<std::uint32_t, datagram::kKinds> sequence_{};
   std::chrono::steady_clock::time_point started_;

@@ -32,7 +32,8 @@ constexpr std::int64_t kNsPerS = 1'000'000'000;
 constexpr std::int64_t kMaxSilenceNs = 10 * kNsPerS;
 /// Time within which the description arrives after attaching.
 constexpr std::int64_t kDescriptionNs = 5 * kNsPerS;
-/// Most inputs that wait in memory while the disk is slow: a minute of an HDL-32E. More are dropped, counted.
+/// Most inputs that wait in memory while the disk is slow: a minute of an HDL-32E, 4 s of the
+/// busiest Ouster. More are dropped, counted.
 constexpr std::size_t kMaxWaitingBytes = std::size_t{160} << 20U;
 /// Pause between two rounds: less than half of what the queues hold.
 constexpr int kRoundMs = 20;
@@ -75,6 +76,12 @@ class LogPipe {
       if (count < 0) return errno == EAGAIN || errno == EINTR;
       written_ += static_cast<std::size_t>(count);
     }
+  }
+  /// Waits for the next round, or until the pipe takes what is left: an Ouster's 40 MB/s are most of what the pipe holds
+  /// in a round.
+  void wait_for_round() const {
+    pollfd writable{written_ < going_.bytes().size() ? descriptor_ : -1, POLLOUT, 0};
+    ::poll(&writable, 1, kRoundMs);
   }
   /// Writes everything, for at most 10 s.
   void finish() {
@@ -132,7 +139,7 @@ class Source {
         hand_over_rest(now_ns);
         return RecordSource::kBrokerEnded;
       }
-      ::poll(nullptr, 0, kRoundMs);
+      pipe_.wait_for_round();
     }
     hand_over_rest(monotonic_ns());
     return 0;

@@ -149,22 +149,22 @@ std::string UdpReceiver::waiting_for() const {
   return error == 0 ? std::string{} : refusal_text(address_, wanted_port_, error);
 }
 
-UdpReceiver::Status UdpReceiver::wait_for_address(int timeout_ms) noexcept {
+int UdpReceiver::prepare(int timeout_ms) noexcept {
+  if (socket_ >= 0) return timeout_ms;
   const std::int64_t due_ns = next_attempt_ns_ - monotonic_ns();
   if (due_ns <= 0) {
     open();
-    return Status::kTimeout;
+    return 0;  // the caller learns at once how it went
   }
   const int due_ms = static_cast<int>(due_ns / 1'000'000) + 1;
-  pollfd wait{stop_event_, POLLIN, 0};
-  const int ready = poll(&wait, 1, timeout_ms < 0 ? due_ms : std::min(timeout_ms, due_ms));
-  return ready > 0 ? Status::kStopped : Status::kTimeout;
+  return timeout_ms < 0 ? due_ms : std::min(timeout_ms, due_ms);
 }
 
 UdpReceiver::Status UdpReceiver::receive(ReceivedDatagram& datagram, int timeout_ms) {
-  if (socket_ < 0) return wait_for_address(timeout_ms);
+  const int wait_ms = prepare(timeout_ms);
+  // poll() skips a descriptor below 0.
   std::array<pollfd, 2> waits{pollfd{socket_, POLLIN, 0}, pollfd{stop_event_, POLLIN, 0}};
-  const int ready = poll(waits.data(), waits.size(), timeout_ms);
+  const int ready = poll(waits.data(), waits.size(), wait_ms);
   if (ready == 0 || (ready < 0 && errno == EINTR)) {
     return Status::kTimeout;
   }

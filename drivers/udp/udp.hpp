@@ -31,7 +31,8 @@ struct ReceivedDatagram {
   std::span<const std::uint8_t> payload;
   std::int64_t stamp_ns = 0;  ///< kernel's receive time, robot clock
   SenderAddress sender;
-  bool cut = false;  ///< truncated: the datagram was longer than the buffer
+  bool cut = false;     ///< truncated: the datagram was longer than the buffer
+  bool second = false;  ///< came to the second port of a UdpPair
 };
 
 /// Blocking receiver on one port; another thread can stop it at once.
@@ -67,10 +68,13 @@ class UdpReceiver {
   [[nodiscard]] const ReceiveClock& clock() const { return clock_; }
 
  private:
+  friend class UdpPair;
   /// @return 0, or the errno of the refusal
   int open() noexcept;
   void close_socket() noexcept;
-  Status wait_for_address(int timeout_ms) noexcept;
+  /// Opens the socket if that is due.
+  /// @return timeout_ms, shortened to the next attempt while there is no socket; 0 after an attempt
+  int prepare(int timeout_ms) noexcept;
   Status read(ReceivedDatagram& datagram) noexcept;
 
   std::string address_;

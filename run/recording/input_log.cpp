@@ -128,8 +128,18 @@ void InputLog::end() {
 
 bool InputLog::add_packet(std::int64_t stamp_ns, std::uint32_t sender_ipv4,
                           std::span<const std::uint8_t> payload) {
+  return add_datagram(LogKind::kPacket, stamp_ns, sender_ipv4, payload);
+}
+
+bool InputLog::add_information(std::int64_t stamp_ns, std::uint32_t sender_ipv4,
+                               std::span<const std::uint8_t> payload) {
+  return add_datagram(LogKind::kInformation, stamp_ns, sender_ipv4, payload);
+}
+
+bool InputLog::add_datagram(LogKind kind, std::int64_t stamp_ns, std::uint32_t sender_ipv4,
+                            std::span<const std::uint8_t> payload) {
   if (payload.size() + sizeof stamp_ns + sizeof sender_ipv4 > kMaxLogRecordBytes) return false;
-  begin(LogKind::kPacket);
+  begin(kind);
   put(stamp_ns);
   put(sender_ipv4);
   put_bytes(payload.data(), payload.size());
@@ -212,6 +222,7 @@ bool InputLogReader::parse(LogKind kind, std::span<const std::uint8_t> payload, 
   entry.kind = kind;
   switch (kind) {
     case LogKind::kPacket:
+    case LogKind::kInformation:
       entry.stamp_ns = fields.take<std::int64_t>();
       entry.sender_ipv4 = fields.take<std::uint32_t>();
       entry.packet = fields.take_bytes(fields.left());

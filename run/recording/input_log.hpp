@@ -17,19 +17,20 @@
 namespace isobar::recording {
 
 enum class LogKind : std::uint8_t {
-  kPacket = 1,  ///< datagram of the lidar
+  kPacket = 1,  ///< datagram of the lidar, to its data port
   kImu,
   kPressure,
   kBasePressure,
   kWheel,
   kDescription,  ///< sensors and settings of the run that the following records belong to
   kLosses,       ///< number of inputs lost so far on the way into this log
+  kInformation,  ///< datagram of the lidar to its second port: position, device information, IMU
 };
 
 /// One record. Only the members that `kind` names are valid; views refer to the log.
 struct LogEntry {
   LogKind kind = LogKind::kLosses;
-  std::int64_t stamp_ns = 0;  ///< of kPacket: time of receipt, robot clock
+  std::int64_t stamp_ns = 0;  ///< of kPacket and kInformation: time of receipt, robot clock
   std::uint32_t sender_ipv4 = 0;
   std::span<const std::uint8_t> packet;
   ImuSample imu;
@@ -50,6 +51,9 @@ class InputLog {
   /// A datagram longer than a record can be is left out.
   /// @return false when it was left out
   bool add_packet(std::int64_t stamp_ns, std::uint32_t sender_ipv4, std::span<const std::uint8_t> payload);
+  /// The same of the lidar's second port.
+  bool add_information(std::int64_t stamp_ns, std::uint32_t sender_ipv4,
+                       std::span<const std::uint8_t> payload);
   void add(const ImuSample& sample);
   void add(const WheelSample& sample);
   void add_pressure(const PressureSample& sample);
@@ -68,6 +72,8 @@ class InputLog {
 
  private:
   void begin(LogKind kind);
+  bool add_datagram(LogKind kind, std::int64_t stamp_ns, std::uint32_t sender_ipv4,
+                    std::span<const std::uint8_t> payload);
   void end();
   void add_pressure(LogKind kind, const PressureSample& sample);
   template <typename Value>

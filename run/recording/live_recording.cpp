@@ -88,16 +88,22 @@ LiveRecording::LiveRecording(const std::filesystem::path& folder, const Manifest
   flush();
 }
 
+void LiveRecording::add_datagram(const LogEntry& entry, std::uint16_t port) {
+  if (entry.packet.size() > kMaxUdpPayloadBytes) {
+    ++counts_.too_long;
+    return;
+  }
+  writer_->add_packet(entry.stamp_ns, entry.packet, port, entry.sender_ipv4);
+  ++counts_.packets;
+}
+
 void LiveRecording::add(const LogEntry& entry) {
   switch (entry.kind) {
     case LogKind::kPacket:
-      if (!all_.lidar) return;
-      if (entry.packet.size() > kMaxUdpPayloadBytes) {
-        ++counts_.too_long;
-        return;
-      }
-      writer_->add_packet(entry.stamp_ns, entry.packet, all_.lidar->port, entry.sender_ipv4);
-      ++counts_.packets;
+      if (all_.lidar) add_datagram(entry, all_.lidar->port);
+      return;
+    case LogKind::kInformation:
+      if (all_.lidar && all_.lidar->info_port != 0) add_datagram(entry, all_.lidar->info_port);
       return;
     case LogKind::kImu:
       if (!all_.imu) return;

@@ -15,7 +15,7 @@ namespace isobar::recording {
 
 /// Numbers of written inputs.
 struct LiveCounts {
-  std::uint64_t packets = 0;
+  std::uint64_t packets = 0;  ///< of both ports of the lidar
   std::uint64_t imu = 0;
   std::uint64_t pressure = 0;
   std::uint64_t base_pressure = 0;
@@ -47,6 +47,7 @@ class LiveRecording {
   [[nodiscard]] const LiveCounts& counts() const { return counts_; }
 
  private:
+  void add_datagram(const LogEntry& entry, std::uint16_t port);
   void note_seen();
 
   std::filesystem::path folder_;

@@ -82,6 +82,7 @@ bool PcapPackets::take(const CaptureFrame& frame, StampedPacket& packet) {
   }
   packet.stamp_ns = frame.stamp_ns;
   packet.sender_ipv4 = extractor_.sender_ipv4();
+  packet.port = extractor_.port();
   packet.payload.assign(payload.begin(), payload.end());
   return true;
 }

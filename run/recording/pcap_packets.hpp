@@ -20,6 +20,7 @@ namespace isobar::recording {
 struct StampedPacket {
   std::int64_t stamp_ns = 0;
   std::uint32_t sender_ipv4 = 0;  ///< host byte order
+  std::uint16_t port = 0;         ///< UDP destination
   std::vector<std::uint8_t> payload;
 };
 

@@ -24,6 +24,7 @@ struct Event {
   std::int64_t stamp_ns = 0;             ///< host time, robot clock; equals the sample's own stamp
   std::span<const std::uint8_t> packet;  ///< UDP payload, valid until the next call of next()
   std::uint32_t sender_ipv4 = 0;         ///< of a packet, host byte order
+  std::uint16_t port = 0;                ///< of a packet: UDP destination, LidarEntry::port or info_port
   ImuSample imu;
   PressureSample pressure;  ///< of kPressure and kBasePressure, both on the robot clock
   WheelSample wheel;

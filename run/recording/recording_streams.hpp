@@ -125,6 +125,7 @@ class LidarStream : public Stream {
     event.stamp_ns = given_.stamp_ns + shift_ns;
     event.packet = given_.payload;
     event.sender_ipv4 = given_.sender_ipv4;
+    event.port = given_.port;
   }
   [[nodiscard]] std::optional<std::int64_t> elapsed_ns(const LidarClock& clock) const override {
     return clock.elapsed_ns ? clock.elapsed_ns(given_.payload, next_.payload) : std::nullopt;

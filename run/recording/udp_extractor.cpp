@@ -124,6 +124,7 @@ FrameKind UdpExtractor::extract_udp(std::span<const std::uint8_t> udp, bool cut,
   if (length < kUdpHeaderBytes || (length > udp.size() && !cut)) {
     return FrameKind::kMalformed;
   }
+  port_ = static_cast<std::uint16_t>(read_be16(udp, 2));
   payload = udp.subspan(kUdpHeaderBytes, std::min(length, udp.size()) - kUdpHeaderBytes);
   return cut ? FrameKind::kCutPayload : FrameKind::kPayload;
 }

@@ -68,6 +68,8 @@ class UdpExtractor {
 
   /// IPv4 source of the last frame with an IP packet, host byte order.
   [[nodiscard]] std::uint32_t sender_ipv4() const { return sender_ipv4_; }
+  /// UDP destination of the last wanted payload.
+  [[nodiscard]] std::uint16_t port() const { return port_; }
   /// Incomplete datagrams that were dropped: kSlots newer ones needed the memory, or a later one has the same
   /// identification.
   [[nodiscard]] std::uint64_t incomplete() const { return incomplete_; }
@@ -101,6 +103,7 @@ class UdpExtractor {
   LidarPorts ports_;
   PortsSeen other_ports_;
   std::uint32_t sender_ipv4_ = 0;
+  std::uint16_t port_ = 0;
   std::uint64_t clock_ = 0;
   std::uint64_t incomplete_ = 0;
   std::uint64_t reassembled_ = 0;

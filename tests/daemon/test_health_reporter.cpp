@@ -128,4 +128,26 @@ TEST_CASE("health is reported once a second, and at once when a sensor read here
   CHECK(reports == 6);
 }
 
+TEST_CASE("a lidar that falls silent, and one that is back, is reported at once and then once a second") {
+  ReportSchedule schedule;
+  std::int64_t now_ns = 5'000'000'000;
+  int reports = 0;
+  const auto tick = [&](bool silent, int times) {
+    for (int i = 0; i < times; ++i) {
+      now_ns += 25'000'000;
+      reports += schedule.due(now_ns, {}, silent) ? 1 : 0;
+    }
+  };
+  tick(false, 50);
+  CHECK(reports == 1);
+  tick(true, 1);
+  CHECK(reports == 2);
+  tick(true, 39);
+  CHECK(reports == 2);
+  tick(true, 1);
+  CHECK(reports == 3);
+  tick(false, 1);
+  CHECK(reports == 4);
+}
+
 }  // namespace isobar::test::test_health_reporter

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <random>
 #include <vector>
 
 #include "daemon/input_tap.hpp"
@@ -80,7 +81,7 @@ TEST_CASE("a subscriber receives every packet unchanged, also the last ones befo
   InputTap inputs;
   recording::InputLog log;
   for (int i = 0; i < kPackets; ++i) {
-    tap.add(traffic[i]);
+    tap.add(traffic[i], ipc::LidarPort::kData);
     tap.end_round();
     if (i % 100 == 0) inputs.drain(log);
   }
@@ -100,33 +101,105 @@ TEST_CASE("a subscriber receives every packet unchanged, also the last ones befo
   CHECK(read == kPackets);
 }
 
-TEST_CASE("packets that a full queue drops, and packets that are too long, are counted as lost") {
+TEST_CASE(
+    "packets of every length and of both ports arrive in their order, and one that is too long is counted") {
+  const ipc::Broker broker;
+  PacketTap tap;
+  InputTap inputs;
+  recording::InputLog log;
+  constexpr std::size_t kTooLong = ipc::LidarPackets::kMaxBytes + 1;
+  // One byte, IMU of Ouster, Velodyne, Ouster with 32 and 128 channels, the longest datagram of UDP, an empty one.
+  const std::vector<std::size_t> sizes = {1,      48,     1'206, 12'608, 12'608, 24'896, 24'896,   48,
+                                          33'024, 33'024, 1,     65'507, 0,      1'206,  kTooLong, 1'206};
+  std::vector<std::vector<std::uint8_t>> sent;
+  std::mt19937 random(1);
+  const auto port_of = [](std::size_t i) {
+    return i % 3 == 1 ? ipc::LidarPort::kInformation : ipc::LidarPort::kData;
+  };
+  constexpr std::size_t kRounds = 20;
+  for (std::size_t i = 0; i < kRounds * sizes.size(); ++i) {
+    std::vector<std::uint8_t> payload(sizes[i % sizes.size()]);
+    for (auto& byte : payload) byte = static_cast<std::uint8_t>(random());
+    tap.add({payload, kStart + static_cast<std::int64_t>(i), {static_cast<std::uint32_t>(i), 1}, false},
+            port_of(i));
+    tap.end_round();
+    sent.push_back(std::move(payload));
+    if (i % sizes.size() == 5) inputs.drain(log);
+  }
+  tap.end_round();
+  inputs.drain(log);
+  CHECK(inputs.lost() == kRounds);
+  recording::InputLogReader reader(log.bytes());
+  recording::LogEntry entry;
+  std::size_t read = 0;
+  for (std::size_t i = 0; i < sent.size(); ++i) {
+    if (sent[i].size() == kTooLong) continue;
+    CAPTURE(i);
+    REQUIRE(reader.next(entry));
+    const bool is_information = port_of(i) == ipc::LidarPort::kInformation;
+    REQUIRE(entry.kind == (is_information ? recording::LogKind::kInformation : recording::LogKind::kPacket));
+    REQUIRE(entry.stamp_ns == kStart + static_cast<std::int64_t>(i));
+    REQUIRE(entry.sender_ipv4 == i);
+    REQUIRE(std::equal(entry.packet.begin(), entry.packet.end(), sent[i].begin(), sent[i].end()));
+    ++read;
+  }
+  CHECK(read == sent.size() - kRounds);
+  CHECK_FALSE(reader.next(entry));
+}
+
+TEST_CASE(
+    "packets that a full queue drops are counted one by one, and a group is never older than its limit") {
   const ipc::Broker broker;
   const Traffic traffic;
   PacketTap tap;
   InputTap inputs;
   recording::InputLog log;
-  constexpr std::uint32_t kGroup = ipc::LidarPackets::kMaxPackets;
+  constexpr int kGroup = PacketTap::kMaxAgeNs / kPacketNs + 2;  // the last one completes the span
   const auto send_group = [&] {
-    for (std::uint32_t i = 0; i < kGroup; ++i) tap.add(traffic[static_cast<int>(i)]);
+    for (int i = 0; i < kGroup; ++i) tap.add(traffic[i], ipc::LidarPort::kData);
   };
   send_group();
   inputs.drain(log);  // the first message: from here on gaps are seen
-  for (std::uint32_t group = 0; group < ipc::topics::kLidarPackets.depth + 3; ++group) send_group();
+  CHECK(log.records() == kGroup);
+  constexpr std::uint32_t kDropped = 3;
+  for (std::uint32_t group = 0; group < ipc::topics::kLidarPackets.depth + kDropped; ++group) send_group();
   inputs.drain(log);
-  CHECK(inputs.lost() == 3 * kGroup);
-  const std::vector<std::uint8_t> long_payload(ipc::LidarPacket::kMaxBytes + 1);
-  tap.add({long_payload, kStart, {}, false});
-  send_group();
+  CHECK(inputs.lost() == kDropped * kGroup);
+  CHECK(log.records() == (ipc::topics::kLidarPackets.depth + 1) * kGroup);
+}
+
+TEST_CASE("the queue holds twice what the busiest lidar sends from one drain to the next") {
+  const ipc::Broker broker;
+  PacketTap tap;
+  InputTap inputs;
+  recording::InputLog log;
+  const std::vector<std::uint8_t> longest(33'024);  // Ouster, 128 channels, dual return
+  constexpr std::int64_t kFastestNs =
+      1'000'000'000 / 1'280;  // 2048 columns at 10 Hz or 1024 at 20 Hz, 16 a packet
+  std::int64_t now_ns = kStart;
+  tap.add({longest, now_ns, {}, false}, ipc::LidarPort::kData);
+  tap.end_round();
+  tap.end_round();
   inputs.drain(log);
-  CHECK(inputs.lost() == 3 * kGroup + 1);
+  std::uint64_t sent = 0;
+  for (const std::int64_t end_ns = now_ns + 2 * InputTap::kDrainEveryNs; now_ns < end_ns;
+       now_ns += kFastestNs) {
+    tap.add({longest, now_ns, {}, false}, ipc::LidarPort::kData);
+    ++sent;
+  }
+  tap.end_round();
+  tap.end_round();
+  log.clear();
+  inputs.drain(log);
+  CHECK(log.records() == sent);
+  CHECK(inputs.lost() == 0);
 }
 
 TEST_CASE("the tap allocates nothing and costs a fraction of the decoding") {
   const ipc::Broker broker;
   const Traffic traffic;
   PacketTap tap;
-  const auto with_tap = [&](const ReceivedDatagram& datagram) { tap.add(datagram); };
+  const auto with_tap = [&](const ReceivedDatagram& datagram) { tap.add(datagram, ipc::LidarPort::kData); };
   const double idle = cost(traffic, with_tap, [] {});
   InputTap inputs;
   recording::InputLog log;
@@ -139,7 +212,7 @@ TEST_CASE("the tap allocates nothing and costs a fraction of the decoding") {
   CHECK(tapped < 2.0);
   const std::size_t before = allocation_count();
   for (int i = 0; i < kPackets; ++i) {
-    tap.add(traffic[i]);
+    tap.add(traffic[i], ipc::LidarPort::kData);
     tap.end_round();
   }
   CHECK(allocation_count() == before);

@@ -48,7 +48,7 @@ void Sender::play(const std::filesystem::path& recording, std::uint16_t lidar_po
   ScanAssembler decoder(
       make_lidar_decoder(stage_settings(with_sensors_of(reader.manifest(), Config{})).lidar));
   const auto scan = std::make_unique<Scan>();
-  tools::Player player("127.0.0.1", lidar_port, datagram::kDefaultPort);
+  tools::Player player("127.0.0.1", {.port = lidar_port}, datagram::kDefaultPort);
   recording::Event event;
   for (std::int64_t shift_ns = 0; !stopping_ && reader.next(event);) {
     if (shift_ns == 0) shift_ns = player.start(event.stamp_ns);

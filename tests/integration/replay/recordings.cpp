@@ -63,7 +63,7 @@ void write_event(const recording::Event& event, const recording::Manifest& manif
                  recording::RecordingWriter& writer) {
   switch (event.kind) {
     case recording::EventKind::kLidarPacket:
-      if (manifest.lidar) writer.add_packet(event.stamp_ns, event.packet);
+      if (manifest.lidar) writer.add_packet(event.stamp_ns, event.packet, event.port, event.sender_ipv4);
       break;
     case recording::EventKind::kImu:
       if (manifest.imu) writer.add_imu(event.imu);
