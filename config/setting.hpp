@@ -54,7 +54,7 @@ struct Setting {
   using Target = std::variant<double*, int*, std::uint16_t*, std::uint32_t*, std::size_t*, bool*,
                               std::string*, Eigen::Vector3d*, std::vector<int>*, std::vector<double>*, Role*,
                               Method*, AirTemperatureMode*, CompensationModel*, Matcher*, LidarSource*,
-                              ImuSource*, BarometerSource*, WheelSource*, encoder::Drive*>;
+                              ImuSource*, BarometerSource*, WheelSource*, encoder::Drive*, dds::Reliability*>;
 
   std::string key;  ///< with its section, "registration.max_range_m"
   Target target;

@@ -32,7 +32,8 @@ CloudView view_of(const dds::CloudMessage& message, std::vector<CloudField>& fie
 }  // namespace
 
 CloudInput::CloudInput(dds_entity_t participant, const Settings& settings)
-    : reader_(participant, dds::topics::kPoints, settings.dds.ros_namespace, settings.dds.topics.points),
+    : reader_(participant, dds::topics::kPoints, settings.dds.ros_namespace, settings.dds.topics.points,
+              settings.dds.input_qos.points),
       publisher_(ipc::topics::kLidarScan),
       decoder_(settings.lidar_limits) {}
 
