@@ -7,7 +7,7 @@
 #include <string>
 
 #include "config/config.hpp"
-#include "core/time/stream_pace.hpp"
+#include "daemon/arrival_meter.hpp"
 #include "daemon/deadline.hpp"
 #include "daemon/handover.hpp"
 #include "daemon/lidar_sender.hpp"
@@ -31,7 +31,7 @@ struct LidarStatus {
   std::uint64_t info_refused = 0;            ///< packets of the second port that another machine sent
   std::uint64_t scans_without_memory = 0;    ///< complete scans dropped for want of a chunk in shared memory
   std::int64_t last_packet_ns = 0;           ///< robot clock; 0: none yet
-  StreamPace pace;                           ///< of the scans' ends
+  ArrivalMeter arrivals;                     ///< of the packets; of clouds over DDS, of these
   SenderStatus sender;                       ///< port 0
   std::int64_t clock_jumped_ns = 0;          ///< last jump of the lidar's clock, robot clock; 0: never
   LidarSync sync = LidarSync::kUnknown;      ///< state of the lidar's clock
@@ -42,7 +42,7 @@ struct LidarStatus {
 
 /// What isobard knows of a lidar whose scans isobar-dds converts: their number and times.
 [[nodiscard]] LidarStatus status_of_clouds(std::uint64_t scans, std::int64_t last_scan_ns,
-                                           const StreamPace& pace);
+                                           const ArrivalMeter& arrivals);
 
 /// Decodes the lidar's UDP packets and publishes scans. Its other packets (position, device information, IMU)
 /// come to a second port; they are taken after each packet of the first one, and every 200 ms without.

@@ -75,6 +75,7 @@ void CloudInput::convert(const dds::CloudMessage& message, std::int64_t now_ns,
   anchored_ = true;
   scan->end_stamp_ns = anchor_.to_host_ns(anchor_.device_unwrapped_ns());
   scan->stamp_ns = scan->end_stamp_ns - length_ns;
+  scan->timing = {now_ns, anchor_.device_ahead_ns()};
   publisher_.publish(scan);
 }
 

@@ -160,6 +160,7 @@ void Receiving::forward(std::optional<Stream<Message, Sample>>& stream) {
     static_cast<void>(stream->anchor.add(stamp_ns, now_ns));
     stream->anchored = true;
     sample.stamp_ns = stream->anchor.to_host_ns(stream->anchor.device_unwrapped_ns());
+    sample.timing = {now_ns, stream->anchor.device_ahead_ns()};
     if constexpr (std::is_same_v<Sample, ImuSample>)
       sample.has_attitude = sample.has_attitude && imu_orientation_;
     sample.path = SamplePath::kDds;

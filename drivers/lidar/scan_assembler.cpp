@@ -63,6 +63,7 @@ bool ScanAssembler::flush(Scan& current) {
 bool ScanAssembler::take_imu(ImuSample& sample) {
   if (!decoder_->take_imu(sample) || counters_.packets == 0) return false;
   sample.stamp_ns = anchor_.to_host_ns(sample.stamp_ns);
+  sample.timing.clock_ahead_ns = anchor_.device_ahead_ns();
   return true;
 }
 

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/timing_health.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+
+#include "daemon/health_entry.hpp"
+#include "daemon/input_health.hpp"
+
+namespace isobar {
+
+std::string timing_text(const ArrivalFigures& figures) {
+  const std::string offset = std::isnan(figures.offset_s)
+                                 ? "no clock of its own"
+                                 : "offset " + duration_text(std::llround(figures.offset_s * 1e9));
+  const std::string jitter =
+      std::isnan(figures.jitter_ms) ? "" : fmt::format(", jitter {:.2f} ms", figures.jitter_ms);
+  return fmt::format("{}, latency {:.2f} ms (p99 {:.2f} ms){}", offset, figures.latency_ms,
+                     figures.latency_p99_ms, jitter);
+}
+
+void add_timing(ipc::HealthReport& report, const std::string& sensor, bool heard,
+                const ArrivalFigures& figures) {
+  if (!heard) return;
+  add_entry(report, sensor + "/timing", ipc::HealthLevel::kOk,
+            figures.known() ? timing_text(figures) : "no arrival to measure",
+            figures.known() ? figures.latency_ms : 0.0);
+}
+
+void fill_timing(const ArrivalFigures& figures, ipc::SensorStatus& sensor) {
+  sensor.offset_s = figures.offset_s;
+  sensor.latency_ms = figures.latency_ms;
+  sensor.latency_p99_ms = figures.latency_p99_ms;
+  sensor.jitter_ms = figures.jitter_ms;
+}
+
+}  // namespace isobar
