@@ -11,7 +11,7 @@
 #include "ipc/dds/writer_watch.hpp"
 #include "tests/integration/dds/base_station_peers.hpp"
 
-namespace isobar::test::test_inputs {
+namespace isobar::test::test_dds_inputs {
 
 namespace {
 
@@ -122,4 +122,4 @@ TEST_CASE("Cyclone DDS reports no inconsistent topic: only the list of writers s
 
 }  // namespace
 
-}  // namespace isobar::test::test_inputs
+}  // namespace isobar::test::test_dds_inputs
