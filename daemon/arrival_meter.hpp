@@ -17,6 +17,8 @@ struct ArrivalFigures {
   double latency_p99_ms = std::nan("");  ///< likewise
   double jitter_ms = std::nan("");       ///< standard deviation of the interval between arrivals
 
+  bool measured = false;  ///< there was an arrival at any time
+
   [[nodiscard]] bool known() const noexcept { return !std::isnan(latency_ms); }
 };
 
@@ -47,11 +49,12 @@ class ArrivalMeter {
     cadence_.add(timing.received_ns);
   }
 
-  /// Unknown after 20 s without an arrival.
+  /// Unknown while the stream is silent.
   /// @param now_ns robot clock
   [[nodiscard]] ArrivalFigures figures(std::int64_t now_ns) const noexcept {
     ArrivalFigures figures;
-    if (!cadence_.started() || now_ns - cadence_.last_ns() > 2 * kSpanNs) return figures;
+    figures.measured = cadence_.started();
+    if (!cadence_.started() || cadence_.silent(now_ns)) return figures;
     LatencyHistogram latency = newest_.latency;
     latency.add(older_.latency);
     figures.latency_ms = latency.quantile_ms(0.5, {});

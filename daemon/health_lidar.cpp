@@ -38,7 +38,7 @@ void HealthMonitor::fill_lidar(const StatusSnapshot& now, double elapsed_s, Heal
     add_entry(report, "lidar/clock", is_faulty ? HealthLevel::kWarning : HealthLevel::kOk,
               std::string(kLidarSyncTexts.name(now.lidar.sync)), 0.0);
   }
-  add_timing(report, "lidar", now.lidar.last_packet_ns != 0, now.lidar.arrivals.figures(now.now_ns));
+  add_timing(report, "lidar", now.lidar.arrivals.figures(now.now_ns));
   add_senders(report, "lidar", now.lidar.sender, now.now_ns, "lidar.sender chooses");
   if (counters.wrong_model > before.wrong_model) {
     add_entry(report, "lidar/model", HealthLevel::kError, now.lidar.wrong_model_message.data(),

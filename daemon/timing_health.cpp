@@ -20,12 +20,13 @@ std::string timing_text(const ArrivalFigures& figures) {
                      figures.latency_p99_ms, jitter);
 }
 
-void add_timing(ipc::HealthReport& report, const std::string& sensor, bool heard,
-                const ArrivalFigures& figures) {
-  if (!heard) return;
-  add_entry(report, sensor + "/timing", ipc::HealthLevel::kOk,
-            figures.known() ? timing_text(figures) : "no arrival to measure",
-            figures.known() ? figures.latency_ms : 0.0);
+void add_timing(ipc::HealthReport& report, const std::string& sensor, const ArrivalFigures& figures) {
+  if (!figures.measured) return;
+  if (figures.known()) {
+    add_entry(report, sensor + "/timing", ipc::HealthLevel::kOk, timing_text(figures), figures.latency_ms);
+  } else {
+    add_entry(report, sensor + "/timing", ipc::HealthLevel::kStale, "nothing arrives", 0.0);
+  }
 }
 
 void fill_timing(const ArrivalFigures& figures, ipc::SensorStatus& sensor) {

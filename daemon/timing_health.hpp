@@ -12,10 +12,8 @@ namespace isobar {
 /// "offset -3.200 s, latency 0.40 ms (p99 1.90 ms), jitter 0.20 ms"; "no clock of its own" instead of the offset.
 [[nodiscard]] std::string timing_text(const ArrivalFigures& figures);
 
-/// Adds the entry `sensor`/timing, never more than information; absent until the sensor was heard.
-/// @param heard at any time
-void add_timing(ipc::HealthReport& report, const std::string& sensor, bool heard,
-                const ArrivalFigures& figures);
+/// Adds the entry `sensor`/timing: stale while the sensor is silent, absent before it was measured.
+void add_timing(ipc::HealthReport& report, const std::string& sensor, const ArrivalFigures& figures);
 
 /// Fills offset, latency and jitter.
 void fill_timing(const ArrivalFigures& figures, ipc::SensorStatus& sensor);

@@ -113,12 +113,14 @@ TEST_CASE("the line of a sensor has its figures in units that people read") {
   CHECK(timing_text({std::nan(""), 0.4, 1.9, std::nan("")}) ==
         "no clock of its own, latency 0.40 ms (p99 1.90 ms)");
   ipc::HealthReport report;
-  add_timing(report, "imu", false, {});
+  add_timing(report, "imu", {});
   CHECK(report.entry_count == 0);
-  add_timing(report, "imu", true, {});
-  REQUIRE(report.entry_count == 1);
+  add_timing(report, "imu", {.measured = true});
+  add_timing(report, "imu", {.latency_ms = 0.4, .measured = true});
+  REQUIRE(report.entry_count == 2);
   CHECK(std::string(report.entries[0].name) == "imu/timing");
-  CHECK(report.entries[0].level == ipc::HealthLevel::kOk);
+  CHECK(report.entries[0].level == ipc::HealthLevel::kStale);
+  CHECK(report.entries[1].level == ipc::HealthLevel::kOk);
 }
 
 }  // namespace isobar::test::test_arrival_meter
