@@ -56,6 +56,36 @@ void add_topics(dds::TopicNames& names, std::vector<Setting>& settings) {
   name("wheel", names.wheel, "Name of the wheels' odometry, received where wheel.source is \"dds\".");
 }
 
+void add_input_qos(dds::InputsQos& inputs, std::vector<Setting>& settings) {
+  SectionBuilder s("dds.qos", UsedBy::kRobot, settings);
+  s.applies(Apply::kLive);
+  const auto input = [&s](const std::string& name, dds::InputQos& qos, const char* reliability_doc,
+                          const char* depth_doc) {
+    s.choice((name + "_reliability").c_str(), &qos.reliability, dds::kReliabilityNames.names(),
+             reliability_doc);
+    s.number((name + "_depth").c_str(), &qos.depth, "messages", 1, 1'000, depth_doc);
+  };
+  input(
+      "points", inputs.points,
+      "Reliability asked of the writer of dds.topics.points. best_effort: fits every writer. reliable: lost "
+      "messages are sent again, but a best-effort writer, as of most lidar drivers, does not match: no data.",
+      "Clouds that wait for isobar-dds; a newer one drops the oldest. 5: half a second at 10 Hz.");
+  input("pressure", inputs.pressure,
+        "As points_reliability, of dds.topics.pressure. best_effort: a lost sample does not matter.",
+        "As points_depth. 5: a barometer sends at most some ten samples a second.");
+  input("imu", inputs.imu,
+        "As points_reliability, of dds.topics.imu. best_effort: a sample that is sent again comes too late.",
+        "As points_depth. 50: an eighth of a second at 400 Hz, longer than the conversion of a cloud.");
+  input("wheel", inputs.wheel,
+        "As points_reliability, of dds.topics.wheel. best_effort: the next sample tells the way as well.",
+        "As points_depth. 10: a fifth of a second at 50 Hz.");
+  input("base_pressure", inputs.base_pressure,
+        "As points_reliability, of dds.topics.base_pressure and base_temperature. best_effort: isobar's own "
+        "base "
+        "stations offer no more.",
+        "As points_depth. 5: a base station sends at most some ten samples a second.");
+}
+
 void add_frames(dds::DdsConfig& dds, SectionBuilder& s) {
   s.text("frame_prefix", dds.frame_prefix, TextRule::kPrefix,
          "In front of every frame name, such as \"robot1/\", so that several robots share one /tf. Empty: "
@@ -138,6 +168,7 @@ void add_dds_settings(dds::DdsConfig& dds, std::vector<Setting>& settings) {
   add_outputs(dds, s);
   add_inputs(dds, s);
   add_topics(dds.topics, settings);
+  add_input_qos(dds.input_qos, settings);
   add_propagator(dds.propagator, settings);
 }
 

@@ -59,6 +59,7 @@ constexpr auto kDocs = std::to_array<Doc>({
     {"realtime", "Scheduling of a live run's threads, and the deadline of each stage."},
     {"dds", "DDS network, topics and frames of isobar-dds."},
     {"dds.topics", "Names of the ROS topics, without leading slash."},
+    {"dds.qos", "Quality of service of the readers: what they ask of the nodes that write the inputs."},
     {"dds.propagator", "Smoothing of the registration's corrections in the odom frame."},
     {"altimeter", "Checks of the barometers and conversion of air pressure to height."},
     {"altimeter.air",

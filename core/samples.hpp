@@ -20,6 +20,15 @@ enum class SamplePath : std::uint8_t {
   kDds,       ///< isobar-dds
 };
 
+/// How a live sample reached this machine; unknown in a recording. For the health report alone: estimates never use it.
+struct SampleTiming {
+  /// SampleTiming::clock_ahead_ns of a sensor without a clock of its own.
+  static constexpr std::int64_t kNoClock = std::numeric_limits<std::int64_t>::min();
+
+  std::int64_t received_ns = 0;            ///< arrival on this machine, robot clock; 0: unknown
+  std::int64_t clock_ahead_ns = kNoClock;  ///< see ClockAnchor::device_ahead_ns()
+};
+
 /// One inertial sample, in the IMU's own frame. At rest and level accel reads (0, 0, +g).
 struct ImuSample {
   std::int64_t stamp_ns = 0;                                        ///< time of the measurement, robot clock
@@ -28,6 +37,7 @@ struct ImuSample {
   Eigen::Quaterniond q_world_imu = Eigen::Quaterniond::Identity();  ///< attitude from the IMU's own filter
   bool has_attitude = false;                                        ///< q_world_imu is valid
   SamplePath path = SamplePath::kLocal;
+  SampleTiming timing{};
 };
 
 /// One barometer sample, of the robot or of a base station.
@@ -39,6 +49,7 @@ struct PressureSample {
   double variance_pa2 = std::numeric_limits<double>::quiet_NaN();
   std::uint8_t station = 0;  ///< base station: 0 the first, 1 the second
   SamplePath path = SamplePath::kLocal;
+  SampleTiming timing{};
 };
 
 /// Wheel odometry: twist of base_link in base_link.
@@ -48,6 +59,11 @@ struct WheelSample {
   double vy_m_s = 0.0;
   double wz_rad_s = 0.0;
   SamplePath path = SamplePath::kLocal;
+  /// White noise of this sample as stated by its sender, NaN if unknown. What core believes of it: wheel_noise.hpp.
+  double vx_variance_m2_s2 = std::numeric_limits<double>::quiet_NaN();
+  double vy_variance_m2_s2 = std::numeric_limits<double>::quiet_NaN();
+  double wz_variance_rad2_s2 = std::numeric_limits<double>::quiet_NaN();
+  SampleTiming timing{};
 };
 
 /// One lidar return in the sensor's frame (x forward, y left, z up). No default initialisers: they would make
@@ -74,6 +90,7 @@ struct Scan {
   std::uint32_t sequence = 0;      ///< number of the scan in this run
   std::uint32_t point_count = 0;   ///< points[0 … point_count-1] are valid
   std::uint32_t packets_lost = 0;  ///< packets missing in this revolution, from gaps in time
+  SampleTiming timing{};           ///< of a scan that was received whole, over DDS; else unknown
   ScanPoint points[kMaxPoints];    // NOLINT(modernize-avoid-c-arrays): payload in shared memory
 
   Scan() {}  // NOLINT: user-written: loaning a chunk must not zero a megabyte

@@ -60,6 +60,7 @@ std::vector<files::RunCount> counts_of(const PriorCounters& counters) {
       {"wheel samples", counters.wheel_accepted, ""},
       {"wheel samples with bad values", counters.wheel_bad_value, ""},
       {"wheel samples with bad times", counters.wheel_bad_time, ""},
+      {"wheel samples whose variance is not believed", counters.wheel_bad_variance, ""},
       {"wheel seconds of slip in a turn", counters.wheel_turn_slips, ""},
       {"wheel seconds of slip in speed", counters.wheel_speed_slips, ""},
       {"moving ground", counters.moving_ground, ""},

@@ -17,6 +17,7 @@
 #include "daemon/run_health.hpp"
 #include "daemon/stage_settings.hpp"
 #include "daemon/status_figures.hpp"
+#include "daemon/timing_health.hpp"
 #include "daemon/wheel_source.hpp"
 
 namespace isobar {
@@ -127,6 +128,7 @@ void HealthMonitor::fill_samples(const StatusSnapshot& now, double elapsed_s, He
       add_stream(report, kNames[kind], now.prior.last_sample_ns[kind], now.now_ns, kSensorSilenceNs, rate_hz,
                  input_of(config_, which), expected);
     }
+    add_timing(report, kNames[kind], now.prior.arrivals[kind].figures(now.now_ns));
     add_count(report, (std::string(kNames[kind]) + "/lost").c_str(), counters.lost[kind], before.lost[kind],
               "samples lost, by the gaps in their numbers");
   }

@@ -114,6 +114,10 @@ void add_slip(HealthReport& report, const PriorCounters& now, const PriorCounter
   add_count(report, "wheels/speed_slip", now.wheel_speed_slips, before.wheel_speed_slips,
             "seconds in which the accelerometer contradicted the wheels: they block or stand while the robot "
             "moves on");
+  if (now.wheel_bad_variance == 0) return;
+  add_entry(report, "wheels/covariance", HealthLevel::kOk,
+            "samples with a covariance that no wheels have: attitude.wheel_sigma_m_s is used",
+            static_cast<double>(now.wheel_bad_variance));
 }
 
 void add_calibration(HealthReport& report, const std::string& sensor, std::uint64_t outside,

@@ -7,6 +7,7 @@
 #include "daemon/health_entry.hpp"
 #include "daemon/input_health.hpp"
 #include "daemon/lidar_sender.hpp"
+#include "daemon/timing_health.hpp"
 
 namespace isobar {
 namespace {
@@ -57,6 +58,7 @@ void HealthMonitor::fill_lidar(const StatusSnapshot& now, double elapsed_s, Heal
                where);
   }
   add_lidar_clock(report, config_.lidar.time, now.lidar);
+  add_timing(report, "lidar", now.lidar.arrivals.figures(now.now_ns));
   add_senders(report, "lidar", now.lidar.sender, now.now_ns, "lidar.sender chooses");
   if (counters.wrong_model > before.wrong_model) {
     add_entry(report, "lidar/model", HealthLevel::kError, now.lidar.wrong_model_message.data(),

@@ -28,17 +28,6 @@ std::string_view text_of(SamplePath path) {
   return path == SamplePath::kDatagram ? "datagrams" : path == SamplePath::kDds ? "DDS" : "this machine";
 }
 
-/// "+3 days 02:00:05", "-0.250 s"
-std::string duration_text(std::int64_t duration_ns) {
-  constexpr std::int64_t kDayS = 86'400;
-  const double s = std::abs(seconds_between(0, duration_ns));
-  const char sign = duration_ns < 0 ? '-' : '+';
-  if (s < 60.0) return fmt::format("{}{:.3f} s", sign, s);
-  const std::int64_t whole = std::llround(s);
-  return fmt::format("{}{} days {:02}:{:02}:{:02}", sign, whole / kDayS, whole / 3600 % 24, whole / 60 % 60,
-                     whole % 60);
-}
-
 }  // namespace
 
 void add_senders(ipc::HealthReport& report, const std::string& name, const SenderStatus& status,
@@ -122,6 +111,16 @@ void add_starts_over(ipc::HealthReport& report, const StartOver& start_over, std
       is_recent(start_over.last_ns(), now_ns) ? HealthLevel::kWarning : HealthLevel::kOk,
       "the lidar's clock jumped and the IMU began anew, together: another recording; a new map frame began",
       static_cast<double>(start_over.count()));
+}
+
+std::string duration_text(std::int64_t duration_ns) {
+  constexpr std::int64_t kDayS = 86'400;
+  const double s = std::abs(seconds_between(0, duration_ns));
+  const char sign = duration_ns < 0 ? '-' : '+';
+  if (s < 60.0) return fmt::format("{}{:.3f} s", sign, s);
+  const std::int64_t whole = std::llround(s);
+  return fmt::format("{}{} days {:02}:{:02}:{:02}", sign, whole / kDayS, whole / 3600 % 24, whole / 60 % 60,
+                     whole % 60);
 }
 
 std::string step_text(std::int64_t step_ns) {

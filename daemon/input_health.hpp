@@ -42,6 +42,9 @@ void add_system_clock(ipc::HealthReport& report, const SystemClockWatch& system,
 /// Adds the entry "input/starts_over": absent before the first one; a warning for kSenderMemoryNs.
 void add_starts_over(ipc::HealthReport& report, const StartOver& start_over, std::int64_t now_ns);
 
+/// A signed duration: "+3 days 02:00:05", "-0.250 s".
+[[nodiscard]] std::string duration_text(std::int64_t duration_ns);
+
 /// The log line of a step of the system clock.
 [[nodiscard]] std::string step_text(std::int64_t step_ns);
 

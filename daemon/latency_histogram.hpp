@@ -16,6 +16,11 @@ class LatencyHistogram {
 
   void note(std::int64_t took_ns) noexcept { ++counts_[bucket_of(took_ns)]; }
 
+  /// Takes all durations that another one counts.
+  void add(const LatencyHistogram& other) noexcept {
+    for (std::size_t i = 0; i < kBuckets; ++i) counts_[i] += other.counts_[i];
+  }
+
   /// Quantile of the durations counted here and not yet in `before` [ms]; NaN without any.
   /// @param share 0 … 1: 0.5 is the median
   [[nodiscard]] double quantile_ms(double share, const LatencyHistogram& before) const noexcept {

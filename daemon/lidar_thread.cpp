@@ -18,11 +18,11 @@ bool is_silent(const LidarStatus& lidar, std::int64_t now_ns) {
   return lidar.last_packet_ns != 0 && now_ns - lidar.last_packet_ns > silence_limit_ns(lidar);
 }
 
-LidarStatus status_of_clouds(std::uint64_t scans, std::int64_t last_scan_ns, const StreamPace& pace) {
+LidarStatus status_of_clouds(std::uint64_t scans, std::int64_t last_scan_ns, const ArrivalMeter& arrivals) {
   LidarStatus status;
   status.counters.scans = scans;
   status.last_packet_ns = last_scan_ns;
-  status.pace = pace;
+  status.arrivals = arrivals;
   return status;
 }
 
@@ -69,7 +69,12 @@ void LidarThread::take_packet(const ReceivedDatagram& datagram) noexcept {
   draft_status_.last_packet_ns = datagram.stamp_ns;
   tap_.add(datagram, ipc::LidarPort::kData);
   Scan& scan = loaned_ != nullptr ? *loaned_ : spare_scan_;
-  if (assembler_.add_packet(datagram.payload, datagram.stamp_ns, scan).scan_complete) publish_scan();
+  const DecodeResult result = assembler_.add_packet(datagram.payload, datagram.stamp_ns, scan);
+  if (result.status == DecodeStatus::kOk) {
+    draft_status_.arrivals.add(assembler_.packet_stamp_ns(),
+                               {datagram.stamp_ns, assembler_.clock_ahead_ns()});
+  }
+  if (result.scan_complete) publish_scan();
 }
 
 void LidarThread::take_information(const ReceivedDatagram& datagram) noexcept {
@@ -84,6 +89,7 @@ void LidarThread::take_information(const ReceivedDatagram& datagram) noexcept {
                               loaned_ != nullptr ? *loaned_ : spare_scan_);
   ImuSample sample;
   while (imu_publisher_ && assembler_.take_imu(sample)) {
+    sample.timing.received_ns = datagram.stamp_ns;
     if (!imu_publisher_->send(sample)) ++draft_status_.samples_without_memory;
   }
 }
@@ -91,10 +97,9 @@ void LidarThread::take_information(const ReceivedDatagram& datagram) noexcept {
 void LidarThread::publish_scan() noexcept {
   const std::int64_t end_stamp_ns = (loaned_ != nullptr ? *loaned_ : spare_scan_).end_stamp_ns;
   pacing_.scan_ended(end_stamp_ns);
-  draft_status_.pace.add(end_stamp_ns);
   // A turn and a half without a packet is no pause of a reduced field of view.
   turns_.scanned(end_stamp_ns);
-  if (draft_status_.pace.known()) draft_status_.silence_ns = turns_.silence_ns();
+  if (turns_.known()) draft_status_.silence_ns = turns_.silence_ns();
   if (loaned_ != nullptr) {
     publisher_.publish(loaned_);
     deadline_.note(end_stamp_ns, RobotClock::now_ns());

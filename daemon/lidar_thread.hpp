@@ -7,7 +7,7 @@
 #include <string>
 
 #include "config/config.hpp"
-#include "core/time/stream_pace.hpp"
+#include "daemon/arrival_meter.hpp"
 #include "daemon/deadline.hpp"
 #include "daemon/handover.hpp"
 #include "daemon/lidar_sender.hpp"
@@ -34,7 +34,7 @@ struct LidarStatus {
   std::int64_t last_packet_ns = 0;           ///< robot clock; 0: none yet
   std::int64_t waited_ns = 0;                ///< robot clock, end of the last wait without a data packet
   std::int64_t silence_ns = 1'000'000'000;   ///< time without a packet that no working lidar takes
-  StreamPace pace;                           ///< of the scans' ends
+  ArrivalMeter arrivals;                     ///< of the packets; of clouds over DDS, of these
   SenderStatus sender;                       ///< port 0
   std::int64_t clock_jumped_ns = 0;          ///< last jump of the lidar's clock, robot clock; 0: never
   LidarSync sync = LidarSync::kUnknown;      ///< state of the lidar's clock
@@ -52,7 +52,7 @@ struct LidarStatus {
 
 /// What isobard knows of a lidar whose scans isobar-dds converts: their number and times.
 [[nodiscard]] LidarStatus status_of_clouds(std::uint64_t scans, std::int64_t last_scan_ns,
-                                           const StreamPace& pace);
+                                           const ArrivalMeter& arrivals);
 
 /// Decodes the lidar's UDP packets and publishes scans. Its other packets (position, device information, IMU)
 /// come to a second port.

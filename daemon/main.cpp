@@ -120,7 +120,7 @@ class RobotGraph final : public Graph {
     return {now_ns,
             lidar_ ? lidar_->status()
                    : status_of_clouds(registration.arrived_scans, registration.last_scan_ns,
-                                      registration.scan_pace),
+                                      registration.scan_arrivals),
             samples_.status(),
             imu_ ? imu_->status() : DeviceThreadStatus{},
             barometer_ ? barometer_->status() : DeviceThreadStatus{},

@@ -49,9 +49,14 @@ ipc::Received<Sample> PriorThread::take(ipc::Subscriber<Sample>& from, datagram:
   if (sample) {
     ++draft_status_.samples[static_cast<std::size_t>(kind)];
     draft_status_.last_sample_ns[static_cast<std::size_t>(kind)] = sample->stamp_ns;
-    draft_status_.pace[static_cast<std::size_t>(kind)].add(sample->stamp_ns);
   }
   return sample;
+}
+
+// Of the sender that is used: two would look like one with twice the rate.
+template <class Sample>
+void PriorThread::note_arrival(const Sample& sample, datagram::Kind kind) noexcept {
+  draft_status_.arrivals[static_cast<std::size_t>(kind)].add(sample.stamp_ns, sample.timing);
 }
 
 void PriorThread::leave_out(const PriorConfig& config, const UsableSensors& usable, double deadline_ms) {
@@ -81,15 +86,19 @@ void PriorThread::drain() noexcept {
     if (station >= base_paths_.size()) continue;  // of another build
     const bool is_used = base_paths_[station].check(*sample);
     draft_status_.base_paths[station] = base_paths_[station].status();
+    if (is_used && station == 0) note_arrival(*sample, Kind::kBasePressure);
     if (!is_used || !usable_.barometers) continue;
     draft_status_.base_stations[station].add(sample->stamp_ns);
     estimator_.add_base_pressure(*sample);
   }
   while (const auto sample = take(barometer_, Kind::kPressure)) {
+    note_arrival(*sample, Kind::kPressure);
     if (usable_.barometers) estimator_.add_pressure(*sample);
   }
   while (const auto sample = take(wheel_, Kind::kWheel)) {
-    if (wheel_path_.check(*sample) && usable_.wheels) estimator_.add_wheel(*sample);
+    if (!wheel_path_.check(*sample)) continue;
+    note_arrival(*sample, Kind::kWheel);
+    if (usable_.wheels) estimator_.add_wheel(*sample);
   }
   drain_imu();
   if (!has_imu_) advance(RobotClock::now_ns());
@@ -112,6 +121,7 @@ void PriorThread::drain_imu() noexcept {
   std::int64_t before_ns = draft_status_.last_sample_ns[kImuIndex];
   while (const auto sample = take(imu_, datagram::Kind::kImu)) {
     if (!imu_path_.check(*sample)) continue;
+    note_arrival(*sample, datagram::Kind::kImu);
     if (before_ns != 0 && std::abs(sample->stamp_ns - before_ns) > StartOver::kSilenceNs) {
       draft_status_.imu_resumed_ns = sample->stamp_ns;
     }

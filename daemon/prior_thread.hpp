@@ -10,7 +10,7 @@
 #include "core/prior/prior_estimator.hpp"
 #include "core/prior/prior_pace.hpp"
 #include "core/time/cadence.hpp"
-#include "core/time/stream_pace.hpp"
+#include "daemon/arrival_meter.hpp"
 #include "daemon/deadline.hpp"
 #include "daemon/handover.hpp"
 #include "daemon/path_choice.hpp"
@@ -31,7 +31,7 @@ struct PriorStatus {
   PathStatus imu_path;
   PathStatus wheel_path;
   std::int64_t imu_resumed_ns = 0;                        ///< end of its last silence, robot clock; 0: never
-  std::array<StreamPace, datagram::kKinds> pace;          ///< of the stamps, by Kind
+  std::array<ArrivalMeter, datagram::kKinds> arrivals;    ///< by Kind; of base stations the first one
   std::array<std::uint64_t, datagram::kKinds> dropped{};  ///< lost to a full queue, by Kind
   std::uint64_t dropped_samples = 0;                      ///< their sum
   std::int64_t stamp_ns = 0;                              ///< of the newest prior; 0: none yet
@@ -82,6 +82,8 @@ class PriorThread {
   template <class Sample>
   ipc::Received<Sample> take(ipc::Subscriber<Sample>& from, datagram::Kind kind) noexcept;
   void describe(const Prior& prior) noexcept;
+  template <class Sample>
+  void note_arrival(const Sample& sample, datagram::Kind kind) noexcept;
 
   bool has_imu_;
   UsableSensors usable_;

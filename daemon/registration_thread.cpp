@@ -71,7 +71,7 @@ void RegistrationThread::drain() noexcept {
   bool scan_arrived = false;
   while (auto scan = scans_.take()) {
     draft_status_.last_scan_ns = scan->end_stamp_ns;
-    draft_status_.scan_pace.add(scan->end_stamp_ns);
+    draft_status_.scan_arrivals.add(scan->end_stamp_ns, scan->timing);
     ++draft_status_.arrived_scans;
     queue_.push(std::move(scan), now_ns);
     scan_arrived = true;

@@ -10,7 +10,7 @@
 #include "core/map/map_snapshot.hpp"
 #include "core/map/snapshot_exchange.hpp"
 #include "core/name_table.hpp"
-#include "core/time/stream_pace.hpp"
+#include "daemon/arrival_meter.hpp"
 #include "daemon/deadline.hpp"
 #include "daemon/handover.hpp"
 #include "daemon/registration_stage.hpp"
@@ -56,7 +56,7 @@ struct RegistrationStatus {
       0;  ///< scans superseded by a newer one, or lost before this thread; see ScanQueue
   std::uint64_t dropped_priors = 0;
   std::int64_t last_scan_ns = 0;  ///< end of the newest scan that arrived, robot clock; 0: none yet
-  StreamPace scan_pace;           ///< of the ends of the scans
+  ArrivalMeter scan_arrivals;     ///< of scans that isobar-dds received
   std::uint64_t arrived_scans = 0;
   std::uint64_t bridged = 0;                              ///< poses without a scan
   std::uint32_t session = 1;                              ///< number of the map frame

@@ -83,6 +83,7 @@ datagram::Admission SampleInput::base_admission() noexcept {
 bool SampleInput::to_robot_clock(datagram::Sample& sample) noexcept {
   const bool stamped = sample.stamp_ns() != 0;
   if (!stamped) sample.set_stamp_ns(receive_ns_);
+  sample.imu.timing = sample.wheel.timing = sample.pressure.timing = {.received_ns = receive_ns_};
   sample.imu.path = sample.wheel.path = SamplePath::kDatagram;
   if (sample.kind == datagram::Kind::kBasePressure) {
     sample.pressure.path = SamplePath::kDatagram;
@@ -104,6 +105,8 @@ void SampleInput::to_robot_clock(Stream& stream, datagram::Sample& sample) noexc
   (void)stream.anchor.add(sender_ns, receive_ns_);
   stream.anchored = true;
   sample.set_stamp_ns(stream.anchor.to_host_ns(stream.anchor.device_unwrapped_ns()));
+  sample.imu.timing.clock_ahead_ns = sample.wheel.timing.clock_ahead_ns =
+      sample.pressure.timing.clock_ahead_ns = stream.anchor.device_ahead_ns();
 }
 
 SampleInputStatus SampleInput::status() const noexcept {

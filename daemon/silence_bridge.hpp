@@ -39,6 +39,8 @@ class SilenceBridge {
   /// True when a pose with this stamp is newer than all before.
   [[nodiscard]] bool in_order(std::int64_t stamp_ns) const { return !started_ || stamp_ns > newest_pose_ns_; }
 
+  /// Whether the lidar's interval has been learnt.
+  [[nodiscard]] bool known() const { return interval_ns_ > 0; }
   /// Time after the end of the last scan from which the lidar is silent.
   [[nodiscard]] std::int64_t silence_ns() const {
     // Two intervals and a half: a scan may be complete only with the first packet of the next one.

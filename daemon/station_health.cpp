@@ -9,6 +9,7 @@
 #include "daemon/health_entries.hpp"
 #include "daemon/health_entry.hpp"
 #include "daemon/input_health.hpp"
+#include "daemon/timing_health.hpp"
 
 namespace isobar {
 namespace {
@@ -53,6 +54,7 @@ void fill_station_health(const StationSnapshot& now, const StationSnapshot& befo
                          ipc::HealthReport& report) {
   constexpr auto kBarometer = static_cast<std::size_t>(datagram::Kind::kPressure);
   add_barometer(now, before, config, report);
+  add_timing(report, "barometer", now.station.arrivals.figures(now.now_ns));
   add_count(report, "barometer/lost", now.input.counters.lost[kBarometer],
             before.input.counters.lost[kBarometer], "samples lost, by the gaps in their numbers");
   add_count(report, "station/dropped", now.station.dropped_samples, before.station.dropped_samples,

@@ -49,7 +49,7 @@ void StationThread::take(const PressureSample& raw) noexcept {
   }
   ++draft_status_.samples;
   draft_status_.cadence.add(measured.stamp_ns);
-  draft_status_.pace.add(measured.stamp_ns);
+  draft_status_.arrivals.add(measured.stamp_ns, measured.timing);
   draft_status_.newest = measured;
   if (std::isnan(measured.variance_pa2) && noise_samples_ >= kMinNoiseSamples) {
     draft_status_.newest.variance_pa2 = noise_.variance();

@@ -7,7 +7,7 @@
 #include "core/altitude/noise_estimator.hpp"
 #include "core/altitude/sensor_compensation.hpp"
 #include "core/time/cadence.hpp"
-#include "core/time/stream_pace.hpp"
+#include "daemon/arrival_meter.hpp"
 #include "daemon/seq_lock.hpp"
 #include "daemon/worker.hpp"
 #include "ipc/shared_memory.hpp"
@@ -20,7 +20,7 @@ struct StationStatus {
   std::uint64_t dropped_samples = 0;  ///< lost to a full queue of this thread
   std::uint64_t samples_without_memory = 0;
   Cadence cadence;  ///< of the samples, robot clock
-  StreamPace pace;  ///< of the stamps
+  ArrivalMeter arrivals;
   std::uint64_t outside_calibration = 0;
   std::uint64_t without_temperature = 0;  ///< samples without the temperature that the calibration needs
   std::int64_t changed_ns = 0;  ///< stamp of the newest sample whose pressure differs from its predecessor's

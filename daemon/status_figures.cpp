@@ -8,6 +8,7 @@
 #include "core/names.hpp"
 #include "core/stamp.hpp"
 #include "daemon/health_entries.hpp"
+#include "daemon/timing_health.hpp"
 
 namespace isobar {
 namespace {
@@ -20,10 +21,6 @@ double age_s(std::int64_t last_ns, std::int64_t now_ns) {
   return last_ns == 0 ? ipc::kNoValue : seconds_between(last_ns, now_ns);
 }
 
-double jitter_ms(const StreamPace& pace) {
-  return pace.known() ? static_cast<double>(pace.jitter_ns()) * 1e-6 : ipc::kNoValue;
-}
-
 void add_lidar(const StatusSnapshot& now, const StatusSnapshot& before, double elapsed_s,
                ServiceStatus& out) {
   const auto& counters = now.lidar.counters;
@@ -31,7 +28,7 @@ void add_lidar(const StatusSnapshot& now, const StatusSnapshot& before, double e
   lidar.heard = now.lidar.last_packet_ns != 0;
   lidar.rate_hz = per_second(counters.scans, before.lidar.counters.scans, elapsed_s);
   lidar.age_s = age_s(now.lidar.last_packet_ns, now.now_ns);
-  lidar.jitter_ms = jitter_ms(now.lidar.pace);
+  fill_timing(now.lidar.arrivals.figures(now.now_ns), lidar);
   lidar.samples = counters.scans;
   lidar.lost = counters.lost;
   lidar.rejected =
@@ -68,7 +65,7 @@ void add_samples(const StatusSnapshot& now, const StatusSnapshot& before, double
     sensor.heard = now.prior.samples[kind] > 0;
     sensor.rate_hz = per_second(now.prior.samples[kind], before.prior.samples[kind], elapsed_s);
     sensor.age_s = age_s(now.prior.last_sample_ns[kind], now.now_ns);
-    sensor.jitter_ms = jitter_ms(now.prior.pace[kind]);
+    fill_timing(now.prior.arrivals[kind].figures(now.now_ns), sensor);
     sensor.samples = now.prior.samples[kind];
     sensor.lost = now.samples.counters.lost[kind];
     sensor.rejected = refused[kind];
@@ -158,7 +155,7 @@ void fill_station_figures(const StationSnapshot& now, const StationSnapshot& bef
   barometer.rate_hz =
       per_second(now.station.samples, before.station.samples, elapsed(before.now_ns, now.now_ns));
   barometer.age_s = age_s(now.station.cadence.last_ns(), now.now_ns);
-  barometer.jitter_ms = jitter_ms(now.station.pace);
+  fill_timing(now.station.arrivals.figures(now.now_ns), barometer);
   barometer.samples = now.station.samples;
   barometer.lost = now.input.counters.lost[static_cast<std::size_t>(Kind::kPressure)];
   barometer.rejected = now.barometer.device.counters.implausible +

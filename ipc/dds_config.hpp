@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "core/geometry.hpp"
+#include "core/name_table.hpp"
 #include "core/registration/pose_propagator.hpp"
 
 namespace isobar::dds {
@@ -26,6 +28,32 @@ struct TopicNames {
   std::string wheel = "wheel/odom";
   std::string base_pressure = "fluid_pressure";
   std::string base_temperature = "temperature";
+};
+
+/// Reliability that a reader asks of its writers.
+enum class Reliability : std::uint8_t {
+  kBestEffort,  ///< matches every writer
+  kReliable,    ///< lost messages are sent again; does not match a best-effort writer
+};
+
+inline constexpr NameTable<Reliability, 2> kReliabilityNames{{{
+    {Reliability::kBestEffort, "best_effort"},
+    {Reliability::kReliable, "reliable"},
+}}};
+
+/// Quality of service of one input.
+struct InputQos {
+  Reliability reliability = Reliability::kBestEffort;
+  int depth = 5;  ///< messages that wait for the reader, >= 1; a newer one drops the oldest
+};
+
+/// Quality of service of the inputs: section [dds.qos].
+struct InputsQos {
+  InputQos points;
+  InputQos pressure;
+  InputQos imu{.depth = 50};
+  InputQos wheel{.depth = 10};
+  InputQos base_pressure;  ///< also of the base stations' temperature
 };
 
 /// DDS network, topics and frames of isobar-dds: section [dds] of the configuration. Ranges and reasons stand
@@ -50,6 +78,7 @@ struct DdsConfig {
   int ros_gid_bytes = 16;
 
   TopicNames topics;
+  InputsQos input_qos;
 
   /// In front of every frame name, such as "robot1/"; empty: none.
   std::string frame_prefix;

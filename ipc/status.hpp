@@ -22,11 +22,15 @@ inline void copy_text(std::string_view from, char* to, std::size_t capacity) noe
 
 /// One sensor's stream.
 struct SensorStatus {
-  char name[24] = {};           // NOLINT(modernize-avoid-c-arrays): "lidar", null-terminated
-  bool heard = false;           ///< at least one sample has arrived
-  double rate_hz = kNoValue;    ///< over the last report interval
-  double age_s = kNoValue;      ///< since the newest sample was measured
-  double jitter_ms = kNoValue;  ///< mean deviation of the sample interval, over about 16 samples
+  char name[24] = {};          // NOLINT(modernize-avoid-c-arrays): "lidar", null-terminated
+  bool heard = false;          ///< at least one sample has arrived
+  double rate_hz = kNoValue;   ///< over the last report interval
+  double age_s = kNoValue;     ///< since the newest sample was measured
+  double offset_s = kNoValue;  ///< the sensor's clock minus the robot clock; none: it has no clock
+  /// From the measurement to the arrival, beyond the shortest such time of a sensor with a clock.
+  double latency_ms = kNoValue;      ///< median of the last 10 to 20 s
+  double latency_p99_ms = kNoValue;  ///< of the same time
+  double jitter_ms = kNoValue;  ///< standard deviation of the interval between arrivals, in the same time
   std::uint64_t samples = 0;    ///< used
   std::uint64_t lost = 0;       ///< by the gaps in the sender's numbers or time
   std::uint64_t rejected = 0;   ///< received and refused: format, range, time

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/samples.hpp"
+#include "core/prior/wheel_noise.hpp"
 #include "core/so3.hpp"
 #include "core/squared.hpp"
 
@@ -110,13 +110,14 @@ void AttitudeFilter::bridge(const Eigen::Vector3d& turn_rad, double dt_s, double
   turn_world_with_heading();
 }
 
-bool AttitudeFilter::update_wheels(double vx_m_s, double vy_m_s, double dt_s, bool use_vertical) {
-  const Eigen::Vector3d measured(vx_m_s, vy_m_s, 0.0);
-  const double speed = std::hypot(vx_m_s, vy_m_s);
+bool AttitudeFilter::update_wheels(const WheelSample& wheels, double dt_s, bool use_vertical) {
+  const Eigen::Vector3d measured(wheels.vx_m_s, wheels.vy_m_s, 0.0);
+  const double speed = std::hypot(wheels.vx_m_s, wheels.vy_m_s);
   const double share = squared(config_.wheel_sigma_share * speed);
-  const Eigen::Vector3d variance(squared(config_.wheel_sigma_m_s) + share,
-                                 squared(config_.lateral_sigma_m_s) + share,
-                                 squared(config_.vertical_sigma_m_s) + share);
+  const Eigen::Vector3d variance(
+      constant_variance(wheels.vx_variance_m2_s2, config_.wheel_sigma_m_s) + share,
+      constant_variance(wheels.vy_variance_m2_s2, config_.lateral_sigma_m_s) + share,
+      squared(config_.vertical_sigma_m_s) + share);
   // A correlated error of variance s^2 and correlation time c has the density of white noise 2 c s^2.
   const double white = std::max(1.0, 2.0 * config_.wheel_correlation_s / dt_s);
   bool agreed = true;

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "core/prior/prior_config.hpp"
+#include "core/samples.hpp"
 
 namespace isobar {
 
@@ -51,10 +52,10 @@ class AttitudeFilter {
   /// Prediction over a gap of `dt_s` from the turn during it (base axes) and its standard deviation.
   void bridge(const Eigen::Vector3d& turn_rad, double dt_s, double turn_sigma_rad);
 
-  /// Wheel velocity of base_link, mean over the last `dt_s`. `use_vertical`: also the non-holonomic
+  /// Wheel velocity of base_link, mean over the last `dt_s`, its variances believed (wheel_noise.hpp). `use_vertical`: also the non-holonomic
   /// constraint vz = 0, which does not hold while the ground moves (elevator). False when a horizontal speed lay
   /// outside of the gate, and was not used.
-  bool update_wheels(double vx_m_s, double vy_m_s, double dt_s, bool use_vertical);
+  bool update_wheels(const WheelSample& wheels, double dt_s, bool use_vertical);
 
   /// Without wheels: zero velocity with the variance of a bounded motion, over the last `dt_s`.
   void update_bounded_velocity(double dt_s);
@@ -76,6 +77,8 @@ class AttitudeFilter {
   void update_gyro_bias(const Eigen::Vector3d& bias_rad_s, double sigma_rad_s);
 
   [[nodiscard]] const Eigen::Quaterniond& q_world_base() const { return q_world_base_; }
+  /// Velocity of the IMU's position, in the world.
+  [[nodiscard]] const Eigen::Vector3d& velocity_m_s() const { return velocity_; }
   [[nodiscard]] const Eigen::Vector3d& accel_bias_m_s2() const { return accel_bias_; }
   [[nodiscard]] const Eigen::Vector3d& rate_rad_s() const { return rate_rad_s_; }  ///< bias removed
   [[nodiscard]] const Eigen::Vector3d& gyro_bias_rad_s() const { return gyro_bias_; }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/prior/prior_state.hpp"
+#include "core/prior/wheel_noise.hpp"
 
 namespace isobar {
 namespace {
@@ -181,8 +182,10 @@ void PriorEstimator::add_base_pressure(const PressureSample& measured) {
   }
 }
 
-void PriorEstimator::add_wheel(const WheelSample& sample) {
+void PriorEstimator::add_wheel(const WheelSample& measured) {
   State& s = *state_;
+  WheelSample sample = measured;
+  const bool believed = keep_believed_variances(sample);
   if (s.bad_stamp(sample.stamp_ns)) {
     ++s.counters.wheel_bad_time;
     return;
@@ -198,6 +201,7 @@ void PriorEstimator::add_wheel(const WheelSample& sample) {
       break;
   }
   ++s.counters.wheel_accepted;
+  s.counters.wheel_bad_variance += believed ? 0 : 1;
   s.new_wheels = true;
   s.standstill.add_wheel(std::hypot(sample.vx_m_s, sample.vy_m_s), sample.wz_rad_s);
 }

@@ -46,6 +46,8 @@ struct PriorCounters {
   std::uint64_t wheel_accepted = 0;
   std::uint64_t wheel_bad_value = 0;
   std::uint64_t wheel_bad_time = 0;
+  std::uint64_t wheel_bad_variance =
+      0;  ///< accepted with the configured noise: what their sender states is none
   std::uint64_t wheel_turn_slips = 0;  ///< seconds in which wheels and gyro turned differently, see SlipWatch
   std::uint64_t wheel_speed_slips = 0;  ///< seconds in which the wheels' speed did not fit the acceleration
   std::uint64_t moving_ground = 0;      ///< events: start of a moving ground (elevator rides)
@@ -97,7 +99,7 @@ class PriorEstimator {
   /// Raw samples: PriorConfig's calibrations are applied here and nowhere else.
   void add_pressure(const PressureSample& measured);
   void add_base_pressure(const PressureSample& measured);
-  void add_wheel(const WheelSample& sample);
+  void add_wheel(const WheelSample& measured);
 
   [[nodiscard]] const PriorCounters& counters() const;
   /// At the time of the last IMU sample.

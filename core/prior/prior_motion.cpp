@@ -194,8 +194,7 @@ void PriorEstimator::State::use_wheels(std::int64_t stamp_ns, double dt_s, bool 
   if (on_wheels && new_wheels) {
     const double wheel_dt_s =
         std::min(std::max(wheels.interval_s(), dt_s), config.dead_reckoning.wheel_timeout_s);
-    const bool used = attitude.update_wheels(wheels.last().vx_m_s, wheels.last().vy_m_s, wheel_dt_s,
-                                             !height.ground_moves());
+    const bool used = attitude.update_wheels(wheels.last(), wheel_dt_s, !height.ground_moves());
     slip.add_speed(used, wheel_dt_s);
     new_wheels = false;
   }

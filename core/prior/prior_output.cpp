@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/prior/prior_state.hpp"
+#include "core/prior/wheel_noise.hpp"
 #include "core/so3.hpp"
 #include "core/squared.hpp"
 
@@ -44,8 +45,9 @@ void PriorEstimator::State::fill_wheels(std::int64_t stamp_ns, Prior& out) const
   out.velocity_valid = wheels.valid(stamp_ns);
   if (!out.velocity_valid) return;
   out.v_base_m_s = {wheels.last().vx_m_s, wheels.last().vy_m_s, 0.0};
-  out.velocity_variance_m2_s2 = squared(config.attitude.wheel_sigma_m_s) +
-                                squared(config.attitude.wheel_sigma_share) * out.v_base_m_s.squaredNorm();
+  out.velocity_variance_m2_s2 =
+      constant_variance(wheels.last().vx_variance_m2_s2, config.attitude.wheel_sigma_m_s) +
+      squared(config.attitude.wheel_sigma_share) * out.v_base_m_s.squaredNorm();
 }
 
 void PriorEstimator::State::fill_altimeter(Prior& out) const {

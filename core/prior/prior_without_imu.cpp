@@ -5,6 +5,7 @@
 
 #include "core/pose_carrying.hpp"
 #include "core/prior/prior_state.hpp"
+#include "core/prior/wheel_noise.hpp"
 #include "core/so3.hpp"
 #include "core/squared.hpp"
 
@@ -74,7 +75,8 @@ Prior PriorEstimator::State::prior_of_wheels() const {
     const double rate_rad_s = wheels.last().wz_rad_s;
     out.w_base_rad_s.z() = rate_rad_s;
     out.yaw_bias_variance_rad2_s2 = squared(kTurnSigmaShare * rate_rad_s);
-    out.yaw_rate_variance_rad2_s2 = squared(kTurnSigmaRadS) + out.yaw_bias_variance_rad2_s2;
+    out.yaw_rate_variance_rad2_s2 =
+        constant_variance(wheels.last().wz_variance_rad2_s2, kTurnSigmaRadS) + out.yaw_bias_variance_rad2_s2;
   }
   fill_height(advanced_ns, out);
   fill_altimeter(out);

@@ -175,6 +175,7 @@ void BaseStationStream::accept(PressureSample& sample, std::uint64_t print,
   newest_robot_ns_ =
       std::max(clock_.anchor.to_host_ns(clock_.anchor.device_unwrapped_ns()), newest_robot_ns_ + 1);
   sample.stamp_ns = newest_robot_ns_;
+  sample.timing = {receive_ns, clock_.anchor.device_ahead_ns()};
 }
 
 void BaseStationStream::sender_gone(std::uint64_t sender) noexcept {

@@ -64,6 +64,10 @@ ClockAnchor::Finding ClockAnchor::add(std::int64_t device_ns, std::int64_t host_
   return Finding::kContinuous;
 }
 
+std::int64_t ClockAnchor::device_ahead_ns() const {
+  return wrapped_difference(0, offset_ns_, config_.period_ns);
+}
+
 ClockAnchor::Finding ClockAnchor::first(std::int64_t device_ns, std::int64_t host_ns) {
   anchored_ = true;
   raw_ns_ = device_ns;

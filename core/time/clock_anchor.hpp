@@ -57,6 +57,9 @@ class ClockAnchor {
 
   /// Host's clock minus unwrapped device time [ns].
   [[nodiscard]] std::int64_t offset_ns() const { return offset_ns_; }
+  /// Device's clock minus host's [ns], less the shortest transport, which nobody knows; of a clock that wraps the
+  /// smallest such difference.
+  [[nodiscard]] std::int64_t device_ahead_ns() const;
   [[nodiscard]] std::uint64_t steps() const { return steps_; }  ///< re-anchorings since the start
 
  private:

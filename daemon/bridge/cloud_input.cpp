@@ -32,7 +32,8 @@ CloudView view_of(const dds::CloudMessage& message, std::vector<CloudField>& fie
 }  // namespace
 
 CloudInput::CloudInput(dds_entity_t participant, const Settings& settings)
-    : reader_(participant, dds::topics::kPoints, settings.dds.ros_namespace, settings.dds.topics.points),
+    : reader_(participant, dds::topics::kPoints, settings.dds.ros_namespace, settings.dds.topics.points,
+              settings.dds.input_qos.points),
       publisher_(ipc::topics::kLidarScan),
       decoder_(settings.lidar_limits) {}
 
@@ -74,6 +75,7 @@ void CloudInput::convert(const dds::CloudMessage& message, std::int64_t now_ns,
   anchored_ = true;
   scan->end_stamp_ns = anchor_.to_host_ns(anchor_.device_unwrapped_ns());
   scan->stamp_ns = scan->end_stamp_ns - length_ns;
+  scan->timing = {now_ns, anchor_.device_ahead_ns()};
   publisher_.publish(scan);
 }
 

@@ -37,7 +37,10 @@ Connection::Connection(std::unique_ptr<ipc::Attachment> attachment, Network& net
 }
 
 bool Connection::check() {
-  if (receiving_) forwarding_.put_received(receiving_->counts());
+  if (receiving_) {
+    forwarding_.put_received(receiving_->counts());
+    forwarding_.put_inputs(receiving_->states());
+  }
   forwarding_.put_keys(network_.keys().status());
   if (const auto reason = reason_to_restart()) {
     spdlog::warn("{}; restarting", *reason);

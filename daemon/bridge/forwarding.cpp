@@ -138,6 +138,11 @@ void Forwarding::put_network(NetworkState state) {
   network_ = std::move(state);
 }
 
+void Forwarding::put_inputs(std::vector<InputState> states) {
+  const std::lock_guard lock(pose_mutex_);
+  inputs_ = std::move(states);
+}
+
 void Forwarding::put_received(const ReceivedCounts& counts) noexcept { received_.put(counts); }
 
 void Forwarding::put_keys(const KeyStatus& status) noexcept { keys_.put(status); }
@@ -221,9 +226,17 @@ void Forwarding::add_own_health() {
             "a second node writes the topic of the IMU or of the wheels: refused; stop one of them");
   add_count("bridge/shared_memory_faults", ipc::library_fault_count(), "errors in the iceoryx library");
   add_count("bridge/received_too_early", received.too_early, "received before isobard could take it");
+  add_input_health();
   add_station_health(received);
   add_key_health(keys_.get(), [this](const std::string& name, HealthLevel level, const std::string& message,
                                      double number) { add(name, level, message, number); });
+}
+
+void Forwarding::add_input_health() {
+  for (const InputState& state : inputs_) {
+    add(std::string("bridge/") + state.input + "_writer", warn_if(!state.trouble.empty()), state.trouble,
+        0.0);
+  }
 }
 
 void Forwarding::add_station_health(const ReceivedCounts& received) {

@@ -55,6 +55,8 @@ class Forwarding {
   void put_network(NetworkState state);
   /// Passes on the counts of the opposite direction, for the diagnostics. One thread.
   void put_received(const ReceivedCounts& counts) noexcept;
+  /// Passes on the state of the inputs, for the diagnostics.
+  void put_inputs(std::vector<InputState> states);
   /// Passes on the status of the keys, for the diagnostics. One thread.
   void put_keys(const KeyStatus& status) noexcept;
   [[nodiscard]] const IsobardClock& clock() const noexcept { return clock_; }
@@ -81,6 +83,7 @@ class Forwarding {
   void forward_round();
   void forward_health();
   void add_own_health();
+  void add_input_health();
   void add_station_health(const ReceivedCounts& received);
   void log_own_health();
   /// Adds an entry of the bridge.
@@ -98,6 +101,7 @@ class Forwarding {
   std::mutex pose_mutex_;                               ///< held by the pose thread while it uses the outputs
   std::mutex cloud_mutex_;                              ///< likewise
   NetworkState network_;                                ///< guarded by pose_mutex_
+  std::vector<InputState> inputs_;                      ///< likewise
   std::optional<dds::DiagnosticsBuilder> diagnostics_;  ///< likewise; never empty
   std::vector<ipc::HealthEntry> last_entries_;          ///< of isobard; pose thread
   std::atomic<std::uint64_t> rounds_{0};

@@ -2,6 +2,7 @@
 #include "daemon/bridge/receiving.hpp"
 
 #include <type_traits>
+#include <utility>
 
 #include "drivers/clock/robot_clock.hpp"
 #include "ipc/dds/samples.hpp"
@@ -26,8 +27,9 @@ Receiving::Receiving(dds_entity_t participant, dds_entity_t of_stations, const S
                      const IsobardClock& clock)
     : clock_(clock), imu_orientation_(settings.dds.imu_orientation) {
   const dds::DdsConfig& config = settings.dds;
-  const auto open = [&](auto& stream, const auto& from, const std::string& name, const auto& to) {
-    stream.emplace(participant, from, config.ros_namespace, name, to);
+  const auto open = [&](auto& stream, const auto& from, const std::string& name, const dds::InputQos& qos,
+                        const auto& to) {
+    stream.emplace(participant, from, config.ros_namespace, name, qos, to);
   };
   if (config.receive_base_pressure && !settings.is_base_station && of_stations != 0) {
     base_pressure_.emplace(ipc::topics::kBaseBarometer);
@@ -38,14 +40,23 @@ Receiving::Receiving(dds_entity_t participant, dds_entity_t of_stations, const S
   }
   if (settings.receives_points) cloud_ = std::make_unique<CloudInput>(participant, settings);
   if (settings.receives_pressure) {
-    open(pressure_, dds::topics::kPressure, config.topics.pressure, ipc::topics::kBarometer);
+    open(pressure_, dds::topics::kPressure, config.topics.pressure, config.input_qos.pressure,
+         ipc::topics::kBarometer);
   }
-  if (settings.receives_imu) open(imu_, dds::topics::kImu, config.topics.imu, ipc::topics::kImu);
+  if (settings.receives_imu)
+    open(imu_, dds::topics::kImu, config.topics.imu, config.input_qos.imu, ipc::topics::kImu);
   if (settings.receives_wheel && config.wheel_type == "twist") {
-    open(wheel_twist_, dds::topics::kWheelTwist, config.topics.wheel, ipc::topics::kWheel);
+    open(wheel_twist_, dds::topics::kWheelTwist, config.topics.wheel, config.input_qos.wheel,
+         ipc::topics::kWheel);
   } else if (settings.receives_wheel) {
-    open(wheel_, dds::topics::kWheel, config.topics.wheel, ipc::topics::kWheel);
+    open(wheel_, dds::topics::kWheel, config.topics.wheel, config.input_qos.wheel, ipc::topics::kWheel);
   }
+  wait_for_data(participant);
+  watch_writers(participant, of_stations);
+  thread_ = std::thread([this] { loop(); });
+}
+
+void Receiving::wait_for_data(dds_entity_t participant) {
   // Not of a participant: such a wait set would refuse the readers of the other one.
   waitset_ = dds::checked(dds_create_waitset(DDS_CYCLONEDDS_HANDLE), "wait set");
   stop_ = dds::checked(dds_create_guardcondition(participant), "guard condition");
@@ -68,7 +79,30 @@ Receiving::Receiving(dds_entity_t participant, dds_entity_t of_stations, const S
   for (const auto& station : stations_) {
     dds_waitset_attach(waitset_.get(), station->pressure_reader(), 0);
   }
-  thread_ = std::thread([this] { loop(); });
+}
+
+void Receiving::watch_writers(dds_entity_t participant, dds_entity_t of_stations) {
+  Watched sensors{dds::WriterWatch(participant), {}};
+  if (cloud_) sensors.inputs.push_back({"points", cloud_->reader()});
+  if (pressure_) sensors.inputs.push_back({"pressure", pressure_->reader.get()});
+  if (imu_) sensors.inputs.push_back({"imu", imu_->reader.get()});
+  if (wheel_) sensors.inputs.push_back({"wheel", wheel_->reader.get()});
+  if (wheel_twist_) sensors.inputs.push_back({"wheel", wheel_twist_->reader.get()});
+  if (!sensors.inputs.empty()) watched_.push_back(std::move(sensors));
+  if (stations_.empty()) return;
+  watched_.push_back(
+      {dds::WriterWatch(of_stations), {{"base_pressure", stations_.front()->pressure_reader()}}});
+}
+
+std::vector<InputState> Receiving::states() {
+  std::vector<InputState> states;
+  for (Watched& watched : watched_) {
+    watched.writers.look();
+    for (const dds::InputReader& input : watched.inputs) {
+      states.push_back({input.input, watched.writers.trouble(input)});
+    }
+  }
+  return states;
 }
 
 Receiving::~Receiving() {
@@ -126,6 +160,7 @@ void Receiving::forward(std::optional<Stream<Message, Sample>>& stream) {
     static_cast<void>(stream->anchor.add(stamp_ns, now_ns));
     stream->anchored = true;
     sample.stamp_ns = stream->anchor.to_host_ns(stream->anchor.device_unwrapped_ns());
+    sample.timing = {now_ns, stream->anchor.device_ahead_ns()};
     if constexpr (std::is_same_v<Sample, ImuSample>)
       sample.has_attitude = sample.has_attitude && imu_orientation_;
     sample.path = SamplePath::kDds;

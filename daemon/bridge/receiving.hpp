@@ -19,6 +19,7 @@
 #include "daemon/bridge/writer_choice.hpp"
 #include "daemon/seq_lock.hpp"
 #include "ipc/dds/endpoints.hpp"
+#include "ipc/dds/writer_watch.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar::bridge {
@@ -51,6 +52,13 @@ struct ReceivedCounts {
   std::int64_t taken_ns = 0;  ///< when the counts were taken, robot clock
 };
 
+/// State of an input.
+struct InputState {
+  const char* input;  ///< its name in the settings, "imu"
+  std::string
+      trouble;  ///< why nothing comes although a node writes it, with the remedy; empty: nothing is wrong
+};
+
 /// Readers of the configured topics, and the thread that forwards their samples.
 class Receiving {
  public:
@@ -64,8 +72,15 @@ class Receiving {
 
   [[nodiscard]] ReceivedCounts counts() const noexcept;
   [[nodiscard]] std::vector<dds_entity_t> readers() const;
+  /// Whether the writers of the inputs fit. Of base stations the first one. Main thread.
+  [[nodiscard]] std::vector<InputState> states();
 
  private:
+  /// The inputs of one participant, and the writers that it has found.
+  struct Watched {
+    dds::WriterWatch writers;
+    std::vector<dds::InputReader> inputs;
+  };
   /// Path of one topic: DDS reader, mapping of the sender's clock to the robot clock, shared-memory
   /// publisher.
   template <class Message, class Sample>
@@ -78,14 +93,16 @@ class Receiving {
     WriterChoice writer;
 
     Stream(dds_entity_t participant, const dds::DdsTopic<Message>& from, const std::string& ros_namespace,
-           const std::string& ros_name, const ipc::Topic<Sample>& to)
-        : reader(participant, from, ros_namespace, ros_name), publisher(to) {}
+           const std::string& ros_name, const dds::InputQos& qos, const ipc::Topic<Sample>& to)
+        : reader(participant, from, ros_namespace, ros_name, qos), publisher(to) {}
   };
 
   template <class Message, class Sample>
   void forward(std::optional<Stream<Message, Sample>>& stream);
   void forward_cloud();
   void forward_stations();
+  void wait_for_data(dds_entity_t participant);
+  void watch_writers(dds_entity_t participant, dds_entity_t of_stations);
   void loop() noexcept;
 
   const IsobardClock& clock_;
@@ -97,6 +114,7 @@ class Receiving {
   std::optional<Stream<dds::ImuMessage, ImuSample>> imu_;
   std::optional<Stream<dds::OdometryMessage, WheelSample>> wheel_;
   std::optional<Stream<dds::TwistMessage, WheelSample>> wheel_twist_;
+  std::vector<Watched> watched_;
   bool imu_orientation_;
   dds::Entity waitset_;
   dds::Entity stop_;

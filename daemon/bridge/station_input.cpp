@@ -39,8 +39,10 @@ double Temperatures::at(std::uint64_t source, std::int64_t stamp_ns) const noexc
 StationInput::StationInput(dds_entity_t participant, const dds::DdsConfig& config, const std::string& name,
                            std::uint8_t station)
     : station_(station),
-      pressure_(participant, dds::topics::kBasePressure, name, config.topics.base_pressure),
-      temperature_(participant, dds::topics::kBaseTemperature, name, config.topics.base_temperature) {
+      pressure_(participant, dds::topics::kBasePressure, name, config.topics.base_pressure,
+                config.input_qos.base_pressure),
+      temperature_(participant, dds::topics::kBaseTemperature, name, config.topics.base_temperature,
+                   config.input_qos.base_pressure) {
   dds_set_status_mask(pressure_.get(), DDS_DATA_AVAILABLE_STATUS | DDS_SUBSCRIPTION_MATCHED_STATUS);
 }
 

@@ -147,6 +147,7 @@ void PolledBarometer::take(const Reading& reading, std::int64_t now_ns, Step& st
   faults_.good(now_ns);
   step.has_sample = true;
   step.sample = reading.sample;
+  step.sample.timing.received_ns = now_ns;
 }
 
 std::int64_t PolledBarometer::restart(const Outcome& outcome, std::int64_t now_ns) noexcept {

@@ -71,6 +71,7 @@ void Sensor::measure(std::int64_t now_ns, Step& step) noexcept {
     if (edge.encoder < kMaxEncoders) decoders_[edge.encoder].add(edge);
   });
   if (ends) take(now_ns - (begun_ns - period_end_ns_), step);
+  step.sample.timing.received_ns = now_ns;
   // Not ahead after a late call: more periods have ended.
   const std::int64_t to_end_ns = period_end_ns_ - begun_ns;
   step.next_ns = now_ns + (turns_ ? std::min(to_end_ns, kReadEveryNs) : to_end_ns);

@@ -76,6 +76,7 @@ void Barometer::measure(std::int64_t now_ns, Step& step) noexcept {
     faults_.good(now_ns);
     step.has_sample = true;
     step.sample.stamp_ns = now_ns;
+    step.sample.timing.received_ns = now_ns;
     step.sample.pressure_pa = pressure_pa;
     step.sample.temperature_c = read_temperature();
   }

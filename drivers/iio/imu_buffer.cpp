@@ -226,9 +226,11 @@ bool ImuBuffer::take_scan(std::int64_t now_ns, Step& step) noexcept {
   imu.gyro_rad_s = {value(0), value(1), value(2)};
   imu.accel_m_s2 = {value(3), value(4), value(5)};
   imu.stamp_ns = now_ns;
+  imu.timing.received_ns = now_ns;
   if (layout_.has(kTimestampChannel)) {
     (void)anchor_.add(layout_.value(scan, kTimestampChannel), now_ns);
     imu.stamp_ns = anchor_.to_host_ns(anchor_.device_unwrapped_ns());
+    imu.timing.clock_ahead_ns = anchor_.device_ahead_ns();
   }
   window_.drop(layout_.scan_bytes());
   const InertialWatch::Verdict verdict = watch_.judge(imu, now_ns, faults_);

@@ -64,6 +64,7 @@ bool ScanAssembler::flush(Scan& current) {
 bool ScanAssembler::take_imu(ImuSample& sample) {
   if (!decoder_->take_imu(sample) || counters_.packets == 0) return false;
   sample.stamp_ns += sensor_offset_ns(anchor_.offset_ns()).value_or(anchor_.offset_ns());
+  sample.timing.clock_ahead_ns = anchor_.device_ahead_ns();
   return true;
 }
 

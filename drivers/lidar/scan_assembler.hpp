@@ -61,6 +61,13 @@ class ScanAssembler {
   /// @return false: there is none
   bool take_imu(ImuSample& sample);
 
+  /// Time of the first column of the last good packet, robot clock.
+  [[nodiscard]] std::int64_t packet_stamp_ns() const {
+    return anchor_.to_host_ns(anchor_.device_unwrapped_ns());
+  }
+  /// See ClockAnchor::device_ahead_ns().
+  [[nodiscard]] std::int64_t clock_ahead_ns() const { return anchor_.device_ahead_ns(); }
+
   [[nodiscard]] const LidarCounters& counters() const { return counters_; }
   [[nodiscard]] const LidarDecoder& decoder() const { return *decoder_; }
   /// Host stamp of the packet that showed the last jump of the sensor's clock (ClockContinuity); 0: none yet.

@@ -194,6 +194,9 @@ bool SerialImu::take_reading(const ImuEvent& event, std::int64_t now_ns, Step& s
   InertialReading reading = event.reading;
   const std::int64_t stamp_ns = stamp_of(event);
   reading.imu.stamp_ns = reading.pressure.stamp_ns = stamp_ns;
+  reading.imu.timing = {.received_ns = received_ns_};
+  if (event.has_device_time) reading.imu.timing.clock_ahead_ns = anchor_.device_ahead_ns();
+  reading.pressure.timing = reading.imu.timing;
   if (reading.has_pressure) take_pressure(reading);
   if (reading.has_imu) {
     switch (watch_.judge(reading.imu, now_ns, faults_)) {

@@ -5,13 +5,25 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <type_traits>
 
 #include "ipc/dds/participant.hpp"
 #include "ipc/dds/topics.hpp"
+#include "ipc/dds_config.hpp"
 
 namespace isobar::dds {
+
+/// Settings of a reader: those of the topics' table, or as configured.
+template <class Message>
+[[nodiscard]] QosPointer reader_qos(const DdsTopic<Message>& topic,
+                                    const std::optional<InputQos>& configured) {
+  if (!configured) return endpoint_qos(topic.delivery, topic.depth);
+  return endpoint_qos(
+      configured->reliability == Reliability::kReliable ? Delivery::kReliable : Delivery::kBestEffort,
+      configured->depth);
+}
 
 /// @throws ServiceError when the topic cannot be created
 template <class Message>
@@ -68,9 +80,9 @@ class Reader {
   /// @throws ServiceError when the topic or the reader cannot be created
   /// @param ros_name see dds_name()
   Reader(dds_entity_t participant, const DdsTopic<Message>& topic, const std::string& ros_namespace = {},
-         const std::string& ros_name = {}) {
+         const std::string& ros_name = {}, const std::optional<InputQos>& configured = {}) {
     const std::string name = dds_name(topic, ros_namespace, ros_name);
-    const QosPointer qos = endpoint_qos(topic.delivery, topic.depth);
+    const QosPointer qos = reader_qos(topic, configured);
     topic_ = make_topic(participant, topic, name);
     reader_ = checked(dds_create_reader(participant, topic_.get(), qos.get(), nullptr), "reader of " + name);
   }

@@ -26,12 +26,29 @@ Eigen::Vector3d to_vector(const geometry_msgs_msg_dds__Vector3_& message) noexce
   return {message.x, message.y, message.z};
 }
 
-const char* take_twist(const HeaderMessage& header, const geometry_msgs_msg_dds__Twist_& twist,
+/// A variance of a covariance that is stated; one that is no number stays an implausible one, for the count.
+double stated(double variance) noexcept {
+  return std::isnan(variance) ? std::numeric_limits<double>::infinity() : variance;
+}
+
+const char* take_twist(const HeaderMessage& header,
+                       const geometry_msgs_msg_dds__TwistWithCovariance_& message,
                        WheelSample& sample) noexcept {
+  // Diagonal of the covariance, row-major, of x, y, z and the turns about x, y, z.
+  constexpr std::size_t kX = 0;
+  constexpr std::size_t kY = 7;
+  constexpr std::size_t kYaw = 35;
   WheelSample candidate;
-  candidate.vx_m_s = twist.linear.x;
-  candidate.vy_m_s = twist.linear.y;
-  candidate.wz_rad_s = twist.angular.z;
+  candidate.vx_m_s = message.twist.linear.x;
+  candidate.vy_m_s = message.twist.linear.y;
+  candidate.wz_rad_s = message.twist.angular.z;
+  const auto& covariance = message.covariance;
+  // Not stated: -1 in the first place, as in REP-145, or zeros (sensor_msgs), also of a single direction.
+  if (covariance[kX] != -1.0) {
+    if (covariance[kX] != 0.0) candidate.vx_variance_m2_s2 = stated(covariance[kX]);
+    if (covariance[kY] != 0.0) candidate.vy_variance_m2_s2 = stated(covariance[kY]);
+    if (covariance[kYaw] != 0.0) candidate.wz_variance_rad2_s2 = stated(covariance[kYaw]);
+  }
   return hand_over(header, candidate, sample);
 }
 
@@ -63,11 +80,11 @@ const char* to_sample(const ImuMessage& message, ImuSample& sample) noexcept {
 }
 
 const char* to_sample(const OdometryMessage& message, WheelSample& sample) noexcept {
-  return take_twist(message.header, message.twist.twist, sample);
+  return take_twist(message.header, message.twist, sample);
 }
 
 const char* to_sample(const TwistMessage& message, WheelSample& sample) noexcept {
-  return take_twist(message.header, message.twist.twist, sample);
+  return take_twist(message.header, message.twist, sample);
 }
 
 void fill_pressure(const PressureSample& sample, const std::string& frame,

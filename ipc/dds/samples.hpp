@@ -20,10 +20,10 @@ namespace isobar::dds {
 /// Imu, in the sensor's frame. orientation_covariance[0] = -1: the message has no orientation (REP-145).
 [[nodiscard]] const char* to_sample(const ImuMessage& message, ImuSample& sample) noexcept;
 
-/// Twist of an Odometry message; its pose is ignored.
+/// Twist of an Odometry message with the variances of x, y and yaw where it states them; its pose is ignored.
 [[nodiscard]] const char* to_sample(const OdometryMessage& message, WheelSample& sample) noexcept;
 
-/// Twist of base_link in base_link.
+/// Twist of base_link in base_link, likewise.
 [[nodiscard]] const char* to_sample(const TwistMessage& message, WheelSample& sample) noexcept;
 
 /// Temperature of a base station's barometer.

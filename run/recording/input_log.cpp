@@ -86,6 +86,10 @@ void take(Fields& fields, WheelSample& sample) {
   sample.vx_m_s = fields.take<double>();
   sample.vy_m_s = fields.take<double>();
   sample.wz_rad_s = fields.take<double>();
+  if (fields.left() == 0) return;  // kept over an upgrade, by a program that knew no variances
+  sample.vx_variance_m2_s2 = fields.take<double>();
+  sample.vy_variance_m2_s2 = fields.take<double>();
+  sample.wz_variance_rad2_s2 = fields.take<double>();
 }
 
 void take_description(Fields& fields, LogEntry& entry) {
@@ -163,6 +167,9 @@ void InputLog::add(const WheelSample& sample) {
   put(sample.vx_m_s);
   put(sample.vy_m_s);
   put(sample.wz_rad_s);
+  put(sample.vx_variance_m2_s2);
+  put(sample.vy_variance_m2_s2);
+  put(sample.wz_variance_rad2_s2);
   end();
 }
 

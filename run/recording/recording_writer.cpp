@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/recording/recording_writer.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -27,6 +29,8 @@ TextFile& present(std::optional<TextFile>& file, const char* sensor) {
 
 constexpr const char* kImuHeader = "t_ns,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2";
 constexpr const char* kAttitudeHeader = ",qw,qx,qy,qz\n";
+constexpr const char* kWheelHeader = "t_ns,vx_m_s,vy_m_s,wz_rad_s";
+constexpr const char* kVarianceHeader = ",vx_variance_m2_s2,vy_variance_m2_s2,wz_variance_rad2_s2\n";
 
 void write_pressure(TextFile& file, const PressureSample& sample, bool every_column) {
   CsvRow row;
@@ -50,7 +54,8 @@ struct RecordingWriter::Files {
   std::optional<TextFile> wheel;
   std::optional<TextFile> reference;
   std::optional<TextFile> segments;
-  std::optional<bool> imu_has_attitude;  // set by the first sample
+  std::optional<bool> imu_has_attitude;    // set by the first sample
+  std::optional<bool> wheel_has_variance;  // likewise
   std::vector<std::uint8_t> frame;
   std::vector<std::uint8_t> fragment;
   std::uint16_t identification = 0;
@@ -89,7 +94,7 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& folder, const Mani
   files_->open_csv(files_->imu, manifest.imu, "");
   files_->open_csv(files_->barometer, manifest.barometer, pressure_header);
   files_->open_csv(files_->base_barometer, manifest.base_barometer, pressure_header);
-  files_->open_csv(files_->wheel, manifest.wheel, "t_ns,vx_m_s,vy_m_s,wz_rad_s\n");
+  files_->open_csv(files_->wheel, manifest.wheel, "");
   if (files_->imu && options.every_column) {
     files_->imu_has_attitude = true;
     files_->imu->write(kImuHeader);
@@ -158,9 +163,22 @@ void RecordingWriter::add_base_pressure(const PressureSample& sample) {
 }
 
 void RecordingWriter::add_wheel(const WheelSample& sample) {
+  TextFile& file = present(files_->wheel, "wheel");
+  const std::array<double, 3> variances{sample.vx_variance_m2_s2, sample.vy_variance_m2_s2,
+                                        sample.wz_variance_rad2_s2};
+  if (!files_->wheel_has_variance) {
+    const auto is_stated = [](double variance) { return !std::isnan(variance); };
+    files_->wheel_has_variance =
+        files_->every_column || std::any_of(variances.begin(), variances.end(), is_stated);
+    file.write(kWheelHeader);
+    file.write(*files_->wheel_has_variance ? kVarianceHeader : "\n");
+  }
   CsvRow row;
   row.add(sample.stamp_ns).add(sample.vx_m_s).add(sample.vy_m_s).add(sample.wz_rad_s);
-  present(files_->wheel, "wheel").write(row.finish());
+  if (*files_->wheel_has_variance) {
+    for (const double variance : variances) row.add(variance);
+  }
+  file.write(row.finish());
 }
 
 void RecordingWriter::add_reference(std::int64_t stamp_ns, const Eigen::Isometry3d& T_map_base) {
@@ -192,6 +210,11 @@ void RecordingWriter::close() {
     files_->imu_has_attitude = false;
     files_->imu->write(kImuHeader);
     files_->imu->write("\n");
+  }
+  if (files_->wheel && !files_->wheel_has_variance) {
+    files_->wheel_has_variance = false;
+    files_->wheel->write(kWheelHeader);
+    files_->wheel->write("\n");
   }
   if (files_->lidar) {
     files_->lidar->close();

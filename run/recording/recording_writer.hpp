@@ -16,7 +16,7 @@ namespace isobar::recording {
 
 struct WriterOptions {
   /// Columns that a live recording may need later: attitude also while the IMU computes none yet, variance and
-  /// station of pressures.
+  /// station of pressures, variances of the wheels.
   bool every_column = false;
 };
 

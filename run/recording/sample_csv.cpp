@@ -73,6 +73,17 @@ void parse_origin(const text::CsvReader& csv, PressureSample& sample) {
   }
 }
 
+/// The columns of a sender that states its noise. An unusable field means that it did not.
+void parse_variances(const text::CsvReader& csv, WheelSample& sample) {
+  std::size_t column = 4;
+  for (double* stated : {&sample.vx_variance_m2_s2, &sample.vy_variance_m2_s2, &sample.wz_variance_rad2_s2}) {
+    double variance = 0.0;
+    const bool is_stated = csv.has(column) && text::parse_number(csv.field(column), variance);
+    if (is_stated) *stated = variance;
+    ++column;
+  }
+}
+
 }  // namespace
 
 text::CsvReader open_imu_csv(const std::filesystem::path& file) {
@@ -86,7 +97,9 @@ text::CsvReader open_pressure_csv(const std::filesystem::path& file) {
 }
 
 text::CsvReader open_wheel_csv(const std::filesystem::path& file) {
-  return {text::TextLines(file), {"t_ns", "vx_m_s", "vy_m_s", "wz_rad_s"}};
+  return {text::TextLines(file),
+          {"t_ns", "vx_m_s", "vy_m_s", "wz_rad_s"},
+          {"vx_variance_m2_s2", "vy_variance_m2_s2", "wz_variance_rad2_s2"}};
 }
 
 const char* parse_row(const text::CsvReader& csv, ImuSample& sample, std::string& value) {
@@ -135,6 +148,7 @@ const char* parse_row(const text::CsvReader& csv, WheelSample& sample, std::stri
       return rule;
     }
   }
+  parse_variances(csv, sample);
   return implausibility(sample);
 }
 

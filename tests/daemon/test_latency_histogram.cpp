@@ -5,8 +5,6 @@
 
 #include <cmath>
 
-#include "core/time/stream_pace.hpp"
-
 namespace isobar::test::test_latency_histogram {
 
 TEST_CASE("quantiles of 1 to 100 ms are right to half a bucket, and only of what is new") {
@@ -27,20 +25,6 @@ TEST_CASE("durations beyond the buckets count in the first and the last") {
   const LatencyHistogram before = histogram;
   histogram.note(3'600'000'000'000);
   CHECK(histogram.quantile_ms(0.5, before) > 400.0);
-}
-
-TEST_CASE("jitter is the mean deviation of the interval: zero for a regular stream") {
-  StreamPace regular;
-  StreamPace shaking;
-  for (std::int64_t i = 0; i < 400; ++i) {
-    regular.add(i * 5'000'000);
-    shaking.add(i * 5'000'000 + (i % 2 == 0 ? 500'000 : -500'000));
-  }
-  REQUIRE(regular.known());
-  CHECK(regular.jitter_ns() == 0);
-  CHECK(regular.interval_ns() == 5'000'000);
-  // Intervals alternate between 4 and 6 ms.
-  CHECK(static_cast<double>(shaking.jitter_ns()) == doctest::Approx(1'000'000.0).epsilon(0.1));
 }
 
 }  // namespace isobar::test::test_latency_histogram

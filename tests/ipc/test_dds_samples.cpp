@@ -101,6 +101,19 @@ TEST_CASE("received samples are checked for plausibility; an implausible one lea
   CHECK(to_sample(odometry, wheel) == nullptr);
   CHECK(wheel.vx_m_s == 1.5);
   CHECK(wheel.wz_rad_s == -0.25);
+  CHECK(std::isnan(wheel.vx_variance_m2_s2));  // zeros: not stated
+  odometry.twist.covariance[0] = 0.04;
+  odometry.twist.covariance[7] = 1e6;
+  odometry.twist.covariance[35] = std::numeric_limits<double>::quiet_NaN();
+  CHECK(to_sample(odometry, wheel) == nullptr);
+  CHECK(wheel.vx_variance_m2_s2 == 0.04);
+  CHECK(wheel.vy_variance_m2_s2 == 1e6);
+  CHECK(std::isinf(wheel.wz_variance_rad2_s2));  // stated, and no number: counted where it is judged
+  odometry.twist.covariance[0] = -1.0;
+  CHECK(to_sample(odometry, wheel) == nullptr);
+  CHECK(std::isnan(wheel.vx_variance_m2_s2));
+  CHECK(std::isnan(wheel.vy_variance_m2_s2));
+  CHECK(std::isnan(wheel.wz_variance_rad2_s2));
   odometry.twist.twist.linear.y = 1e6;
   CHECK(to_sample(odometry, wheel) != nullptr);
   CHECK(wheel.vy_m_s == 0.0);

@@ -68,8 +68,15 @@ void add_sensors(const ipc::ServiceStatus& status, double age_s, Families& out) 
       out.gauge("isobar_sensor_rate_hertz", "Samples a second; of a lidar, scans", sensor.rate_hz, labels);
       out.gauge("isobar_sensor_age_seconds", "Time since the newest sample was measured",
                 sensor.age_s + age_s, labels);
-      out.gauge("isobar_sensor_jitter_seconds", "Mean deviation of the sample interval",
+      out.gauge("isobar_sensor_jitter_seconds", "Standard deviation of the interval between arrivals",
                 sensor.jitter_ms * 1e-3, labels);
+      out.gauge("isobar_sensor_clock_offset_seconds", "Sensor's clock minus the robot clock", sensor.offset_s,
+                labels);
+      const char* latency = "Time from the measurement to its arrival, quantile of the last 10 to 20 s";
+      out.gauge("isobar_sensor_latency_seconds", latency, sensor.latency_ms * 1e-3,
+                {{"sensor", sensor.name}, {"quantile", "0.5"}});
+      out.gauge("isobar_sensor_latency_seconds", latency, sensor.latency_p99_ms * 1e-3,
+                {{"sensor", sensor.name}, {"quantile", "0.99"}});
     }
     out.counter("isobar_sensor_samples_total", "Samples used", sensor.samples, labels);
     out.counter("isobar_sensor_lost_total", "Samples lost before they arrived", sensor.lost, labels);

@@ -78,19 +78,40 @@ std::string health_rows(const HealthReport& report, const ViewOptions& options) 
   return out;
 }
 
+/// Offset of a clock, signed, in at most eleven columns.
+std::string clock_offset(double s) {
+  if (std::isnan(s)) return "-";
+  const double size = std::abs(s);
+  if (size < 1.0) return fmt::format("{:+.1f} ms", s * 1e3);
+  if (size < 10'000.0) return fmt::format("{:+.3f} s", s);
+  return size < 172'800.0 ? fmt::format("{:+.1f} h", s / 3600.0) : fmt::format("{:+.0f} d", s / 86'400.0);
+}
+
 std::string sensor_rows(const ipc::ServiceStatus& status) {
-  std::string out = fmt::format("{:<{}}{:>9}{:>9}{:>11}{:>9}{:>9}{:>9}{:>9}\n", "SENSOR", kNameColumns,
-                                "rate", "age", "jitter", "samples", "lost", "refused", "dropped");
+  std::string out = fmt::format("{:<{}}{:>9}{:>8}{:>12}{:>10}{:>10}{:>9}{:>8}\n", "SENSOR", kNameColumns,
+                                "rate", "age", "offset", "latency", "p99", "jitter", "lost");
   for (std::uint32_t i = 0; i < std::min<std::size_t>(status.sensor_count, status.kMaxSensors); ++i) {
     const ipc::SensorStatus& sensor = status.sensors[i];
     if (!sensor.heard) {
-      out += fmt::format("{:<{}}never heard{:>34}{:>9}{:>9}\n", sensor.name, kNameColumns, count(sensor.lost),
-                         count(sensor.rejected), count(sensor.dropped));
+      out += fmt::format("{:<{}}never heard{:>55}\n", sensor.name, kNameColumns, count(sensor.lost));
       continue;
     }
-    out += fmt::format("{:<{}}{:>9}{:>9}{:>11}{:>9}{:>9}{:>9}{:>9}\n", sensor.name, kNameColumns,
+    out += fmt::format("{:<{}}{:>9}{:>8}{:>12}{:>10}{:>10}{:>9}{:>8}\n", sensor.name, kNameColumns,
                        figure(sensor.rate_hz, 1, " Hz"), duration(std::max(0.0, sensor.age_s)),
-                       figure(sensor.jitter_ms, 2, " ms"), count(sensor.samples), count(sensor.lost),
+                       clock_offset(sensor.offset_s), figure(sensor.latency_ms, 2, " ms"),
+                       figure(sensor.latency_p99_ms, 2, " ms"), figure(sensor.jitter_ms, 2, " ms"),
+                       count(sensor.lost));
+  }
+  return out;
+}
+
+/// What became of the samples; with --all.
+std::string count_rows(const ipc::ServiceStatus& status) {
+  std::string out =
+      fmt::format("{:<{}}{:>15}{:>15}{:>15}\n", "SAMPLES", kNameColumns, "used", "refused", "dropped");
+  for (std::uint32_t i = 0; i < std::min<std::size_t>(status.sensor_count, status.kMaxSensors); ++i) {
+    const ipc::SensorStatus& sensor = status.sensors[i];
+    out += fmt::format("{:<{}}{:>15}{:>15}{:>15}\n", sensor.name, kNameColumns, count(sensor.samples),
                        count(sensor.rejected), count(sensor.dropped));
   }
   return out;
@@ -169,6 +190,7 @@ std::string status_text(const HealthReport& report, double age_s, const ViewOpti
     }
   }
   out += "\n" + sensor_rows(status);
+  if (options.all) out += "\n" + count_rows(status);
   if (status.stage_count == 0) return out;
   return out + "\n" + estimate_rows(status) + "\n" + stage_rows(status);
 }

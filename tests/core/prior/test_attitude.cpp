@@ -175,7 +175,7 @@ TEST_CASE("the error of pitch stays within three sigmas of the filter") {
   const double before = filter.roll_pitch_variance_rad2();
   for (int i = 0; i < 2000; ++i) {
     filter.predict(Eigen::Vector3d::Zero(), Eigen::Vector3d(0.0, 0.0, kGravity), 0.005, 1e-6, 1e-4);
-    if (i % 4 == 0) filter.update_wheels(0.0, 0.0, 0.02, true);
+    if (i % 4 == 0) filter.update_wheels(WheelSample{}, 0.02, true);
   }
   CHECK(filter.roll_pitch_variance_rad2() < before);
   const double error = std::abs(pitch_of(filter.q_world_base().toRotationMatrix()));

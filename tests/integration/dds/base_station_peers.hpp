@@ -115,6 +115,13 @@ struct Got {
   double temperature_c = 0.0;
 };
 
+/// A wheel sample, likewise.
+struct GotWheel {
+  double vx_m_s = 0.0;
+  double vx_variance_m2_s2 = 0.0;
+  double wz_variance_rad2_s2 = 0.0;
+};
+
 /// Robot with the stand-in as isobard, and a subscriber of its diagnostics.
 class Robot {
  public:
@@ -163,6 +170,25 @@ class Robot {
       }
     }
     return speeds;
+  }
+  /// Waits for the next wheel samples that isobard receives, up to 20 s.
+  std::vector<GotWheel> wheels(std::size_t wanted) {
+    std::vector<GotWheel> samples;
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    std::string line;
+    while (samples.size() < wanted && std::chrono::steady_clock::now() < deadline) {
+      GotWheel got;
+      if (stand_in_.read_line(line, std::chrono::milliseconds(100)) &&
+          std::sscanf(line.c_str(), "wheel %lf %lf %lf", &got.vx_m_s, &got.vx_variance_m2_s2,
+                      &got.wz_variance_rad2_s2) == 3) {
+        samples.push_back(got);
+      }
+    }
+    return samples;
+  }
+  /// Waits until the bridge logs this.
+  bool logs(const std::string& text, std::chrono::milliseconds limit = std::chrono::seconds(10)) {
+    return bridge_.read_until(text, limit);
   }
   /// Discards the samples that isobard has received so far.
   void forget() {

@@ -2,7 +2,7 @@
 // Stand-in for isobard: holds the broker and publishes the data of stand_in.hpp in real time until SIGTERM.
 // Prints "ready", then once a second the number of priors published ("priors N"), and each base-station
 // pressure received, with its age on the stand-in's clock: "base PASCAL MILLISECONDS STATION VARIANCE
-// DEGREES", and each wheel sample: "wheel VX".
+// DEGREES", and each wheel sample: "wheel VX VX_VARIANCE WZ_VARIANCE".
 //   stand_in [--initializing]
 // --initializing: every pose is one of the bootstrap.
 #include <signal.h>  // NOLINT(modernize-deprecated-headers)
@@ -110,7 +110,8 @@ int run(bool is_initializing) {
                   static_cast<std::uint32_t>(piece) * ipc::MapCloud::kMaxPoints);
     }
     while (const auto sample = wheels.take()) {
-      std::printf("wheel %.2f\n", sample->vx_m_s);
+      std::printf("wheel %.2f %.4f %.4f\n", sample->vx_m_s, sample->vx_variance_m2_s2,
+                  sample->wz_variance_rad2_s2);
       std::fflush(stdout);
     }
     while (const auto sample = base_pressure.take()) {

@@ -50,11 +50,11 @@ wait_until metric_is 'isobar_sensor_heard{sensor="lidar"} 0'
 metric_is "isobar_up 1" || fail "isobar_up is not 1"
 ok "metrics follow isobard"
 
-# An IMU of 100 Hz and a barometer of 20 Hz, lying still.
+# An IMU of 100 Hz without a clock, and a barometer of 20 Hz whose clock is 3.2 s behind, lying still.
 (i=0; while :; do
   i=$((i + 1))
   printf 'imu,%d,0,0,0,0,0,0,9.80665\n' "$i"
-  [ $((i % 5)) -eq 0 ] && printf 'baro,%d,0,10%04d,20\n' $((i / 5)) $((1000 + i % 7))
+  [ $((i % 5)) -eq 0 ] && printf 'baro,%d,%d,10%04d,20\n' $((i / 5)) $(((${EPOCHREALTIME/[.,]/} - 3200000) * 1000)) $((1000 + i % 7))
   sleep 0.008
 done >/dev/udp/127.0.0.1/17373) 2>/dev/null &
 pids+=("$!")
@@ -67,6 +67,13 @@ ok "height and rates are there (IMU $rate Hz)"
 grep -q '"height":{"source":"single_barometer"' "$work/status.json" || fail "JSON without height"
 grep -q '"name":"wheels","level":"ok","message":"none' "$work/status.json" || fail "wheels are not none"
 ok "JSON has the height, and wheels are none"
+wait_until metric_is 'isobar_sensor_clock_offset_seconds{sensor="barometer"} -3[.][12]'
+metric_is 'isobar_sensor_clock_offset_seconds{sensor="imu"}' && fail "an IMU without a clock has an offset"
+metric_is 'isobar_sensor_latency_seconds{sensor="imu",quantile="0.99"} 0[.]' || fail "no latency of the IMU"
+"$isobar" status --all >"$work/all.log" || true
+grep -q 'barometer/timing: offset -3[.][12]' "$work/all.log" || fail "no timing of the barometer"
+tr -s ' \n' ' ' <"$work/all.log" | grep -q 'imu/timing: no clock of its own, latency .*, jitter' || fail "no timing of the IMU"
+ok "offset, latency and jitter of the sensors are shown"
 kill "$sensors"
 wait_until status_is 2 "imu: silent for"
 grep -q 'height: no IMU sample for' "$work/status.log" || fail "height does not follow the age of its data"

@@ -37,6 +37,13 @@ PressureSample a_pressure_sample() {
   return {kStart + 6, 101'325.0 + 1.0 / 3.0, std::numeric_limits<double>::quiet_NaN(), 0.25, 1};
 }
 
+WheelSample a_wheel_sample() {
+  WheelSample sample{kStart + 7, 0.5, -0.25, 0.125};
+  sample.vx_variance_m2_s2 = 1.0 / 3.0;
+  sample.wz_variance_rad2_s2 = 0.01;
+  return sample;
+}
+
 /// One record of each kind; `ends` receives the length of the log after each.
 InputLog a_log(std::vector<std::size_t>& ends) {
   InputLog log;
@@ -51,7 +58,7 @@ InputLog a_log(std::vector<std::size_t>& ends) {
   end();
   log.add_base_pressure(a_pressure_sample());
   end();
-  log.add(WheelSample{kStart + 7, 0.5, -0.25, 0.125});
+  log.add(a_wheel_sample());
   end();
   log.add_losses(12);
   end();
@@ -108,6 +115,9 @@ TEST_CASE("every record of an input log reads back with the same bits") {
   CHECK(entry.wheel.vx_m_s == 0.5);
   CHECK(entry.wheel.vy_m_s == -0.25);
   CHECK(entry.wheel.wz_rad_s == 0.125);
+  CHECK(entry.wheel.vx_variance_m2_s2 == 1.0 / 3.0);
+  CHECK(std::isnan(entry.wheel.vy_variance_m2_s2));
+  CHECK(entry.wheel.wz_variance_rad2_s2 == 0.01);
   REQUIRE(reader.next(entry));
   CHECK(entry.kind == LogKind::kLosses);
   CHECK(entry.losses == 12);

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "core/errors.hpp"
@@ -160,6 +161,38 @@ TEST_CASE("A packet longer than a frame of Ethernet is captured in fragments, an
     CHECK(std::equal(packet.begin(), packet.end(), event.packet.begin(), event.packet.end()));
   }
   CHECK_FALSE(reader.next(event));
+}
+
+TEST_CASE(
+    "The variances of wheels survive where their sender states them; else the file has no such columns") {
+  for (const bool are_stated : {false, true}) {
+    Scratch scratch;
+    Manifest manifest;
+    manifest.wheel = SensorEntry{"wheel.csv", {}};
+    RecordingWriter writer(scratch.path(), manifest);
+    WheelSample sample{kStart, 0.5, 0.0, 0.25};
+    if (are_stated) sample.vx_variance_m2_s2 = 1.0 / 3.0;
+    if (are_stated) sample.wz_variance_rad2_s2 = 0.01;
+    writer.add_wheel(sample);
+    writer.close();
+
+    std::ifstream file(scratch.path() / "wheel.csv");
+    std::string header;
+    std::getline(file, header);
+    CHECK((header == "t_ns,vx_m_s,vy_m_s,wz_rad_s") == !are_stated);
+    RecordingReader reader(scratch.path());
+    Event event;
+    REQUIRE(reader.next(event));
+    CHECK(event.wheel.wz_rad_s == 0.25);
+    CHECK(std::isnan(event.wheel.vy_variance_m2_s2));
+    if (are_stated) {
+      CHECK(event.wheel.vx_variance_m2_s2 == 1.0 / 3.0);
+      CHECK(event.wheel.wz_variance_rad2_s2 == 0.01);
+    } else {
+      CHECK(std::isnan(event.wheel.vx_variance_m2_s2));
+      CHECK(std::isnan(event.wheel.wz_variance_rad2_s2));
+    }
+  }
 }
 
 TEST_CASE("Trajectories and segments survive writing and reading") {

@@ -36,6 +36,9 @@ HealthReport robot() {
   lidar.heard = true;
   lidar.rate_hz = 10.0;
   lidar.age_s = 0.012;
+  lidar.offset_s = -3.2;
+  lidar.latency_ms = 0.4;
+  lidar.latency_p99_ms = 123.45;
   lidar.jitter_ms = 0.3;
   lidar.samples = 12'345'678'901;
   lidar.lost = 123'456;
@@ -98,16 +101,29 @@ TEST_CASE("the screen has health first, at most 80 columns and 24 lines, and no 
 TEST_CASE("the screen shows sensors, pose, height with source and bias, map, configuration and stages") {
   const std::string text = tools::status_text(robot(), 0.2, {});
   for (const char* part :
-       {"10.0 Hz", "0.30 ms", "12.3G", "never heard", "x -12345.678", "registered (3dof)",
-        "sd 0.030 m; differential", "bias -0.250 m", "200000 cells", "12 tiles, 4.0 MB on disk",
-        "sha256 0123abcd", "12.30 ms", "3 h 3 min", "[123456]"}) {
+       {"10.0 Hz", "-3.200 s", "0.40 ms", "123.45 ms", "0.30 ms", "never heard", "x -12345.678",
+        "registered (3dof)", "sd 0.030 m; differential", "bias -0.250 m", "200000 cells",
+        "12 tiles, 4.0 MB on disk", "sha256 0123abcd", "12.30 ms", "3 h 3 min", "[123456]"}) {
     CAPTURE(part);
     CAPTURE(text);
     CHECK(has(text, part));
   }
   CHECK_FALSE(has(text, "10.0 per second"));  // an entry that is ok
   CHECK(has(tools::status_text(robot(), 0.2, {.all = true}), "10.0 per second"));
+  CHECK(has(tools::status_text(robot(), 0.2, {.all = true}), "12.3G"));
   CHECK(has(tools::status_text(robot(), 0.2, {.color = true}), "\033[1;33mwarning\033[0m"));
+}
+
+TEST_CASE("an offset of a clock has few figures at any size") {
+  HealthReport report = robot();
+  const auto shown = [&report](double offset_s) {
+    report.status.sensors[0].offset_s = offset_s;
+    return tools::status_text(report, 0.2, {});
+  };
+  CHECK(has(shown(0.0004), " +0.4 ms "));
+  CHECK(has(shown(-1'203.4424), " -1203.442 s "));
+  CHECK(has(shown(-28'800.0), " -8.0 h "));
+  CHECK(has(shown(-1.764e9), " -20417 d "));
 }
 
 TEST_CASE("JSON is one line with every figure; one that does not exist is null") {
@@ -120,6 +136,9 @@ TEST_CASE("JSON is one line with every figure; one that does not exist is null")
   CHECK(json.at("health").at(2).at("value") == 123'456.0);
   CHECK(json.at("sensors").at(0).at("name") == "lidar");
   CHECK(json.at("sensors").at(0).at("lost") == 123'456);
+  CHECK(json.at("sensors").at(0).at("offset_s") == -3.2);
+  CHECK(json.at("sensors").at(0).at("latency_p99_ms") == 123.45);
+  CHECK(json.at("sensors").at(1).at("offset_s").is_null());
   CHECK(json.at("sensors").at(1).at("rate_hz").is_null());
   CHECK(json.at("pose").at("z_m") == 3.5);
   CHECK(json.at("height").at("source") == "differential");
@@ -132,6 +151,8 @@ TEST_CASE("metrics have units in their names, and without isobard only isobar_up
   const std::string text = prometheus::TextSerializer().Serialize(tools::metrics_of(&report, 0.2));
   for (const char* line : {"isobar_up 1\n", "isobar_height_meters{source=\"differential\"} 3.5\n",
                            "isobar_sensor_rate_hertz{sensor=\"lidar\"} 10\n",
+                           "isobar_sensor_clock_offset_seconds{sensor=\"lidar\"} -3.2",
+                           "isobar_sensor_latency_seconds{sensor=\"lidar\",quantile=\"0.99\"} 0.12345",
                            "isobar_sensor_lost_total{sensor=\"lidar\"} 123456\n",
                            "isobar_health_level{entry=\"lidar/packets_lost\"} 1\n",
                            "# TYPE isobar_sensor_lost_total counter\n", "isobar_map_cells 200000\n"}) {
