@@ -69,7 +69,7 @@ grep -q '"name":"wheels","level":"ok","message":"none' "$work/status.json" || fa
 ok "JSON has the height, and wheels are none"
 wait_until metric_is 'isobar_sensor_clock_offset_seconds{sensor="barometer"} -3[.][12]'
 metric_is 'isobar_sensor_clock_offset_seconds{sensor="imu"}' && fail "an IMU without a clock has an offset"
-metric_is 'isobar_sensor_latency_seconds{sensor="imu",quantile="0.99"} 0[.]' || fail "no latency of the IMU"
+metric_is 'isobar_sensor_latency_seconds{sensor="imu",quantile="0.99"} [0-9]' || fail "no latency of the IMU"
 "$isobar" status --all >"$work/all.log" || true
 grep -q 'barometer/timing: offset -3[.][12]' "$work/all.log" || fail "no timing of the barometer"
 tr -s ' \n' ' ' <"$work/all.log" | grep -q 'imu/timing: no clock of its own, latency .*, jitter' || fail "no timing of the IMU"
