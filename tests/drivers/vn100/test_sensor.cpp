@@ -117,7 +117,7 @@ TEST_CASE("an answer with a wrong checksum is asked for again") {
 TEST_CASE("a sensor that does not answer is told apart from one that is not there") {
   Robot deaf;
   deaf.sensor->hears = false;
-  REQUIRE(deaf.bench->run_until_state(1.5, DeviceState::kNoAnswer));
+  REQUIRE(deaf.bench->run_until_state(5.0, DeviceState::kNoAnswer));
   CHECK(deaf.bench->fault() == "no answer to $VNWRG,06; nothing comes: power, wiring?");
 
   Robot other_rate;
