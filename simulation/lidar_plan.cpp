@@ -22,7 +22,8 @@ constexpr Angles ladder(double first, double step) {
 constexpr Angles two_ladders(double even, double odd, double step) {
   Angles angles{};
   for (std::size_t i = 0; i < angles.size(); ++i) {
-    angles[i] = (i % 2 == 0 ? even : odd) + step * static_cast<double>(i / 2);
+    const std::size_t rung = i / 2;
+    angles[i] = (i % 2 == 0 ? even : odd) + step * static_cast<double>(rung);
   }
   return angles;
 }
@@ -30,7 +31,10 @@ constexpr Angles two_ladders(double even, double odd, double step) {
 /// Groups of lasers that fire at once: 0 0 1 1 … for 2.
 constexpr Angles groups_of(std::size_t lasers) {
   Angles slots{};
-  for (std::size_t i = 0; i < slots.size(); ++i) slots[i] = static_cast<double>(i / lasers);
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const std::size_t group = i / lasers;
+    slots[i] = static_cast<double>(group);
+  }
   return slots;
 }
 
