@@ -42,7 +42,7 @@ constexpr int kRoundMs = 20;
 constexpr unsigned kAttachLimitS = 10;
 constexpr unsigned kDetachLimitS = 4;
 
-volatile std::sig_atomic_t g_source_stops = 0;
+volatile sig_atomic_t g_source_stops = 0;
 
 /// Writes logs to the pipe without blocking, so that a slow disk never fills the queues in shared memory.
 class LogPipe {
