@@ -10,13 +10,13 @@
 #include <functional>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <tuple>
 
 #include "daemon/health.hpp"
 #include "drivers/clock/robot_clock.hpp"
 #include "drivers/dps310/sensor.hpp"
 #include "tests/drivers/dps310/chip_model.hpp"
+#include "tests/support/device_thread.hpp"
 
 namespace isobar::test::test_barometer_thread {
 
@@ -94,12 +94,7 @@ struct Rig {
     now.barometer = barometer.status();
     ipc::HealthReport report;
     monitor.fill(now, report);
-    for (std::uint32_t i = 0; i < report.entry_count; ++i) {
-      if (std::string(report.entries[i].name) == "barometer") {
-        return {report.entries[i].level, report.entries[i].message};
-      }
-    }
-    return {ipc::HealthLevel::kStale, "no entry"};
+    return entry_of(report, "barometer");
   }
 
   ipc::Broker broker;

@@ -13,6 +13,7 @@
 #include "daemon/imu_thread.hpp"
 #include "drivers/vn100/sensor.hpp"
 #include "tests/drivers/vn100/simulated_vn100.hpp"
+#include "tests/support/device_thread.hpp"
 
 namespace isobar::test::test_imu_thread {
 
@@ -85,13 +86,7 @@ struct Rig {
     return samples;
   }
   /// Waits for a state; the time that it took [ms].
-  double wait_for(DeviceState state) {
-    const auto begin = std::chrono::steady_clock::now();
-    while (imu.status().device.state != state && std::chrono::steady_clock::now() - begin < 5s) {
-      std::this_thread::sleep_for(1ms);
-    }
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-  }
+  double wait_for(DeviceState state) { return wait_for_state(imu, state, 5s); }
   /// An entry of a report made now: level and message.
   std::pair<ipc::HealthLevel, std::string> health(const std::string& name) {
     StatusSnapshot now;
@@ -99,10 +94,7 @@ struct Rig {
     now.imu = imu.status();
     ipc::HealthReport report;
     monitor.fill(now, report);
-    for (std::uint32_t i = 0; i < report.entry_count; ++i) {
-      if (name == report.entries[i].name) return {report.entries[i].level, report.entries[i].message};
-    }
-    return {ipc::HealthLevel::kStale, "no entry"};
+    return entry_of(report, name);
   }
 
   ipc::Broker broker;

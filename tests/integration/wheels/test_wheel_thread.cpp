@@ -15,7 +15,6 @@
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <thread>
 #include <tuple>
 #include <utility>
 
@@ -23,6 +22,7 @@
 #include "drivers/clock/robot_clock.hpp"
 #include "drivers/encoder/sensor.hpp"
 #include "tests/drivers/encoder/turning_wheel.hpp"
+#include "tests/support/device_thread.hpp"
 
 namespace isobar::test::test_wheel_thread {
 
@@ -141,13 +141,7 @@ struct Rig {
     return samples;
   }
   /// Waits for a state; the time that it took [ms].
-  double wait_for(DeviceState state) {
-    const auto begin = std::chrono::steady_clock::now();
-    while (wheels.status().device.state != state && std::chrono::steady_clock::now() - begin < 10s) {
-      std::this_thread::sleep_for(1ms);
-    }
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-  }
+  double wait_for(DeviceState state) { return wait_for_state(wheels, state, 10s); }
   /// An entry of a report made now: level and message.
   std::pair<ipc::HealthLevel, std::string> health(const std::string& name) {
     StatusSnapshot now;
@@ -155,10 +149,7 @@ struct Rig {
     now.wheels = wheels.status();
     ipc::HealthReport report;
     monitor.fill(now, report);
-    for (std::uint32_t i = 0; i < report.entry_count; ++i) {
-      if (name == report.entries[i].name) return {report.entries[i].level, report.entries[i].message};
-    }
-    return {ipc::HealthLevel::kStale, "no entry"};
+    return entry_of(report, name);
   }
 
   ipc::Broker broker;
