@@ -8,8 +8,9 @@
 
 namespace isobar {
 
-/// Loop of a thread that receives datagrams from a UdpReceiver or a UdpPair: `take(datagram)` for each datagram; a beat and `report()` after
-/// each datagram and every 200 ms without one. Returns after the receiver was stopped. Neither may throw.
+/// Loop of a thread that receives datagrams from a UdpReceiver or a UdpPair: `take(datagram)` for each datagram; a beat
+/// and `report()` after each datagram and every 200 ms without one. Returns after the receiver was stopped. Neither
+/// may throw.
 template <class Receiver, class Take, class Report>
 void receive_until_stopped(Receiver& receiver, Heartbeat& heartbeat, const Take& take,
                            const Report& report) noexcept {

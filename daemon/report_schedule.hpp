@@ -15,7 +15,8 @@ using DeviceStates = std::array<DeviceState, 3>;
 inline constexpr std::int64_t kReportEveryNs = 1'000'000'000;
 
 /// Decides when a health report is due: every second, and when the state of a sensor changes that this machine
-/// reads, or the lidar falls silent or is back. The first report is due one second after the first call, by which time every working sensor has sent. One thread.
+/// reads, or the lidar falls silent or is back. The first report is due one second after the first call, by which
+/// time every working sensor has sent. One thread.
 class ReportSchedule {
  public:
   [[nodiscard]] bool due(std::int64_t now_ns, const DeviceStates& states, bool lidar_silent = false) {

@@ -52,9 +52,10 @@ class AttitudeFilter {
   /// Prediction over a gap of `dt_s` from the turn during it (base axes) and its standard deviation.
   void bridge(const Eigen::Vector3d& turn_rad, double dt_s, double turn_sigma_rad);
 
-  /// Wheel velocity of base_link, mean over the last `dt_s`, its variances believed (wheel_noise.hpp). `use_vertical`: also the non-holonomic
-  /// constraint vz = 0, which does not hold while the ground moves (elevator). False when a horizontal speed lay
-  /// outside of the gate, and was not used.
+  /// Wheel velocity of base_link, mean over the last `dt_s`, its variances believed (wheel_noise.hpp).
+  /// @param use_vertical also the non-holonomic constraint vz = 0, which does not hold while the ground moves
+  ///        (elevator)
+  /// @return false when a horizontal speed lay outside of the gate, and was not used
   bool update_wheels(const WheelSample& wheels, double dt_s, bool use_vertical);
 
   /// Without wheels: zero velocity with the variance of a bounded motion, over the last `dt_s`.
