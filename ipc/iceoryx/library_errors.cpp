@@ -21,8 +21,15 @@ constexpr int kServiceUnavailable = 69;
 std::atomic<std::uint64_t> g_library_faults{0};
 std::atomic<FatalAction> g_fatal_action{nullptr};
 
+/// Whether the error is an answer of the broker that a program did not read: it was killed, or it ended without
+/// detaching. Part of normal operation, no fault of the library.
+bool is_answer_to_ended_program(iox::Error error) {
+  return error == iox::Error::kPOSH__ROUDI_PROCESS_SEND_VIA_IPC_CHANNEL_FAILED;
+}
+
 void handle_library_error(const iox::Error error, const std::function<void()>& /*callback*/,
                           const iox::ErrorLevel level) {
+  if (is_answer_to_ended_program(error)) return;
   g_library_faults.fetch_add(1, std::memory_order_relaxed);
   if (level != iox::ErrorLevel::FATAL) {
     return;
