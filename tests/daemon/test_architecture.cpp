@@ -80,6 +80,7 @@ const std::map<std::string, Names> kMayIncludeInCore{
     {"core/altitude", {}},
     {"core/calibration", {"core/altitude", "core/statistics"}},
     {"core/contradictions", {}},
+    {"core/graph", {}},
     {"core/map", {}},
     {"core/prior", {"core/altitude"}},
     {"core/mounts", {"core/prior"}},
