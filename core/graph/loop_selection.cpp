@@ -10,11 +10,19 @@ namespace {
 
 // A loop that contradicts by this share of the worst one is dropped with it.
 constexpr double kWorstShare = 0.5;
-// Least eigenvalue of I - S: the only tie of a part of the graph has none left, and no error either. A chain of 1 km
-// sigma leaves (1 cm / 1 km)^2 = 1e-10 to a loop of 1 cm.
-constexpr double kLeastRedundancy = 1e-11;
+// Least eigenvalue of I - S. Of the only tie of a part of the graph nothing is left but rounding, and of its error the
+// last step's 1e-6 m. A chain with a sigma of 100 m leaves (2 cm / 100 m)^2 = 4e-8 to a loop of 2 cm.
+constexpr double kLeastRedundancy = 1e-8;
 
 }  // namespace
+
+double loop_distance(const WhitenedEdge& loop, bool taken, const GraphState& state, NormalSystem& system) {
+  const RelativePoseError e = whitened_error(loop, state);
+  const Matrix6d S = system.marginal({loop.edge.from, e.by_from}, {loop.edge.to, e.by_to});
+  Matrix6d C = (1.0 + kLeastRedundancy) * Matrix6d::Identity();
+  C += taken ? Matrix6d(-S) : S;
+  return e.error.dot(C.ldlt().solve(e.error));
+}
 
 Relaxation LoopSelection::run(LoopWeights taken) {
   taken_ = std::move(taken);
@@ -37,12 +45,7 @@ void LoopSelection::relax_once() {
 void LoopSelection::measure() {
   distance_.resize(taken_.size());
   for (std::size_t i = 0; i < taken_.size(); ++i) {
-    const RelativePoseEdge& edge = factors_.loops[i].edge;
-    const RelativePoseError e = whitened_error(factors_.loops[i], state_);
-    const Matrix6d S = system_.marginal({edge.from, e.by_from}, {edge.to, e.by_to});
-    Matrix6d C = (1.0 + kLeastRedundancy) * Matrix6d::Identity();
-    C += taken_[i] != 0 ? Matrix6d(-S) : S;
-    distance_[i] = e.error.dot(C.ldlt().solve(e.error));
+    distance_[i] = loop_distance(factors_.loops[i], taken_[i] != 0, state_, system_);
   }
 }
 

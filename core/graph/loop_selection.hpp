@@ -30,7 +30,12 @@ struct LoopGate {
   double chi_square_6 = 27.9;
   int rounds = 25;  ///< most rounds; then only drops
   int drops = 2;    ///< a loop that was dropped so often stays out
+
+  [[nodiscard]] double of(const WhitenedEdge& loop) const { return loop.level ? chi_square_4 : chi_square_6; }
 };
+
+/// d^2 of a loop that is `taken` into account in `system`, which is factorised at `state`, or left out of it.
+double loop_distance(const WhitenedEdge& loop, bool taken, const GraphState& state, NormalSystem& system);
 
 /// Chooses loops and relaxes the graph with them.
 class LoopSelection {
@@ -45,9 +50,7 @@ class LoopSelection {
   [[nodiscard]] const LoopWeights& taken() const { return taken_; }
   /// d^2 of each loop.
   [[nodiscard]] const std::vector<double>& distances() const { return distance_; }
-  [[nodiscard]] double gate_of(std::size_t loop) const {
-    return factors_.loops[loop].level ? gate_.chi_square_4 : gate_.chi_square_6;
-  }
+  [[nodiscard]] double gate_of(std::size_t loop) const { return gate_.of(factors_.loops[loop]); }
 
  private:
   void relax_once();

@@ -34,17 +34,23 @@ std::optional<NodeId> PoseGraph::add_node(const GraphNode& node) {
   return static_cast<NodeId>(state_.nodes.size()) - 1;
 }
 
-bool PoseGraph::add_edge(const RelativePoseEdge& edge) {
-  if (!exists(edge.from) || !exists(edge.to) || edge.from == edge.to || !is_pose(edge.T_from_to))
-    return false;
+std::optional<WhitenedEdge> PoseGraph::whitened(const RelativePoseEdge& edge) const {
+  const bool exist = exists(edge.from) && exists(edge.to) && edge.from != edge.to;
+  if (!exist || !is_pose(edge.T_from_to)) return std::nullopt;
   const bool level = held(edge.from) && held(edge.to);
   const std::optional<Matrix6d> W = whitening(edge.covariance, level);
-  if (!W) return false;
+  if (!W) return std::nullopt;
+  return WhitenedEdge{edge, *W, level};
+}
+
+bool PoseGraph::add_edge(const RelativePoseEdge& edge) {
+  const std::optional<WhitenedEdge> taken = whitened(edge);
+  if (!taken) return false;
   if (edge.kind == EdgeKind::kOdometry) {
-    factors_.odometry.push_back({edge, *W, level});
+    factors_.odometry.push_back(*taken);
     return changed();
   }
-  factors_.loops.push_back({edge, *W, level});
+  factors_.loops.push_back(*taken);
   taken_.push_back(0);
   verdicts_.emplace_back();
   return changed();
@@ -118,14 +124,24 @@ GraphResult PoseGraph::report(const LoopSelection& selection, const Relaxation& 
   return result;
 }
 
+bool PoseGraph::factorise() {
+  if (factorised_) return true;
+  rebuild();
+  linearise(factors_, taken_, state_, system_);
+  factorised_ = system_.factorise(0.0);
+  return factorised_;
+}
+
+std::optional<LoopVerdict> PoseGraph::judge(const RelativePoseEdge& candidate) {
+  const std::optional<WhitenedEdge> loop = whitened(candidate);
+  if (!loop || !factorise()) return std::nullopt;
+  const double distance = loop_distance(*loop, false, state_, system_);
+  const double gate = config_.loops.of(*loop);
+  return LoopVerdict{distance <= gate ? 1.0 : 0.0, distance, gate};
+}
+
 std::optional<Matrix6d> PoseGraph::relative_covariance(NodeId from, NodeId to) {
-  if (!exists(from) || !exists(to) || from == to) return std::nullopt;
-  if (!factorised_) {
-    rebuild();
-    linearise(factors_, taken_, state_, system_);
-    factorised_ = system_.factorise(0.0);
-    if (!factorised_) return std::nullopt;
-  }
+  if (!exists(from) || !exists(to) || from == to || !factorise()) return std::nullopt;
   const Eigen::Isometry3d T_from_to = T_map_submap(from).inverse() * T_map_submap(to);
   const RelativePoseError e = linearised_relative_pose(T_map_submap(from), T_map_submap(to), T_from_to);
   return system_.marginal({from, e.by_from}, {to, e.by_to});

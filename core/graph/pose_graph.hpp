@@ -82,6 +82,9 @@ class PoseGraph {
   /// zero, but for the tilt of `from`. Cheap, but the first call after an addition factorises the graph.
   /// @return nothing where a node does not exist, both are the same, or the graph cannot be factorised
   std::optional<Matrix6d> relative_covariance(NodeId from, NodeId to);
+  /// What the graph says of a loop that it does not have: weight 1 where it predicts the loop within the gate. As cheap.
+  /// @return nothing where add_edge() would refuse the loop, or the graph cannot be factorised
+  std::optional<LoopVerdict> judge(const RelativePoseEdge& candidate);
 
  private:
   [[nodiscard]] bool exists(NodeId node) const {
@@ -90,8 +93,10 @@ class PoseGraph {
   [[nodiscard]] bool held(NodeId node) const {
     return state_.nodes[static_cast<std::size_t>(node)].held_by_gravity;
   }
+  [[nodiscard]] std::optional<WhitenedEdge> whitened(const RelativePoseEdge& edge) const;
   bool changed();
   void rebuild();
+  bool factorise();
   GraphResult report(const LoopSelection& selection, const Relaxation& relaxation);
 
   PoseGraphConfig config_;

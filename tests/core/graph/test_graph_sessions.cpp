@@ -135,7 +135,6 @@ TEST_CASE("a second session that begins elsewhere comes into the frame of the fi
         {T_off * building.T_map_submap[at], true, building.stamp_ns[at] + 86'400'000'000'000}));
     if (n > 270) REQUIRE(graph.add_edge(building.odometry[at - 1]));
   }
-  PoseGraphConfig config;
   for (const int to : {300, 350, 400}) {
     const Eigen::Isometry3d T = building.T_map_submap[static_cast<std::size_t>(to - 250)].inverse() *
                                 building.T_map_submap[static_cast<std::size_t>(to)];

@@ -117,6 +117,52 @@ TEST_CASE("of 200 loops over 10000 nodes, the wrong fifth is rejected and the ot
   CHECK(largest_distance_m(with, without) < kUnmovedM);
 }
 
+TEST_CASE("a candidate is judged as it would be after it was added, and the graph stays as it is") {
+  BuildingOptions options;
+  const Building building = make_building(options);
+  PoseGraph graph;
+  add_drive(building, 0, options.nodes, graph);
+  graph.optimise();
+  for (const double shift_m : {0.0, 0.5, 20.0}) {
+    const RelativePoseEdge loop = shifted_loop(building, 45, 630, {shift_m, 0.0, 0.0});
+    const auto before = graph.judge(loop);
+    REQUIRE(before.has_value());
+    CHECK(graph.loops().empty());
+    PoseGraph with;
+    add_drive(building, 0, options.nodes, with);
+    REQUIRE(with.add_edge(loop));
+    with.optimise();
+    CHECK(before->weight == with.loops()[0].weight);
+    // One is linearised at the open chain, the other one at the closed chain where the loop is taken.
+    CHECK(before->chi_square == doctest::Approx(with.loops()[0].chi_square).epsilon(0.1));
+  }
+  RelativePoseEdge none = shifted_loop(building, 45, 630, {0.0, 0.0, 0.0});
+  none.to = options.nodes;
+  CHECK_FALSE(graph.judge(none).has_value());
+}
+
+TEST_CASE("the only tie of a second part of the graph is taken, wherever that part believed to be") {
+  BuildingOptions options;
+  options.nodes = 100;
+  options.right_loops = 0;
+  const Building building = make_building(options);
+  PoseGraph graph;
+  add_drive(building, 0, 50, graph);
+  for (int n = 50; n < 100; ++n) {
+    Eigen::Isometry3d T = building.T_map_submap[static_cast<std::size_t>(n)];
+    T.translation() += Eigen::Vector3d(30.0, 5.0, 2.0);
+    REQUIRE(graph.add_node({T, true, 0}));
+    if (n > 50) REQUIRE(graph.add_edge(building.odometry[static_cast<std::size_t>(n - 1)]));
+  }
+  REQUIRE(graph.add_edge(shifted_loop(building, 20, 70, {0.0, 0.0, 0.0})));
+  const GraphResult result = graph.optimise();
+  CHECK(result.converged);
+  CHECK(result.loops_taken == 1);
+  CHECK(rms_error_m(graph, building) < 0.2);  // drift over 50 edges of 1 cm
+  graph.optimise();
+  CHECK(graph.loops()[0].weight == 1.0);
+}
+
 TEST_CASE("verdicts and poses do not depend on the order of the loops") {
   BuildingOptions options;
   options.right_loops = 30;
