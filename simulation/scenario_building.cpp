@@ -182,6 +182,41 @@ Scenario make_three_floors(std::uint64_t seed, bool short_form) {
   return scenario;
 }
 
+Scenario make_round_trip(std::uint64_t seed, bool short_form) {
+  Random random(seed, "round-trip");
+  Scenario scenario;
+  const int top = short_form ? 1 : 2;
+  const Building building(random, top + 1, short_form ? 1 : 5,
+                          short_form ? random.uniform(22.0, 26.0) : random.uniform(70.0, 76.0), 17, 18);
+  const double stair_speed = random.uniform(0.28, 0.38);
+  Route route(building.corridor().corners_m.back() - Vector2d(2.0, 0.0), 0.0, std::numbers::pi);
+  route.wait(random.uniform(3.0, 5.0));
+  std::vector<Waypoint> way;
+  building.walk(way, 0, false, 2.0, 0.0, random);
+  building.well(0).route_up(way, building.floor_m(0), stair_speed);
+  building.walk(way, 1, true, 0.0, top == 1 ? 2.0 : 0.0, random);
+  if (top == 2) {
+    building.well(1).route_up(way, building.floor_m(1), stair_speed);
+    building.walk(way, 2, false, 0.0, 2.0, random);
+  }
+  route.drive(way);
+  route.wait(random.uniform(1.0, 3.0));
+  way.clear();
+  if (top == 2) {
+    building.walk(way, 2, true, 2.0, 0.0, random);
+    building.well(1).route_down(way, building.floor_m(1), stair_speed);
+  }
+  building.walk(way, 1, false, top == 1 ? 2.0 : 0.0, 0.0, random);
+  building.well(0).route_down(way, building.floor_m(0), stair_speed);
+  building.walk(way, 0, true, 0.0, 2.0, random);
+  route.drive(way);
+  route.wait(3.0);
+  scenario.description = short_form ? "round-trip, short form: two floors, up and back to the start"
+                                    : "three floors, up two staircases and back the same way to the start";
+  finish(scenario, building, route, top + 1, short_form ? 1.0 : 3.0, random);
+  return scenario;
+}
+
 Scenario make_stairs_demo(std::uint64_t seed, bool short_form) {
   Random random(seed, "stairs-demo");
   Scenario scenario;

@@ -19,6 +19,8 @@ constexpr std::array kEntries{
     ScenarioEntry{"moulin", "hanging sphere, lowered into a shaft of ice and pulled up again", make_moulin},
     ScenarioEntry{"stairs-demo", "tracked robot, a corridor, down a staircase to the next floor and on",
                   make_stairs_demo},
+    ScenarioEntry{"round-trip", "tracked robot, three floors up and the same way back to the start",
+                  make_round_trip},
     ScenarioEntry{"hill",
                   "wheeled robot, a round of 600 m over a hill with trees and bushes, in gusts of wind",
                   make_hill},
