@@ -44,8 +44,8 @@ struct GraphResult {
   int loops_taken = 0;
 };
 
-/// Pose graph. Calls that return false have refused an input (a node that does not exist, a number that is not finite, a
-/// covariance that is not positive definite, a sigma that is not above zero) and changed nothing.
+/// Pose graph. Calls that return false have refused an input (a node that does not exist, a number that is not finite or
+/// beyond 1e7 m, a covariance that is not positive definite, a sigma below kLeastSigma) and changed nothing.
 class PoseGraph {
  public:
   explicit PoseGraph(const PoseGraphConfig& config = {});
