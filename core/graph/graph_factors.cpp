@@ -31,9 +31,11 @@ void add_edge_to(const WhitenedEdge& edge, const GraphState& state, NormalSystem
 
 /// Change of the bias from the chain's node `at` - 1 to `at`.
 BiasLink link_to(const GraphFactors& factors, const GraphState& state, std::size_t at) {
-  const std::int64_t dt_ns =
-      node_at(state, factors.bias_chain[at]).stamp_ns - node_at(state, factors.bias_chain[at - 1]).stamp_ns;
-  return bias_link(factors.bias, 1e-9 * static_cast<double>(dt_ns));
+  // As numbers that cannot overflow, whatever the stamps; exact to 256 ns.
+  const auto stamp_ns = [&](std::size_t i) {
+    return static_cast<double>(node_at(state, factors.bias_chain[i]).stamp_ns);
+  };
+  return bias_link(factors.bias, 1e-9 * (stamp_ns(at) - stamp_ns(at - 1)));
 }
 
 double bias_chi_square(const GraphFactors& factors, const GraphState& state) {

@@ -13,14 +13,18 @@ namespace {
 
 // Rounding of poses that went through files as single precision.
 constexpr double kRotationTolerance = 1e-5;
+// Largest coordinate [m]: the Earth is smaller. Squares of larger ones would lose what is good to rounding.
+constexpr double kLargestM = 1e7;
+
+bool is_coordinate(double value_m) { return std::abs(value_m) <= kLargestM; }  // false for NaN
 
 bool is_pose(const Eigen::Isometry3d& T) {
   const Eigen::Matrix3d R = T.linear();
-  return T.matrix().allFinite() && R.determinant() > 0.0 &&
-         (R * R.transpose()).isIdentity(kRotationTolerance);
+  return T.matrix().allFinite() && T.translation().cwiseAbs().maxCoeff() <= kLargestM &&
+         R.determinant() > 0.0 && (R * R.transpose()).isIdentity(kRotationTolerance);
 }
 
-bool is_sigma(double sigma) { return std::isfinite(sigma) && sigma > 0.0; }
+bool is_sigma(double sigma) { return std::isfinite(sigma) && sigma >= kLeastSigma; }
 
 }  // namespace
 
@@ -57,7 +61,7 @@ bool PoseGraph::add_edge(const RelativePoseEdge& edge) {
 }
 
 bool PoseGraph::add_altitude(const AltitudeFactor& factor) {
-  if (!exists(factor.node) || !std::isfinite(factor.height_m) || !is_sigma(factor.sigma_m)) return false;
+  if (!exists(factor.node) || !is_coordinate(factor.height_m) || !is_sigma(factor.sigma_m)) return false;
   factors_.altitudes.push_back(factor);
   return changed();
 }

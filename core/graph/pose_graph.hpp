@@ -32,7 +32,7 @@ struct PoseGraphConfig {
 struct LoopVerdict {
   double weight = 0.0;  ///< 1: taken into account, 0: rejected, or not optimised yet
   double chi_square =
-      0.0;            ///< squared distance from what the rest of the graph predicts, by both covariances
+      0.0;            ///< squared distance from what the rest of the graph predicts, over both variances
   double gate = 0.0;  ///< largest chi_square of a right loop
 };
 
@@ -44,8 +44,8 @@ struct GraphResult {
   int loops_taken = 0;
 };
 
-/// Pose graph. Calls that return false have refused an input (a node that does not exist, a number that is not finite, a
-/// covariance that is not positive definite, a sigma that is not above zero) and changed nothing.
+/// Pose graph. Calls that return false have refused an input (a node that does not exist, a number that is not finite or
+/// beyond 1e7 m, a covariance that is not positive definite, a sigma below kLeastSigma) and changed nothing.
 class PoseGraph {
  public:
   explicit PoseGraph(const PoseGraphConfig& config = {});
@@ -66,8 +66,8 @@ class PoseGraph {
   GraphResult optimise();
 
   [[nodiscard]] std::span<const GraphNode> nodes() const { return state_.nodes; }
-  [[nodiscard]] const Eigen::Isometry3d& T_map_submap(
-      NodeId node) const {  // NOLINT(readability-identifier-naming)
+  // NOLINTNEXTLINE(readability-identifier-naming)
+  [[nodiscard]] const Eigen::Isometry3d& T_map_submap(NodeId node) const {
     return state_.nodes[static_cast<std::size_t>(node)].T_map_submap;
   }
   /// Altimeter minus height at a node [m]; zero where it has no altitude.

@@ -11,12 +11,15 @@
 
 namespace isobar {
 
+/// Least standard deviation of a measurement [m, rad]: a smaller one is a fault, and rounding would ruin the others.
+inline constexpr double kLeastSigma = 1e-7;
+
 /// Rows of a pose error that count between nodes held by gravity: x, y, z, yaw.
 inline constexpr std::array<int, 4> kLevelRows{0, 1, 2, 5};
 
 /// Whitening matrix of a covariance (x, y, z, roll, pitch, yaw). `level`: of x, y, z and yaw alone, whatever roll and pitch
 /// are; the last two rows are then zero.
-/// @return nothing where the covariance is not positive definite or not finite
+/// @return nothing where the covariance is not positive definite, not finite, or below kLeastSigma in a direction
 inline std::optional<Matrix6d> whitening(const Matrix6d& covariance, bool level) {
   const int rows = level ? 4 : 6;
   Matrix6d used = Matrix6d::Identity();
@@ -29,7 +32,8 @@ inline std::optional<Matrix6d> whitening(const Matrix6d& covariance, bool level)
   const Eigen::LLT<Matrix6d> factor(used);
   if (!used.allFinite() || factor.info() != Eigen::Success) return std::nullopt;
   const Matrix6d inverse = factor.matrixL().solve(Matrix6d::Identity());
-  if (!inverse.allFinite()) return std::nullopt;
+  const double largest = inverse.cwiseAbs().maxCoeff();
+  if (!(largest <= 1.01 / kLeastSigma)) return std::nullopt;  // also where it is not a number
   if (!level) return inverse;
   Matrix6d W = Matrix6d::Zero();
   for (int j = 0; j < rows; ++j) {

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
 
@@ -259,11 +260,22 @@ TEST_CASE("input that is not a measurement is refused and changes nothing") {
   CHECK_FALSE(graph.add_edge({0, 1, pose(1.0, 0.0, 0.0), Matrix6d::Zero()}));
   CHECK_FALSE(graph.add_altitude({0, nan, 0.1}));
   CHECK_FALSE(graph.add_altitude({0, 0.0, 0.0}));
+  CHECK_FALSE(graph.add_altitude({0, 0.0, 1e-300}));
+  CHECK_FALSE(graph.add_altitude({0, 1e300, 0.1}));
+  CHECK_FALSE(graph.add_node({pose(1e300, 0.0, 0.0), true, 0}));
+  CHECK_FALSE(graph.add_edge({0, 1, pose(1.0, 0.0, 0.0), diagonal_covariance(1e-9, 0.1, 0.1)}));
   CHECK_FALSE(graph.add_stationary_ground({0, 1, -1.0}));
   CHECK_FALSE(graph.add_prior({0, pose(0.0, 0.0, 0.0), Matrix6d::Constant(nan)}));
   CHECK_FALSE(graph.relative_covariance(0, 0));
   CHECK_FALSE(graph.relative_covariance(0, 5));
   CHECK(graph.add_edge({0, 1, pose(2.0, 0.0, 0.0), good}));
+  // Stamps are not measurements: whatever they are, the graph has a minimum.
+  const auto last = graph.add_node({pose(2.0, 0.0, 0.0), true, std::numeric_limits<std::int64_t>::max()});
+  const auto first = graph.add_node({pose(2.0, 0.0, 0.0), true, std::numeric_limits<std::int64_t>::min()});
+  for (const auto& node : {last, first}) {
+    CHECK(graph.add_edge({1, *node, pose(0.0, 0.0, 0.0), good}));
+    CHECK(graph.add_altitude({*node, 0.0, 0.1}));
+  }
   CHECK(graph.optimise().converged);
   CHECK(graph.T_map_submap(1).translation().x() == doctest::Approx(2.0));
 }
