@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/loops/key_scan.hpp"
+
+#include "core/geometry.hpp"
+#include "core/so3.hpp"
+#include "core/stamp.hpp"
+
+namespace isobar {
+
+bool KeyScanChoice::wants(const PoseEstimate& pose) const {
+  if (pose.mode == PoseMode::kPriorOnly || !pose.for_map || place_unknown(pose)) return false;
+  if (!any_) return true;
+  if (seconds_between(last_ns_, pose.stamp_ns) < kLeastS) return false;
+  const Eigen::Isometry3d step = T_map_last_.inverse() * pose.T_map_base;
+  return step.translation().norm() >= kDistanceM ||
+         rotation_angle_rad(Eigen::Quaterniond(step.linear())) >= kAngleDeg * kRadPerDeg;
+}
+
+void KeyScanChoice::take(const PoseEstimate& pose) {
+  if (any_) way_m_ += (pose.T_map_base.translation() - T_map_last_.translation()).norm();
+  T_map_last_ = pose.T_map_base;
+  last_ns_ = pose.stamp_ns;
+  any_ = true;
+}
+
+}  // namespace isobar

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A robot on its rounds through a ring of corridors: registered scans, with a live pose that may be wrong.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <random>
+#include <utility>
+
+#include "core/estimates.hpp"
+#include "tests/core/registration/synthetic_world.hpp"
+
+namespace isobar::test {
+
+/// A ring of corridors, 12 m x 9 m along its middle line, with cupboards that make each place unlike the others.
+World ring_of_corridors();
+inline constexpr double kRingM = 42.0;
+
+/// True pose after `way_m` of the ring, anticlockwise from its south-west corner, at 0.6 m above the floor.
+Eigen::Isometry3d ring_pose(double way_m);
+
+/// Error of the live pose after a way: the live pose is error * truth.
+using LiveError = std::function<Eigen::Isometry3d(double way_m)>;
+
+/// Makes the scans of a drive along the ring at 1 m/s, four a second.
+class RingRun {
+ public:
+  explicit RingRun(LiveError error = {}) : error_(std::move(error)), world_(ring_of_corridors()) {}
+
+  /// The next scan with its live pose, valid until the next call.
+  const RegisteredScan& next();
+  /// Way of the last scan.
+  [[nodiscard]] double way_m() const { return way_m_ - kStepM; }
+  /// The robot is carried on by `way_m`, without scans.
+  void carry(double way_m) { way_m_ += way_m; }
+  [[nodiscard]] static Eigen::Isometry3d lidar_mount() {
+    return Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, 0.2));
+  }
+
+ private:
+  static constexpr double kStepM = 0.25;
+
+  LiveError error_;
+  World world_;
+  double way_m_ = 0.0;
+  std::mt19937 random_{7};
+  std::unique_ptr<Scan> scan_ = std::make_unique<Scan>();
+  std::unique_ptr<RegisteredScan> out_ = std::make_unique<RegisteredScan>();
+};
+
+}  // namespace isobar::test
