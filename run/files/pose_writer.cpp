@@ -14,6 +14,7 @@
 #include "core/errors.hpp"
 #include "core/names.hpp"
 #include "run/files/run_layout.hpp"
+#include "run/text/tum_row.hpp"
 
 namespace isobar::files {
 
@@ -32,17 +33,12 @@ std::string_view text_of(const Line& line, int length) {
   return {line.data(), std::min(static_cast<std::size_t>(length), line.size() - 1)};
 }
 
-std::string_view trajectory_line(const PoseEstimate& pose, Line& line) {
-  constexpr std::int64_t kNsPerS = 1'000'000'000;
-  const Eigen::Vector3d p = pose.T_map_base.translation();
-  const Eigen::Quaterniond q = Eigen::Quaterniond(pose.T_map_base.linear()).normalized();
-  // Integer seconds and nanoseconds: a double resolves a date of today to 0.2 us only.
-  const long long seconds = std::llabs(pose.stamp_ns / kNsPerS);
-  const long long nanoseconds = std::llabs(pose.stamp_ns % kNsPerS);
-  const int length = std::snprintf(
-      line.data(), line.size(), "%s%lld.%09lld %.6f %.6f %.6f %.9f %.9f %.9f %.9f\n",
-      pose.stamp_ns < 0 ? "-" : "", seconds, nanoseconds, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
-  return text_of(line, length);
+std::string trajectory_line(const PoseEstimate& pose) {
+  std::string line;
+  text::append_tum_row({pose.stamp_ns, pose.T_map_base.translation(),
+                        Eigen::Quaterniond(pose.T_map_base.linear()).normalized()},
+                       line);
+  return line;
 }
 
 std::string first_line(const std::filesystem::path& file) {
@@ -132,7 +128,7 @@ PoseWriter::PoseWriter(const std::filesystem::path& directory, Start start, std:
 
 void PoseWriter::add(const PoseEstimate& pose, double altimeter_height_m, double altimeter_sd_m) {
   Line line;
-  if (knows_place(pose)) trajectory_.add(trajectory_line(pose, line));
+  if (knows_place(pose)) trajectory_.add(trajectory_line(pose));
   const std::string_view status = status_line(pose, altimeter_height_m, altimeter_sd_m, line);
   const std::string_view kept = with_columns_of(status_header_, status);
   if (kept.size() == status.size()) {

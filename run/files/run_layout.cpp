@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::array<const char*, 5> kOfSession{kTrajectoryFile, kStatusFile, kCovarianceFile, kMapPointsFile,
-                                                kMapDirectory};
+constexpr std::array<const char*, 6> kOfSession{kTrajectoryFile, kCorrectedTrajectoryFile, kStatusFile,
+                                                kCovarianceFile, kMapPointsFile,           kMapDirectory};
 constexpr std::array<const char*, 4> kOfRun{kSettingsFile, kCountersFile, kCheckpointFile, kMountsFile};
 
 /// Number of the map frame to which a file belongs; 0 for a file of none.

@@ -9,6 +9,8 @@
 namespace isobar::files {
 
 inline constexpr const char* kTrajectoryFile = "trajectory.tum";  ///< pose of base_link per scan (TUM format)
+inline constexpr const char* kCorrectedTrajectoryFile =
+    "trajectory-corrected.tum";                           ///< the same, after the loops
 inline constexpr const char* kStatusFile = "status.csv";  ///< how each pose came about: kStatusColumns
 inline constexpr const char* kCovarianceFile = "covariance.csv";  ///< of each pose: kCovarianceColumns
 inline constexpr const char* kMapPointsFile = "map.ply";          ///< the map's points: x, y, z, intensity

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <string_view>
 
@@ -77,6 +79,20 @@ std::optional<TumRow> next_tum_row(TextLines& lines) {
     }
   }
   return std::nullopt;
+}
+
+void append_tum_row(const TumRow& row, std::string& text) {
+  constexpr std::int64_t kNsPerS = 1'000'000'000;
+  const Eigen::Vector3d& p = row.position_m;
+  const Eigen::Quaterniond& q = row.attitude;
+  // Integer seconds and nanoseconds: a double resolves a date of today to 0.2 us only.
+  const long long seconds = std::llabs(row.stamp_ns / kNsPerS);
+  const long long nanoseconds = std::llabs(row.stamp_ns % kNsPerS);
+  std::array<char, 4096> line;  // holds seven numbers of 1e308
+  const int length = std::snprintf(
+      line.data(), line.size(), "%s%lld.%09lld %.6f %.6f %.6f %.9f %.9f %.9f %.9f\n",
+      row.stamp_ns < 0 ? "-" : "", seconds, nanoseconds, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+  text.append(line.data(), static_cast<std::size_t>(length));
 }
 
 }  // namespace isobar::text

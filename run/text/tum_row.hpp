@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "run/text/text_lines.hpp"
 
@@ -21,5 +22,8 @@ struct TumRow {
 /// commas separate the numbers. Stamps in plain decimals are exact to 1 ns; quaternions are normalised.
 /// @throws DataError "name:line: rule" when the row has not eight finite numbers or no unit quaternion
 std::optional<TumRow> next_tum_row(TextLines& lines);
+
+/// Appends a row to `text`, with its line end: stamps to 1 ns, positions to 1 um.
+void append_tum_row(const TumRow& row, std::string& text);
 
 }  // namespace isobar::text
