@@ -10,6 +10,7 @@
 #include "config/sources.hpp"
 #include "core/estimates.hpp"
 #include "core/geometry.hpp"
+#include "core/loops/loop_config.hpp"
 #include "core/map/map_config.hpp"
 #include "core/name_table.hpp"
 #include "core/prior/prior_config.hpp"
@@ -164,6 +165,7 @@ struct Config {
   RegistrationConfig registration;
   MapConfig map;
   MapFileSettings map_files;
+  LoopConfig loops;
 };
 
 }  // namespace isobar

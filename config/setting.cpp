@@ -73,6 +73,7 @@ std::vector<Setting> settings_of(Config& config) {
   add_height_settings(config.prior.height, settings);
   add_registration_settings(config.registration, settings);
   add_map_settings(config.map, config.map_files, settings);
+  add_loop_settings(config.loops, settings);
   return settings;
 }
 

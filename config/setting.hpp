@@ -103,6 +103,7 @@ void add_altimeter_settings(AltimeterConfig& altimeter, std::vector<Setting>& se
 void add_motion_settings(PriorConfig& prior, std::vector<Setting>& settings);
 void add_height_settings(HeightConfig& height, std::vector<Setting>& settings);
 void add_registration_settings(RegistrationConfig& registration, std::vector<Setting>& settings);
+void add_loop_settings(LoopConfig& loops, std::vector<Setting>& settings);
 void add_map_settings(MapConfig& map, MapFileSettings& files, std::vector<Setting>& settings);
 
 }  // namespace isobar

@@ -26,6 +26,17 @@ std::vector<files::RunCount> counts_of(const LidarCounters& counters,
   };
 }
 
+std::vector<files::RunCount> counts_of(const BuildingCounts& counts) {
+  return {
+      {"loop key scans", counts.key_scans, ""},
+      {"loop submaps", counts.submaps, ""},
+      {"loop places tried", counts.tried, ""},
+      {"loop places matched", counts.matched, ""},
+      {"loops confirmed by a second one", counts.accepted, ""},
+      {"loops that correct the trajectory", counts.taken, ""},
+  };
+}
+
 std::vector<files::RunCount> counts_of(const PriorCounters& counters) {
   return {
       {"imu samples", counters.imu_accepted, ""},

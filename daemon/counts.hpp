@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/loops/building.hpp"
 #include "core/prior/prior_estimator.hpp"
 #include "core/time/base_station_stream.hpp"
 #include "drivers/datagram/datagram.hpp"
@@ -17,6 +18,7 @@ namespace isobar {
 
 std::vector<files::RunCount> counts_of(const LidarCounters& counters, const std::string& wrong_model_message);
 std::vector<files::RunCount> counts_of(const PriorCounters& counters);
+std::vector<files::RunCount> counts_of(const BuildingCounts& counts);
 std::vector<files::RunCount> counts_of(const datagram::Counters& counters);
 /// Counters of the base station that sends datagrams.
 std::vector<files::RunCount> counts_of(const BaseStationStatus& base);

@@ -18,6 +18,7 @@ LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileStorag
       prior_estimator_(settings.prior),
       registration_(settings.registration, settings.method, settings.T_base_lidar, sink),
       map_(settings.map, settings.T_base_lidar, storage),
+      loops_(settings),
       filling_(std::make_unique<Scan>()),
       queue_(kLockStepQueue),
       has_imu_(settings.prior.has_imu),
@@ -87,6 +88,7 @@ void LockStep::advance(std::int64_t now_ns) {
 
 void LockStep::use_prior(const Prior& prior) {
   registration_.add_prior(prior);
+  loops_.add_prior(prior);
   register_admissible();
   registration_.bridge_silence();
 }
@@ -107,6 +109,7 @@ void LockStep::register_admissible() {
     spare_.push_back(std::move(scan));
     ++scans_;
     map_.update(registered_);
+    loops_.add_scan(registered_);
   }
 }
 

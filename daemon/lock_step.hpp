@@ -4,6 +4,7 @@
 //
 //   packets ─▶ decoder ─▶ scan ──────────────┐
 //   samples ─▶ prior estimator ─▶ prior ─────┴▶ registration ─▶ pose, registered scan ─▶ map ─▶ snapshot
+//                                                                            └─▶ loops ─▶ corrections
 #pragma once
 
 #include <cstdint>
@@ -16,6 +17,7 @@
 #include "core/prior/prior_estimator.hpp"
 #include "core/prior/prior_pace.hpp"
 #include "daemon/lidar_sender.hpp"
+#include "daemon/loop_stage.hpp"
 #include "daemon/registration_stage.hpp"
 #include "daemon/run_start.hpp"
 #include "daemon/scan_queue.hpp"
@@ -47,6 +49,8 @@ class LockStep {
   /// The last scan and its pose, as the map got them.
   [[nodiscard]] const RegisteredScan& registered_scan() const { return registered_; }
   [[nodiscard]] std::uint64_t scans() const { return scans_; }
+  /// Places that were seen again, and what they correct.
+  [[nodiscard]] const LoopStage& loops() const { return loops_; }
 
  private:
   void take_packet(const recording::Event& event);
@@ -61,6 +65,7 @@ class LockStep {
   PriorEstimator prior_estimator_;
   RegistrationStage registration_;
   LocalMap map_;
+  LoopStage loops_;
 
   std::int64_t clock_ns_ = 0;  ///< stands still until finish(): scans wait for priors without a time limit
   std::unique_ptr<Scan> filling_;

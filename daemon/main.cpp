@@ -7,6 +7,8 @@
 //   wheel┤                               ▲                 └─▶ registered scans ─▶ map
 //   base ┘                               └────────────────────── snapshots ─────────┘
 //
+// Registered scans also go to loops, which corrects the trajectory by places that are seen again.
+//
 // Every arrow is a topic in shared memory (ipc/topics.hpp), except the snapshot, which stays inside the
 // process.
 #include <spdlog/spdlog.h>
@@ -29,6 +31,7 @@
 #include "daemon/input_health.hpp"
 #include "daemon/lidar_thread.hpp"
 #include "daemon/logging.hpp"
+#include "daemon/loop_thread.hpp"
 #include "daemon/map_thread.hpp"
 #include "daemon/missing_sensors.hpp"
 #include "daemon/options.hpp"
@@ -79,6 +82,9 @@ class RobotGraph final : public Graph {
                    : nullptr),
         check_({.imu = imu_mount(config), .lidar = config.lidar.mount}, config.imu.present(),
                scheduling_.check),
+        loops_(config.loops.enabled && files_.output() != nullptr
+                   ? std::make_unique<LoopThread>(stages_, scheduling_.loops)
+                   : nullptr),
         output_(files_.checkpoint_file().empty()
                     ? nullptr
                     : std::make_unique<OutputThread>(
@@ -91,6 +97,7 @@ class RobotGraph final : public Graph {
     if (black_box_) black_box_->add_to(workers_);
     if (output_) workers_.add(output_->worker(), Watch::kNo);
     workers_.add(check_.worker(), Watch::kNo);
+    if (loops_) workers_.add(loops_->worker(), Watch::kNo);
     workers_.add(map_.worker());
     workers_.add(registration_.worker());
     workers_.add(prior_.worker());
@@ -113,7 +120,7 @@ class RobotGraph final : public Graph {
   }
   void stop() override {
     workers_.stop();
-    files_.close(status(RobotClock::now_ns()));
+    files_.close(status(RobotClock::now_ns()), loops_ ? &loops_->stage() : nullptr);
   }
   [[nodiscard]] StatusSnapshot status(std::int64_t now_ns) const {
     const RegistrationStatus registration = registration_.status();
@@ -220,6 +227,7 @@ class RobotGraph final : public Graph {
   SampleThread samples_;
   std::unique_ptr<LidarThread> lidar_;  ///< null: the scans come from isobar-dds
   CheckThread check_;
+  std::unique_ptr<LoopThread> loops_;  ///< null: switched off, or no folder for what it finds
   std::unique_ptr<OutputThread> output_;
   HealthMonitor monitor_;
   WorkerGroup workers_;  ///< last: stops all threads before the stages are destroyed

@@ -213,6 +213,8 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   LockStep pipeline(stage_settings(used), sink, store.get());
   summary.recorded_s = feed(reader, check.usable, pipeline, progress);
   output.flush();
+  if (used.loops.enabled) write_corrected_trajectories(out, pipeline.loops());
+  summary.loops = pipeline.loops().counts().taken;
   const std::vector<files::RunCount> map_counts = counts_of_map(*store, output);
 
   summary.scans = pipeline.scans();
@@ -222,6 +224,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   summary.map_points = output.map_points();
   summary.counts = collect_counts(reader, pipeline);
   run_counts::append(summary.counts, map_counts);
+  run_counts::append(summary.counts, counts_of(pipeline.loops().counts()));
   add_contradictions(contradictions, summary.counts);
   warn_of_scans_without(manifest, used.imu.present(), sink, summary);
   warn_of_two_lidars(pipeline, used.lidar.port, summary);

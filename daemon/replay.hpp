@@ -19,6 +19,7 @@ struct ReplaySummary {
   std::uint64_t registered = 0;
   std::uint64_t from_prior = 0;
   std::uint64_t map_points = 0;
+  std::uint64_t loops = 0;  ///< places seen again that correct the trajectory
   double recorded_s = 0.0;  ///< time from the first to the last sample
   double wall_s = 0.0;
   std::string base_clock;  ///< how the base station's clock was aligned with the robot's; empty: no base

@@ -141,13 +141,17 @@ void RunFiles::begin_beside(std::uint32_t session, const std::string& why) {
   static_cast<void>(open_map(session));
 }
 
-void RunFiles::close(const StatusSnapshot& last) {
+void RunFiles::close(const StatusSnapshot& last, const LoopStage* loops) {
   if (!output_) return;
   do_or_log([&] { output_->flush(); });
   std::vector<files::RunCount> counts = counts_of_threads(last);
   // A run folder implies a store, unless the disk has refused a new one.
   if (maps_.current() != nullptr) {
     do_or_log([&] { run_counts::append(counts, counts_of_map(*maps_.current(), *output_)); });
+  }
+  if (loops != nullptr) {
+    do_or_log([&] { write_corrected_trajectories(directory_, *loops); });
+    run_counts::append(counts, counts_of(loops->counts()));
   }
   add_contradictions(counts, last.contradictions);
   counts.push_back({"poses not written", output_->dropped_lines(), ""});

@@ -8,6 +8,7 @@
 
 #include "config/config.hpp"
 #include "daemon/health.hpp"
+#include "daemon/loop_stage.hpp"
 #include "daemon/map_stores.hpp"
 #include "daemon/run_start.hpp"
 #include "run/files/checkpoint.hpp"
@@ -34,9 +35,10 @@ class RunFiles {
   /// File of the checkpoint; empty: nothing is configured that a later run could continue.
   [[nodiscard]] std::filesystem::path checkpoint_file() const;
 
-  /// Writes the last poses, map.ply, counters.csv and mounts.toml. What the disk refuses is logged. Call once, after all
+  /// Writes the last poses, map.ply, counters.csv, mounts.toml and the corrected trajectory. What the disk refuses is logged. Call once, after all
   /// threads have stopped.
-  void close(const StatusSnapshot& last);
+  /// @param loops what the run has found; may be null
+  void close(const StatusSnapshot& last, const LoopStage* loops);
 
  private:
   [[nodiscard]] std::uint32_t newest_session() const;

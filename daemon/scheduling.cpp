@@ -17,6 +17,7 @@ RobotScheduling robot_scheduling(const RealtimeSettings& realtime) {
       {"map", 0, realtime.map_cpus, realtime.map_deadline_ms},
       {"output", 0, {}},
       {"check", 0, realtime.map_cpus},
+      {"loops", 0, realtime.map_cpus},
   };
 }
 

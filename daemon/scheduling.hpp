@@ -10,7 +10,7 @@ namespace isobar {
 
 /// Threads of a robot. "inertial" is the SampleThread, by the name of its configuration keys.
 struct RobotScheduling {
-  ThreadSettings lidar, inertial, imu, barometer, wheels, prior, registration, map, output, check;
+  ThreadSettings lidar, inertial, imu, barometer, wheels, prior, registration, map, output, check, loops;
 };
 [[nodiscard]] RobotScheduling robot_scheduling(const RealtimeSettings& realtime);
 

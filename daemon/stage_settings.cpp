@@ -32,6 +32,7 @@ StageSettings stage_settings(const Config& config) {
   settings.registration = config.registration;
   settings.registration.has_imu = config.imu.present();
   settings.map = config.map;
+  settings.loops = config.loops;
   settings.method = config.method;
   settings.T_base_lidar = config.lidar.mount.T_base_sensor();
   return settings;

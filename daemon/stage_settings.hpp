@@ -6,6 +6,7 @@
 #include <string>
 
 #include "config/config.hpp"
+#include "core/loops/loop_config.hpp"
 #include "core/map/local_map.hpp"
 #include "core/prior/prior_estimator.hpp"
 #include "core/registration/registration.hpp"
@@ -24,6 +25,7 @@ struct StageSettings {
   PriorConfig prior;
   RegistrationConfig registration;
   MapConfig map;
+  LoopConfig loops;
   Method method = Method::kAdaptive;
   Eigen::Isometry3d T_base_lidar = Eigen::Isometry3d::Identity();
 };

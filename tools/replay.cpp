@@ -33,7 +33,7 @@ bool is_ordinary(const std::string& name) {
          name == "imu samples" || name == "barometer samples" || name == "base samples" ||
          name == "wheel samples" || name == "lidar position packets" || name == "map cells seen through" ||
          name == "map tiles stored" || name == "map tiles brought back" ||
-         name == "map tiles moved between files";
+         name == "map tiles moved between files" || name.starts_with("loop");
 }
 
 void print_summary(const ReplaySummary& summary, const std::filesystem::path& out) {
@@ -52,6 +52,11 @@ void print_summary(const ReplaySummary& summary, const std::filesystem::path& ou
               static_cast<unsigned long long>(summary.map_points));
   std::printf("%.1f s of recording in %.1f s, %.1f times real time\n", summary.recorded_s, summary.wall_s,
               summary.wall_s > 0.0 ? summary.recorded_s / summary.wall_s : 0.0);
+  if (summary.loops > 0) {
+    std::printf(
+        "%llu loops, places that the robot saw again: trajectory-corrected.tum is corrected by them\n",
+        static_cast<unsigned long long>(summary.loops));
+  }
   std::printf("written: %s/trajectory.tum map.ply map/ status.csv counters.csv settings.toml\n", out.c_str());
 }
 

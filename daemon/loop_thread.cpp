@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "daemon/loop_thread.hpp"
+
+#include <utility>
+
+#include "daemon/message_loop.hpp"
+
+namespace isobar {
+
+LoopThread::LoopThread(const StageSettings& settings, ThreadSettings scheduling)
+    : stage_(settings),
+      scans_(ipc::topics::kRegisteredScan),
+      priors_(ipc::topics::kPrior),
+      waiter_({&scans_.raw()}),
+      worker_(std::move(scheduling), waiter_, [this] { loop(); }) {}
+
+void LoopThread::loop() noexcept {
+  drain_until_stopped(waiter_, worker_.heartbeat(), [this] { drain(); });
+}
+
+void LoopThread::drain() noexcept {
+  while (const auto scan = scans_.take()) {
+    while (const auto prior = priors_.take()) stage_.add_prior(*prior);
+    stage_.add_scan(*scan);
+  }
+}
+
+}  // namespace isobar

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "daemon/loop_stage.hpp"
+#include "daemon/worker.hpp"
+#include "ipc/shared_memory.hpp"
+
+namespace isobar {
+
+/// Finds loops in the registered scans of a live run, beside the pipeline and without its priority: a scan that it misses
+/// is one key scan less.
+class LoopThread {
+ public:
+  LoopThread(const StageSettings& settings, ThreadSettings scheduling);
+
+  [[nodiscard]] Worker& worker() noexcept { return worker_; }
+  /// Once the worker has stopped.
+  [[nodiscard]] const LoopStage& stage() const noexcept { return stage_; }
+
+ private:
+  void loop() noexcept;
+  void drain() noexcept;
+
+  LoopStage stage_;
+  ipc::Subscriber<RegisteredScan> scans_;
+  ipc::Subscriber<Prior> priors_;
+  ipc::Waiter waiter_;
+  Worker worker_;
+};
+
+}  // namespace isobar
