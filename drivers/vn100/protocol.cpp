@@ -72,6 +72,7 @@ void Protocol::add_commands(int number, const std::string& name, const std::stri
 void Protocol::restart() noexcept {
   parser_.restart();
   done_ = 0;
+  measured_ = false;
   packets_measure_ = false;
   heard_[0] = '\0';
 }
@@ -117,6 +118,7 @@ void Protocol::take_packet(const Frame& frame, serial::ImuEvent& event) noexcept
     note_incomplete(name.data(), measurement);
   }
   packets_measure_ = packets_measure_ || measurement.reading.has_imu;
+  measured_ = measured_ || measurement.reading.has_imu;
   if (!measurement.reading.has_imu && !measurement.reading.has_pressure) return;
   event.kind = serial::ImuEvent::Kind::kReading;
   event.reading = measurement.reading;
@@ -147,6 +149,7 @@ void Protocol::take_text(const Frame& frame, serial::ImuEvent& event) noexcept {
     note_incomplete(name.data(), text->measurement);
   }
   if (packets_measure_ || (!reading.has_imu && !reading.has_pressure)) return;
+  measured_ = measured_ || reading.has_imu;
   event.kind = serial::ImuEvent::Kind::kReading;
   event.reading = reading;
 }
@@ -186,6 +189,9 @@ void Protocol::take_answer(const Frame& frame, serial::ImuEvent& event) noexcept
   }
 }
 
-const char* Protocol::heard_instead() const noexcept { return heard_[0] != '\0' ? heard_.data() : nullptr; }
+const char* Protocol::heard_instead() const noexcept {
+  // Messages of other outputs come between good ones: only what comes alone is told.
+  return heard_[0] != '\0' && !measured_ ? heard_.data() : nullptr;
+}
 
 }  // namespace isobar::vn100

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "drivers/serial/imu_protocol.hpp"
+#include "drivers/vn100/measurement.hpp"
 #include "drivers/vn100/settings.hpp"
 #include "drivers/vn100/stream_parser.hpp"
 
@@ -54,6 +55,7 @@ class Protocol final : public serial::ImuProtocol {
   StreamParser parser_;
   std::size_t done_ = 0;  ///< commands answered
   std::array<char, 96> refusal_{};
+  bool measured_ = false;         ///< since restart()
   bool packets_measure_ = false;  ///< a packet had acceleration and angular rate
   std::array<char, 96> heard_{};  ///< what came instead of measurements; empty: nothing
 };
