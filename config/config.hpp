@@ -23,6 +23,7 @@
 #include "drivers/iio/settings.hpp"
 #include "drivers/lidar/lidar_time.hpp"
 #include "drivers/ms5611/settings.hpp"
+#include "drivers/pps/settings.hpp"
 #include "drivers/vn100/settings.hpp"
 #include "drivers/xsens/settings.hpp"
 #include "ipc/dds_config.hpp"
@@ -157,6 +158,7 @@ struct Config {
   BaseBarometerSettings base_barometer;
   InputSettings input;
   OutputSettings output;
+  pps::Settings pps;  ///< [pps]
   BlackBoxSettings black_box;
   dds::DdsConfig dds;  ///< [dds]
   RealtimeSettings realtime;

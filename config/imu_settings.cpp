@@ -59,6 +59,14 @@ void add_iio(iio::ImuBufferSettings& iio, std::vector<Setting>& settings) {
       "tells which device it is.");
   s.text("device", iio.device, TextRule::kAny,
          "Device file of the buffer. Empty: the one in /dev that is named as the folder.");
+  s.text("accel_folder", iio.accel_folder, TextRule::kAny,
+         "Folder of the accelerometer, where the chip's driver has it as a device of its own (LSM6DSx, "
+         "ICM-42600); "
+         "`folder` is then the gyro's. Their samples are paired by the kernel's time stamps. Empty: both are "
+         "in one "
+         "device.");
+  s.text("accel_device", iio.accel_device, TextRule::kAny,
+         "Device file of the accelerometer's buffer. Empty: the one in /dev that is named as its folder.");
   s.text("trigger", iio.trigger, TextRule::kAny,
          "Name of the trigger that starts a measurement. Empty: the one that the driver has set.");
   s.number("rate_hz", &iio.rate_hz, "Hz", 20, 1'000,

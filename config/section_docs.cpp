@@ -19,7 +19,8 @@ constexpr auto kDocs = std::to_array<Doc>({
     {"imu.xsens",
      "An Xsens MTi-1, -3, -10, -100 or -300 series on a serial line; used if imu.source is \"xsens\"."},
     {"imu.iio",
-     "An IMU with a kernel driver (industrial I/O), accelerometer and gyro in one device; used if imu.source "
+     "An IMU with a kernel driver (industrial I/O), accelerometer and gyro in one device or in two; used if "
+     "imu.source "
      "is "
      "\"iio\"."},
     {"barometer", "The robot's barometer. A replay takes its samples and mount from the recording."},
@@ -52,6 +53,7 @@ constexpr auto kDocs = std::to_array<Doc>({
     {"base_barometer.compensation",
      "Calibration of the first base station's barometer; keys as in barometer.compensation."},
     {"input", "UDP socket on which a live run receives samples of IMU, barometers and wheels."},
+    {"pps", "A pulse a second at a GPIO line of this machine, against which the system clock is measured."},
     {"output", "Files and clouds that a live run writes."},
     {"black_box",
      "The last minute of all inputs, kept in memory. Saved as a recording on `isobar blackbox save`, on "

@@ -88,6 +88,21 @@ void add_input(InputSettings& input, std::vector<Setting>& settings) {
       "never heard is \"none\", and a height that drifts with the weather is no warning.");
 }
 
+void add_pps(pps::Settings& pps, std::vector<Setting>& settings) {
+  SectionBuilder s("pps", UsedBy::kEveryRole, settings);
+  s.text("chip", pps.chip, TextRule::kAny,
+         "GPIO chip of the line with the pulse. isobard needs the right to open it.");
+  s.number("line", &pps.line, "", -1, 511,
+           "Line of the chip on which a receiver (GNSS, PTP clock) raises a pulse at every whole second. The "
+           "kernel "
+           "stamps its edges; the offset of the system clock, the jitter and missing pulses are in the entry "
+           "pps of "
+           "the health report. The clock itself is set by chrony. -1: no such line.");
+  s.number("max_offset_ms", &pps.max_offset_ms, "ms", 0.001, 500.0,
+           "Offset of the system clock against the second beyond which pps is a warning. 1: a hundredth of a "
+           "scan at 10 Hz, and more than chrony leaves with any pulse.");
+}
+
 void add_output(OutputSettings& output, std::vector<Setting>& settings) {
   SectionBuilder s("output", UsedBy::kRobot, settings);
   s.text("directory", output.directory, TextRule::kAny,
@@ -105,6 +120,7 @@ void add_output(OutputSettings& output, std::vector<Setting>& settings) {
 
 void add_service_settings(Config& config, std::vector<Setting>& settings) {
   add_input(config.input, settings);
+  add_pps(config.pps, settings);
   add_output(config.output, settings);
   SectionBuilder realtime("realtime", UsedBy::kRobot, settings);
   add_scheduling(config.realtime, realtime);

@@ -10,6 +10,7 @@
 #include "daemon/input_health.hpp"
 #include "daemon/level_changes.hpp"
 #include "daemon/logging.hpp"
+#include "daemon/pulse_supervisor.hpp"
 #include "daemon/realtime.hpp"
 #include "daemon/report_schedule.hpp"
 #include "daemon/waiting_log.hpp"
@@ -39,6 +40,8 @@ void supervise(Graph& graph, Service& service, Configuration& configuration,
     report.system_clock_ahead_ns = system_clock.ahead_ns();
     add_system_clock(report, system_clock, now_ns);
   });
+  PulseSupervisor pulses(configuration.config().pps);
+  graph.add_health([&pulses](std::int64_t /*now_ns*/, ipc::HealthReport& report) { pulses.fill(report); });
   HealthReporter reporter(graph, std::move(realtime_refusals));
   ReportSchedule schedule;
   LevelChanges known;
@@ -48,7 +51,9 @@ void supervise(Graph& graph, Service& service, Configuration& configuration,
   service.supervise(
       [&] {
         const std::int64_t now_ns = RobotClock::now_ns();
-        if (const std::int64_t step_ns = system_clock.note(read_clocks()); step_ns != 0) {
+        const ClockPair clocks = read_clocks();
+        pulses.poll(clocks);
+        if (const std::int64_t step_ns = system_clock.note(clocks); step_ns != 0) {
           spdlog::warn("{}", step_text(step_ns));
         }
         configuration.poll(graph, service);

@@ -64,6 +64,9 @@ void HealthMonitor::fill_lidar(const StatusSnapshot& now, double elapsed_s, Heal
     add_entry(report, "lidar/model", HealthLevel::kError, now.lidar.wrong_model_message.data(),
               static_cast<double>(counters.wrong_model));
   }
+  if (now.lidar.contradiction != nullptr) {
+    add_entry(report, "lidar/mode", HealthLevel::kWarning, now.lidar.contradiction, 0.0);
+  }
   add_count(report, "lidar/packets_lost", counters.lost, before.lost,
             "packets lost, by the gaps in the sensor's time");
   add_count(report, "lidar/garbage", counters.garbage + counters.truncated + counters.oversized,

@@ -131,6 +131,7 @@ void LidarThread::report() noexcept {
   draft_status_.counters = assembler_.counters();
   draft_status_.sender = sender_.status();
   draft_status_.clock_jumped_ns = assembler_.clock_jumped_ns();
+  draft_status_.contradiction = assembler_.decoder().contradiction();
   draft_status_.sync = assembler_.decoder().sync();
   draft_status_.sensor_stamps = assembler_.sensor_stamps();
   draft_status_.punctuality = deadline_.status();

@@ -40,6 +40,7 @@ struct LidarStatus {
   LidarSync sync = LidarSync::kUnknown;      ///< state of the lidar's clock
   bool sensor_stamps = false;                ///< the last scan was stamped by that clock
   DeadlineStatus punctuality;                ///< from the end of a scan to its publication
+  const char* contradiction = nullptr;       ///< see LidarDecoder::contradiction()
   /// Names the configured and the received model; empty while all packets are of the configured one.
   std::array<char, 120> wrong_model_message{};
 };

@@ -122,6 +122,9 @@ void add_what_was_found(const recording::RecordingReader& reader, const ScanAsse
     out.silent_lidar = "no lidar scan could be decoded: " + silent_lidar_text(reader, assembler);
     return;
   }
+  if (const char* text = assembler.decoder().contradiction(); reader.manifest().lidar && text != nullptr) {
+    out.warnings.emplace_back(std::string("lidar: ") + text);
+  }
   for (const recording::Count& count : out.counts) {
     const bool note = count.name == "lidar: file truncated" || count.name == "clock of the recording set";
     if (note) out.notes.push_back(count.first_message);

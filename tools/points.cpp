@@ -98,6 +98,7 @@ void print(const ScanAssembler& assembler, const recording::PcapPackets::Tallies
   print_count("for another port", tallies.other_port.count);
   print_count("cut by the capture", tallies.cut.count);
   std::printf("  clock: %s\n", kLidarSyncTexts.name(assembler.decoder().sync()).data());
+  if (const char* text = assembler.decoder().contradiction(); text != nullptr) std::printf("  %s\n", text);
   if (counters.wrong_model > 0) std::printf("  %s\n", assembler.decoder().mismatch().c_str());
 }
 

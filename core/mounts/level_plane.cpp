@@ -29,8 +29,7 @@ constexpr double kFirstBandM = 0.12;
 // density at all heights.
 constexpr int kLeastPoints = 80;
 constexpr double kLeastContrast = 3.0;
-// Least number of lasers with a share of the points: one laser on walls around the robot draws a level line as well.
-constexpr int kLeastRings = 4;
+// Share of the points from which on a laser counts for kLeastLevelRings.
 constexpr double kLeastRingShare = 0.05;
 // Scale of the robust weights (Cauchy) [m]. Noise of a point across the plane [m]; of neighbouring points this share is independent.
 constexpr double kRobustM = 0.02;
@@ -100,7 +99,7 @@ std::optional<LevelPlane> fit_plane(std::span<const LevelPoint> p_level, double 
   const Fit fit = collect(p_level, plane, kRadiiM.back(), kBandM);
   // The bands beside have twice the width.
   const bool stands_out = fit.in_band >= kLeastContrast * 0.5 * fit.beside;
-  if (fit.in_band < kLeastPoints || !stands_out || rings_of(fit) < kLeastRings ||
+  if (fit.in_band < kLeastPoints || !stands_out || rings_of(fit) < kLeastLevelRings ||
       plane.slope_and_height_m.head<2>().norm() > kSteepestRad) {
     return std::nullopt;
   }

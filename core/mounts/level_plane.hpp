@@ -22,6 +22,9 @@ struct LevelPlane {
     return p_level.z() - slope_and_height_m.dot(Eigen::Vector3d(p_level.x(), p_level.y(), 1.0));
   }
 };
+/// Least number of lasers with a share of a plane's points: one laser on walls around the robot draws a level line as well.
+inline constexpr int kLeastLevelRings = 4;
+
 using LevelPlanes = std::array<std::optional<LevelPlane>, 2>;
 
 /// Two planes at least a metre apart, usually floor and ceiling, the one with more points first.

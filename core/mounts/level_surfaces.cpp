@@ -4,6 +4,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <bitset>
+#include <cmath>
 
 #include "core/geometry.hpp"
 #include "core/mounts/level_plane.hpp"
@@ -26,6 +28,15 @@ constexpr double kVerifiedRad2 = squared(0.6 * kRadPerDeg);
 constexpr double kAnyFloorRad2 = squared(2.0 * kRadPerDeg);
 // Variance of a direction about which surfaces say something [rad^2].
 constexpr double kToldRad2 = squared(0.7 * kRadPerDeg);
+
+// Steps of 1 deg at the horizon, growing to 17 deg: a floor seen from 4 m on has four of them, a ceiling above as well, and
+// one laser by a mount that is off by 1 deg has three.
+std::uint8_t elevation_step(float elevation_rad) {
+  constexpr float kLinearRad = static_cast<float>(3.0 * kRadPerDeg);
+  constexpr float kSteps = 3.0F;
+  constexpr float kHorizon = 128.0F;
+  return static_cast<std::uint8_t>(kHorizon + std::round(kSteps * std::asinh(elevation_rad / kLinearRad)));
+}
 
 bool agree(const TiltEvidence& a, const TiltEvidence& b) {
   const Eigen::Vector2d difference = a.tilt_rad - b.tilt_rad;
@@ -72,7 +83,8 @@ std::optional<TiltEvidence> building(const TiltEvidence& walls, const LevelPlane
 
 }  // namespace
 
-LevelSurfaces::LevelSurfaces() {
+LevelSurfaces::LevelSurfaces(const Eigen::Vector3d& p_base_lidar_m)
+    : p_base_lidar_m_(p_base_lidar_m.cast<float>()) {
   p_base_.reserve(kMostPoints);
   p_level_.reserve(kMostPoints);
 }
@@ -84,8 +96,20 @@ void LevelSurfaces::add(std::span<const ScanPoint> p_base) {
   }
 }
 
+// A lidar without lasers one above the other (non-repetitive scans) has one ring or few: steps of elevation stand in for them.
+void LevelSurfaces::tell_rings_by_elevation() {
+  std::bitset<256> rings;
+  for (const LevelPoint& point : p_base_) rings.set(point.ring);
+  if (rings.count() >= static_cast<std::size_t>(kLeastLevelRings)) return;
+  for (LevelPoint& point : p_base_) {
+    const Eigen::Vector3f ray_m = point.p_m - p_base_lidar_m_;
+    point.ring = elevation_step(std::atan2(ray_m.z(), ray_m.head<2>().norm()));
+  }
+}
+
 std::optional<LevelEvidence> LevelSurfaces::find(const Eigen::Vector3d& up_by_gravity,
                                                  double gravity_variance_rad2) {
+  tell_rings_by_elevation();
   const auto q_level_base = Eigen::Quaterniond::FromTwoVectors(up_by_gravity, Eigen::Vector3d::UnitZ());
   const Eigen::Matrix3d R_level_base = q_level_base.toRotationMatrix();
   const Eigen::Matrix3f rotation = R_level_base.cast<float>();

@@ -21,7 +21,8 @@ namespace isobar {
 /// z = c - a x - b y says both.
 class LevelSurfaces {
  public:
-  LevelSurfaces();
+  /// @param p_base_lidar_m position of the lidar
+  explicit LevelSurfaces(const Eigen::Vector3d& p_base_lidar_m = Eigen::Vector3d::Zero());
 
   /// Begins a new halt.
   void clear() { p_base_.clear(); }
@@ -36,6 +37,9 @@ class LevelSurfaces {
   std::optional<LevelEvidence> find(const Eigen::Vector3d& up_by_gravity, double gravity_variance_rad2);
 
  private:
+  void tell_rings_by_elevation();
+
+  Eigen::Vector3f p_base_lidar_m_;
   std::vector<LevelPoint> p_base_;
   std::vector<LevelPoint> p_level_;  // z axis along gravity
   WallPatches walls_;

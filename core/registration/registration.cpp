@@ -38,6 +38,7 @@ Registration::Registration(const RegistrationConfig& config, Method method,
       state_(config, Eigen::Quaterniond(T_base_lidar.linear())),
       deskewer_(T_base_lidar, config.min_range_m, config.max_range_m),
       sampler_(config.map_voxel_m, config.sample_points),
+      level_(T_base_lidar.translation()),
       matcher_(config, T_base_lidar.translation()) {
   state_.last.method = method;
 }

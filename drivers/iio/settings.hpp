@@ -19,6 +19,9 @@ struct ImuBufferSettings {
   std::string device;   ///< "/dev/iio:device0"; empty: in /dev, named as the folder
   std::string trigger;  ///< name of the trigger of the buffer; empty: the driver's own
   int rate_hz = 200;    ///< one that the device offers
+  std::string accel_folder =
+      {};  ///< of the accelerometer where it is a device of its own; empty: the same device
+  std::string accel_device = {};  ///< as `device`, of that one
 };
 
 /// Location and span of a Setra 278 behind a converter.

@@ -124,6 +124,8 @@ class LidarDecoder {
   /// What the last refused packets were, and what was expected: "packets of HDL-32E (product id 0x21), but VLP-16
   /// is configured".
   [[nodiscard]] virtual std::string mismatch() const = 0;
+  /// What good packets say against each other, a sentence with its remedy; static, nullptr: nothing.
+  [[nodiscard]] virtual const char* contradiction() const { return nullptr; }
   /// State of the sensor's clock.
   [[nodiscard]] virtual LidarSync sync() const { return LidarSync::kUnknown; }
   /// Takes a sample of the sensor's own IMU out of the last packet that read() took; its stamp is the

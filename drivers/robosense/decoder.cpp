@@ -14,6 +14,9 @@ namespace {
 /// Larger azimuth steps between blocks are gaps of a restricted field of view, not rotation [0.01 deg].
 constexpr std::uint32_t kMaxBlockStep = 1'000;
 
+/// Packets in a row at another pace than the return mode's that are certain: 0.13 s.
+constexpr int kCertainPackets = 100;
+
 AngleTable nominal_angles(const ModelTraits& traits) {
   AngleTable table;
   for (std::size_t i = 0; i < static_cast<std::size_t>(traits.lasers); ++i) {
@@ -126,11 +129,23 @@ void Decoder::follow_pace(std::int64_t device_ns) {
   const std::int64_t one_ns = traits_.cycle_ns;
   if (gap_ns > one_ns * 9 / 10 && gap_ns < one_ns * 11 / 10) block_ns_ = one_ns;
   if (gap_ns > one_ns * 18 / 10 && gap_ns < one_ns * 22 / 10) block_ns_ = 2 * one_ns;
+  if (!knows_mode_ || traits_.lasers == kChannels) return;
+  const bool as_told = block_ns_ == (dual_ ? one_ns : 2 * one_ns);
+  packets_against_mode_ = as_told ? 0 : std::min(packets_against_mode_ + 1, kCertainPackets);
+}
+
+const char* Decoder::contradiction() const {
+  if (packets_against_mode_ < kCertainPackets) return nullptr;
+  return dual_ ? "it sends half the packets of the dual return that its device information names: half of "
+                 "them lost?"
+               : "it sends twice the packets of the single return that its device information names: set its "
+                 "return mode again";
 }
 
 void Decoder::read_device_information(std::span<const std::uint8_t> payload) {
   const DeviceInformation information = read_device_information_of(traits_, payload);
   dual_ = information.dual;
+  knows_mode_ = true;
   sync_ = information.sync;
   if (keeps_angles_) return;
   if (const std::string rule = broken_rule(information.angles, static_cast<std::size_t>(traits_.lasers));

@@ -31,6 +31,8 @@ class Decoder final : public LidarDecoder {
   [[nodiscard]] std::uint32_t points_per_column() const override { return kChannels; }
   [[nodiscard]] std::size_t longest_packet() const override { return kPacketBytes; }
   [[nodiscard]] std::string mismatch() const override { return mismatch_; }
+  /// Pace of the packets against the return mode of the device information.
+  [[nodiscard]] const char* contradiction() const override;
   [[nodiscard]] LidarSync sync() const override { return sync_; }
   /// Whether the sensor's own angles are known.
   [[nodiscard]] bool has_own_angles() const { return has_own_angles_; }
@@ -63,7 +65,9 @@ class Decoder final : public LidarDecoder {
   bool keeps_angles_ = false;  // those of a file
   bool has_own_angles_ = false;
   bool dual_ = false;
-  std::int64_t block_ns_;  // from block to block
+  bool knows_mode_ = false;
+  int packets_against_mode_ = 0;  // in a row
+  std::int64_t block_ns_;         // from block to block
   std::int64_t last_ns_ = 0;
   std::string mismatch_;
   LidarSync sync_ = LidarSync::kUnknown;

@@ -76,11 +76,11 @@ PacketSize measure_packet(std::span<const std::uint8_t> bytes) noexcept {
     known = fields != 0 && (fields & kMoreFields) == 0 && add_fields(group, fields, kFields, payload);
     at += 2;
   }
+  size.header_bytes = at;
   if (!known) {
     size.form = PacketForm::kNone;
     return size;
   }
-  size.header_bytes = at;
   size.bytes = at + payload + kCrcBytes;
   if (bytes.size() < size.bytes) return size;
   const bool holds = crc16(bytes.subspan(1, size.bytes - 1)) == 0;

@@ -28,11 +28,11 @@ enum class PacketForm : std::uint8_t {
 struct PacketSize {
   PacketForm form = PacketForm::kNone;
   std::size_t header_bytes = 0;  ///< sync, groups, fields
-  std::size_t bytes = 0;         ///< whole packet with CRC; 0 while the header is incomplete
+  std::size_t bytes = 0;  ///< whole packet with CRC; 0 while the header is incomplete, or of no known form
 };
 
 /// Form of what starts at the first byte. Fields of groups 1 to 7 whose length is fixed are known; a packet
-/// with any other field has none.
+/// with any other field has none; its header_bytes are those up to the group with that field.
 [[nodiscard]] PacketSize measure_packet(std::span<const std::uint8_t> bytes) noexcept;
 
 /// Bytes of a field of a whole packet; empty: the packet does not have it.

@@ -38,40 +38,42 @@ Bytes either(Bytes packet, Group group, int bit, Group other_group, int other_bi
   return bytes.empty() ? field(packet, other_group, other_bit) : bytes;
 }
 
-/// Increments over an interval: seconds, degrees, m/s.
-void read_increments(double interval_s, const Eigen::Vector3d& turn_deg, const Eigen::Vector3d& velocity_m_s,
-                     InertialReading& reading) {
-  if (!(interval_s > 0.0)) return;
-  reading.imu.gyro_rad_s = turn_deg * kRadiansPerDegree / interval_s;
-  reading.imu.accel_m_s2 = velocity_m_s / interval_s;
-  reading.has_imu = true;
+/// Increments over an interval [s] to what the other fields did not give: degrees to rad/s, m/s to m/s^2.
+struct Increments {
+  double interval_s = 0.0;
+  Bytes turn_deg, velocity_m_s;
+};
+
+Increments increments_of(Bytes packet) {
+  if (const Bytes both = field(packet, Group::kCommon, 11); !both.empty()) {
+    return {float_at(both, 0), both.subspan(4, 12), both.subspan(16, 12)};
+  }
+  const Bytes turn = field(packet, Group::kImu, 6);
+  if (turn.empty()) return {};  // the interval stands with the turn
+  return {float_at(turn, 0), turn.subspan(4, 12), field(packet, Group::kImu, 7)};
 }
 
-void read_inertial(Bytes packet, InertialReading& reading) {
+Inertial inertial_of(Bytes packet) {
+  Inertial inertial;
   if (const Bytes both = field(packet, Group::kCommon, 9); !both.empty()) {
-    reading.imu.accel_m_s2 = vector_at(both, 0);
-    reading.imu.gyro_rad_s = vector_at(both, 12);
-    reading.has_imu = true;
-    return;
+    inertial = {vector_at(both, 0), vector_at(both, 12)};
+    return inertial;
   }
   Bytes accel = field(packet, Group::kImu, 2);
   Bytes gyro = field(packet, Group::kImu, 3);
   if (accel.empty()) accel = either(packet, Group::kCommon, 8, Group::kImu, 9);
   if (gyro.empty()) gyro = either(packet, Group::kCommon, 5, Group::kImu, 10);
-  if (!accel.empty() && !gyro.empty()) {
-    reading.imu.accel_m_s2 = vector_at(accel, 0);
-    reading.imu.gyro_rad_s = vector_at(gyro, 0);
-    reading.has_imu = true;
-    return;
+  if (!accel.empty()) inertial.accel_m_s2 = vector_at(accel, 0);
+  if (!gyro.empty()) inertial.gyro_rad_s = vector_at(gyro, 0);
+  const Increments increments = increments_of(packet);
+  if (!(increments.interval_s > 0.0)) return inertial;
+  if (accel.empty() && !increments.velocity_m_s.empty()) {
+    inertial.accel_m_s2 = vector_at(increments.velocity_m_s, 0) / increments.interval_s;
   }
-  const Bytes increments = field(packet, Group::kCommon, 11);
-  const Bytes turn = field(packet, Group::kImu, 6);
-  const Bytes velocity = field(packet, Group::kImu, 7);
-  if (!increments.empty()) {
-    read_increments(float_at(increments, 0), vector_at(increments, 4), vector_at(increments, 16), reading);
-  } else if (!turn.empty() && !velocity.empty()) {
-    read_increments(float_at(turn, 0), vector_at(turn, 4), vector_at(velocity, 0), reading);
+  if (gyro.empty() && !increments.turn_deg.empty()) {
+    inertial.gyro_rad_s = vector_at(increments.turn_deg, 0) * kRadiansPerDegree / increments.interval_s;
   }
+  return inertial;
 }
 
 void read_attitude(Bytes packet, ImuSample& imu) {
@@ -86,8 +88,7 @@ void read_attitude(Bytes packet, ImuSample& imu) {
   } else {
     return;
   }
-  imu.has_attitude = kPlausibleQuaternionNorm.holds(q_ned_imu.norm());
-  if (imu.has_attitude) imu.q_world_imu = to_world_z_up(q_ned_imu.normalized());
+  set_attitude(q_ned_imu, imu);
 }
 
 void read_pressure(Bytes packet, InertialReading& reading) {
@@ -98,12 +99,9 @@ void read_pressure(Bytes packet, InertialReading& reading) {
     pressure = magnet.subspan(16, 4);
   }
   if (pressure.empty()) return;
-  reading.has_pressure = true;
-  reading.pressure.pressure_pa = float_at(pressure, 0) * kPascalsPerKilopascal;
-  const double temperature_c =
-      temperature.empty() ? std::numeric_limits<double>::quiet_NaN() : float_at(temperature, 0);
-  reading.pressure.temperature_c =
-      kPlausibleTemperatureC.holds(temperature_c) ? temperature_c : std::numeric_limits<double>::quiet_NaN();
+  set_pressure(float_at(pressure, 0),
+               temperature.empty() ? std::numeric_limits<double>::quiet_NaN() : float_at(temperature, 0),
+               reading);
 }
 
 }  // namespace
@@ -120,6 +118,27 @@ Eigen::Quaterniond from_yaw_pitch_roll(const Eigen::Vector3d& ypr_deg) noexcept 
          Eigen::AngleAxisd(angles_rad[2], Eigen::Vector3d::UnitX());
 }
 
+void set_attitude(const Eigen::Quaterniond& q_ned_imu, ImuSample& imu) noexcept {
+  imu.has_attitude = kPlausibleQuaternionNorm.holds(q_ned_imu.norm());
+  if (imu.has_attitude) imu.q_world_imu = to_world_z_up(q_ned_imu.normalized());
+}
+
+void set_pressure(double pressure_kpa, double temperature_c, InertialReading& reading) noexcept {
+  reading.has_pressure = true;
+  reading.pressure.pressure_pa = pressure_kpa * kPascalsPerKilopascal;
+  reading.pressure.temperature_c =
+      kPlausibleTemperatureC.holds(temperature_c) ? temperature_c : std::numeric_limits<double>::quiet_NaN();
+}
+
+void Inertial::put_into(Measurement& result) const noexcept {
+  result.has_accel = accel_m_s2.has_value();
+  result.has_gyro = gyro_rad_s.has_value();
+  result.reading.has_imu = result.has_accel && result.has_gyro;
+  if (!result.reading.has_imu) return;
+  result.reading.imu.accel_m_s2 = *accel_m_s2;
+  result.reading.imu.gyro_rad_s = *gyro_rad_s;
+}
+
 Measurement read_packet(Bytes packet) noexcept {
   Measurement result;
   if (const Bytes time = either(packet, Group::kCommon, 0, Group::kTime, 0); !time.empty()) {
@@ -127,7 +146,7 @@ Measurement read_packet(Bytes packet) noexcept {
     result.has_time = time_ns < std::uint64_t{1} << 62U;
     if (result.has_time) result.time_startup_ns = static_cast<std::int64_t>(time_ns);
   }
-  read_inertial(packet, result.reading);
+  inertial_of(packet).put_into(result);
   if (result.reading.has_imu) read_attitude(packet, result.reading.imu);
   read_pressure(packet, result.reading);
   return result;

@@ -6,6 +6,7 @@
 
 #include "drivers/vn100/measurement.hpp"
 #include "drivers/vn100/text_line.hpp"
+#include "drivers/vn100/text_measurement.hpp"
 
 namespace isobar::vn100 {
 
@@ -32,6 +33,23 @@ std::vector<std::uint8_t> header_of(const Settings& settings) {
           static_cast<std::uint8_t>(kImuFields >> 8U)};
 }
 
+/// A header in base 16, cut behind four groups.
+using Name = std::array<char, 21>;
+
+/// The header in base 16, "FA0510003000": it says the groups and fields of a packet.
+Name header_name(std::span<const std::uint8_t> header) {
+  Name name{};
+  for (std::size_t i = 0; i < header.size() && 2 * i + 2 < name.size(); ++i) {
+    std::snprintf(&name.at(2 * i), name.size() - 2 * i, "%02X", unsigned{header[i]});
+  }
+  return name;
+}
+
+const char* lacking(const Measurement& measurement) {
+  if (measurement.has_accel) return "angular rate";
+  return measurement.has_gyro ? "acceleration with gravity" : "acceleration and angular rate";
+}
+
 }  // namespace
 
 Protocol::Protocol(const Settings& settings) : configure_(settings.configure) {
@@ -54,8 +72,9 @@ void Protocol::add_commands(int number, const std::string& name, const std::stri
 void Protocol::restart() noexcept {
   parser_.restart();
   done_ = 0;
-  heard_text_ = false;
-  heard_other_packets_ = false;
+  measured_ = false;
+  packets_measure_ = false;
+  heard_[0] = '\0';
 }
 
 std::span<const std::uint8_t> Protocol::command() const noexcept {
@@ -71,6 +90,7 @@ const char* Protocol::command_name() const noexcept {
 serial::ImuEvent Protocol::next() noexcept {
   serial::ImuEvent event;
   const Frame frame = parser_.next();
+  note_unknown_packets();
   if (frame.kind == Frame::Kind::kNone) return event;
   event.kind = serial::ImuEvent::Kind::kOther;
   event.bytes_on_line = frame.bytes_on_line;
@@ -86,12 +106,20 @@ void Protocol::take_packet(const Frame& frame, serial::ImuEvent& event) noexcept
   if (done_ < commands_.size()) return;
   const bool wanted = frame.bytes.size() > wanted_header_.size() &&
                       std::equal(wanted_header_.begin(), wanted_header_.end(), frame.bytes.begin());
-  const Measurement measurement = wanted ? read_packet(frame.bytes) : Measurement{};
-  if (!measurement.reading.has_imu && !measurement.reading.has_pressure) {
-    heard_other_packets_ = true;
+  if (!wanted) {
+    std::snprintf(heard_.data(), heard_.size(), "it sends packets of another output than the one set up");
     return;
   }
-  if (!measurement.reading.has_imu) heard_other_packets_ = true;
+  const Measurement measurement = read_packet(frame.bytes);
+  if (!measurement.reading.has_imu) {
+    const Name header = header_name(frame.bytes.first(measure_packet(frame.bytes).header_bytes));
+    std::array<char, 29> name{};
+    std::snprintf(name.data(), name.size(), "packets %s", header.data());
+    note_incomplete(name.data(), measurement);
+  }
+  packets_measure_ = packets_measure_ || measurement.reading.has_imu;
+  measured_ = measured_ || measurement.reading.has_imu;
+  if (!measurement.reading.has_imu && !measurement.reading.has_pressure) return;
   event.kind = serial::ImuEvent::Kind::kReading;
   event.reading = measurement.reading;
   event.has_device_time = measurement.has_time;
@@ -99,18 +127,55 @@ void Protocol::take_packet(const Frame& frame, serial::ImuEvent& event) noexcept
 }
 
 void Protocol::take_line(const Frame& frame, serial::ImuEvent& event) noexcept {
-  if (done_ >= commands_.size()) heard_text_ = true;
+  if (done_ < commands_.size()) {
+    take_answer(frame, event);
+  } else if (!configure_) {
+    take_text(frame, event);
+  }
+  const std::optional<Answer> answer = parse_answer(frame.text());
+  if (answer && answer->kind == "ERR") event.complaint = error_words(answer->number);
+}
+
+void Protocol::take_text(const Frame& frame, serial::ImuEvent& event) noexcept {
+  const std::optional<TextMeasurement> text = read_text(frame.text());
+  if (!text) {
+    if (heard_[0] == '\0') std::snprintf(heard_.data(), heard_.size(), "it sends text without measurements");
+    return;
+  }
+  const InertialReading& reading = text->measurement.reading;
+  if (!reading.has_imu) {
+    std::array<char, 8> name{};
+    std::snprintf(name.data(), name.size(), "$%.5s", text->header.data());
+    note_incomplete(name.data(), text->measurement);
+  }
+  if (packets_measure_ || (!reading.has_imu && !reading.has_pressure)) return;
+  measured_ = measured_ || reading.has_imu;
+  event.kind = serial::ImuEvent::Kind::kReading;
+  event.reading = reading;
+}
+
+void Protocol::note_incomplete(const char* name, const Measurement& measurement) noexcept {
+  std::snprintf(heard_.data(), heard_.size(), "%.28s: no %.29s; configure = true, or output Imu", name,
+                lacking(measurement));
+}
+
+void Protocol::note_unknown_packets() noexcept {
+  constexpr int kCertain = 8;  // a false sync byte within other data does not repeat its header
+  if (heard_[0] != '\0' || parser_.unknown_headers() < kCertain) return;
+  std::snprintf(heard_.data(), heard_.size(), "packets %s have fields of unknown length; configure = true",
+                header_name(parser_.unknown_header()).data());
+}
+
+void Protocol::take_answer(const Frame& frame, serial::ImuEvent& event) noexcept {
   const std::optional<Answer> answer = parse_answer(frame.text());
   if (!answer) return;
   if (answer->kind == "ERR") {
-    event.complaint = error_words(answer->number);
-    if (done_ >= commands_.size() || !is_refusal(answer->number)) return;
+    if (!is_refusal(answer->number)) return;
     std::snprintf(refusal_.data(), refusal_.size(), "refuses %s: error %d, %s", command_name(),
                   answer->number, error_words(answer->number));
     event.kind = serial::ImuEvent::Kind::kRefusal;
     return;
   }
-  if (done_ >= commands_.size()) return;
   const Command& command = commands_[done_];
   if (answer->kind != command.kind || answer->number != command.number) return;
   if (begins_with_numbers(answer->values, command.values)) {
@@ -125,10 +190,8 @@ void Protocol::take_line(const Frame& frame, serial::ImuEvent& event) noexcept {
 }
 
 const char* Protocol::heard_instead() const noexcept {
-  if (heard_other_packets_)
-    return "it sends packets without acceleration and angular rate, or of another output";
-  if (heard_text_) return "it sends text, no binary output";
-  return nullptr;
+  // Messages of other outputs come between good ones: only what comes alone is told.
+  return heard_[0] != '\0' && !measured_ ? heard_.data() : nullptr;
 }
 
 }  // namespace isobar::vn100

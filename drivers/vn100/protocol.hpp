@@ -6,13 +6,16 @@
 #include <vector>
 
 #include "drivers/serial/imu_protocol.hpp"
+#include "drivers/vn100/measurement.hpp"
 #include "drivers/vn100/settings.hpp"
 #include "drivers/vn100/stream_parser.hpp"
 
 namespace isobar::vn100 {
 
 /// Messages and dialogue of a VN-100: switches its text output off, sets binary output 1, and reads that
-/// register back. Then only packets of that output are taken, since others may hold the same sample again.
+/// register back. Then only packets of that output are taken, since others may hold the same sample again. Without
+/// configuration any packet that has acceleration and angular rate is taken, and text of the kind as long as no packet
+/// has them.
 class Protocol final : public serial::ImuProtocol {
  public:
   explicit Protocol(const Settings& settings);
@@ -40,6 +43,11 @@ class Protocol final : public serial::ImuProtocol {
   void add_commands(int number, const std::string& name, const std::string& values);
   void take_packet(const Frame& frame, serial::ImuEvent& event) noexcept;
   void take_line(const Frame& frame, serial::ImuEvent& event) noexcept;
+  void take_text(const Frame& frame, serial::ImuEvent& event) noexcept;
+  void take_answer(const Frame& frame, serial::ImuEvent& event) noexcept;
+  /// Notes what the message `name` lacks, and the remedy.
+  void note_incomplete(const char* name, const Measurement& measurement) noexcept;
+  void note_unknown_packets() noexcept;
 
   bool configure_;
   std::vector<Command> commands_;
@@ -47,8 +55,9 @@ class Protocol final : public serial::ImuProtocol {
   StreamParser parser_;
   std::size_t done_ = 0;  ///< commands answered
   std::array<char, 96> refusal_{};
-  bool heard_text_ = false;
-  bool heard_other_packets_ = false;
+  bool measured_ = false;         ///< since restart()
+  bool packets_measure_ = false;  ///< a packet had acceleration and angular rate
+  std::array<char, 96> heard_{};  ///< what came instead of measurements; empty: nothing
 };
 
 }  // namespace isobar::vn100

@@ -16,6 +16,7 @@ void StreamParser::restart() noexcept {
   window_.clear();
   given_up_ = false;
   header_bytes_ = 0;
+  unknown_count_ = 0;
 }
 
 void StreamParser::skip(std::size_t count) noexcept {
@@ -31,6 +32,7 @@ Frame StreamParser::next() noexcept {
       const PacketSize size = measure_packet(bytes);
       if (size.form == PacketForm::kWhole) return take_packet(size);
       if (size.form == PacketForm::kCorrupt && has_known_header(bytes)) ++counters_.corrupt;
+      if (size.form == PacketForm::kNone) note_unknown(bytes.first(size.header_bytes));
       incomplete = size.form == PacketForm::kIncomplete;
     } else if (bytes[0] == '$') {
       const LineSize size = measure_line(bytes);
@@ -50,6 +52,21 @@ Frame StreamParser::next() noexcept {
     }
   }
   return {};
+}
+
+// Vote of the majority: an equal header counts for the one that is kept, another against it.
+void StreamParser::note_unknown(std::span<const std::uint8_t> header) noexcept {
+  constexpr int kMost = 1'000;
+  if (header.size() > unknown_header_.size()) return;
+  if (std::equal(header.begin(), header.end(), unknown_header().begin(), unknown_header().end())) {
+    unknown_count_ = std::min(unknown_count_ + 1, kMost);
+  } else if (unknown_count_ > 0) {
+    --unknown_count_;
+  } else {
+    std::copy(header.begin(), header.end(), unknown_header_.begin());
+    unknown_bytes_ = header.size();
+    unknown_count_ = 1;
+  }
 }
 
 Frame StreamParser::take_packet(const PacketSize& size) noexcept {

@@ -46,7 +46,15 @@ class StreamParser {
   void restart() noexcept;
   [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
 
+  /// Header of packets whose length is unknown, and how often it came more than others of the kind: packets of such a
+  /// form repeat it, false sync bytes do not.
+  [[nodiscard]] std::span<const std::uint8_t> unknown_header() const noexcept {
+    return std::span(unknown_header_).first(unknown_bytes_);
+  }
+  [[nodiscard]] int unknown_headers() const noexcept { return unknown_count_; }
+
  private:
+  void note_unknown(std::span<const std::uint8_t> header) noexcept;
   Frame take_packet(const PacketSize& size) noexcept;
   /// Offset of a whole packet with the header of the last good one behind the first byte; 0: none.
   [[nodiscard]] std::size_t known_packet_behind() const noexcept;
@@ -57,6 +65,9 @@ class StreamParser {
   bool given_up_ = false;
   std::array<std::uint8_t, 16> header_{};  ///< of the last good packet
   std::size_t header_bytes_ = 0;
+  std::array<std::uint8_t, 16> unknown_header_{};
+  std::size_t unknown_bytes_ = 0;
+  int unknown_count_ = 0;
   Counters counters_;
 };
 

@@ -22,6 +22,7 @@ enum class Item : std::uint16_t {
   kPressure = 0x3010,
   kVelocityIncrement = 0x4010,  ///< "DeltaV"
   kAcceleration = 0x4020,
+  kFreeAcceleration = 0x4030,  ///< without gravity, in the world
   kAccelerationHighRate = 0x4040,
   kRateOfTurn = 0x8020,
   kTurnIncrement = 0x8030,  ///< "DeltaQ"

@@ -17,6 +17,7 @@ bool is_used(std::uint8_t id) {
     case Id::kGoToMeasurementAck:
     case Id::kGoToConfigAck:
     case Id::kData:
+    case Id::kLegacyData:
     case Id::kWakeUp:
     case Id::kError:
     case Id::kSetOutputAck:

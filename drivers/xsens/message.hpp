@@ -20,7 +20,8 @@ enum class Id : std::uint8_t {
   kGoToMeasurementAck = 0x11,
   kGoToConfig = 0x30,
   kGoToConfigAck = 0x31,
-  kData = 0x36,  ///< MTData2
+  kData = 0x36,        ///< MTData2
+  kLegacyData = 0x32,  ///< MTData of the MTi and MTx before 2012: data of a form that is told elsewhere
   kWakeUp = 0x3E,
   kError = 0x42,
   kSetOutput = 0xC0,  ///< SetOutputConfiguration

@@ -64,7 +64,8 @@ void Protocol::restart() noexcept {
   reader_ = SampleReader();
   stage_ = configure_ ? Stage::kGoToConfig : Stage::kDone;
   without_optional_ = false;
-  heard_other_data_ = false;
+  measured_ = false;
+  heard_[0] = '\0';
 }
 
 std::span<const std::uint8_t> Protocol::command() const noexcept {
@@ -109,6 +110,12 @@ serial::ImuEvent Protocol::next() noexcept {
     case Id::kData:
       take_data(frame, event);
       break;
+    case Id::kLegacyData:
+      if (stage_ == Stage::kDone) {
+        std::snprintf(heard_.data(), heard_.size(),
+                      "it sends MTData of old firmware: configure = true sets MTData2");
+      }
+      break;
     case Id::kError:
       take_error(frame, event);
       break;
@@ -141,7 +148,10 @@ void Protocol::answer(Stage of, Stage next, serial::ImuEvent& event) noexcept {
 void Protocol::take_data(const Frame& frame, serial::ImuEvent& event) noexcept {
   if (stage_ != Stage::kDone) return;
   const Measurement measurement = reader_.read(frame.data);
-  if (!measurement.reading.has_imu) heard_other_data_ = true;
+  measured_ = measured_ || measurement.reading.has_imu;
+  if (measurement.lacking != nullptr) {
+    std::snprintf(heard_.data(), heard_.size(), "its data lack %s", measurement.lacking);
+  }
   if (!measurement.reading.has_imu && !measurement.reading.has_pressure) return;
   event.kind = serial::ImuEvent::Kind::kReading;
   event.reading = measurement.reading;
@@ -195,7 +205,8 @@ serial::ImuEvent::Kind Protocol::check_outputs(std::span<const std::uint8_t> hel
 }
 
 const char* Protocol::heard_instead() const noexcept {
-  return heard_other_data_ ? "it sends data without acceleration and rate of turn" : nullptr;
+  // Messages of a lower rate come between good ones: only what comes alone is told.
+  return heard_[0] != '\0' && !measured_ ? heard_.data() : nullptr;
 }
 
 }  // namespace isobar::xsens

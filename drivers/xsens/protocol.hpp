@@ -59,7 +59,8 @@ class Protocol final : public serial::ImuProtocol {
   Stage stage_ = Stage::kDone;
   bool without_optional_ = false;
   std::array<char, 96> refusal_{};
-  bool heard_other_data_ = false;
+  bool measured_ = false;         ///< since restart()
+  std::array<char, 96> heard_{};  ///< what comes instead of measurements; empty: nothing
 };
 
 }  // namespace isobar::xsens

@@ -57,12 +57,33 @@ void SampleReader::take(const DataItem& item, Inertial& inertial) noexcept {
     const Eigen::Quaterniond turn(item.number(0), item.number(1), item.number(2), item.number(3));
     if (kPlausibleQuaternionNorm.holds(turn.norm())) inertial.turn_rad = log_so3(turn.normalized());
   }
+  take_time(item, inertial);
   if (!item.has_numbers(3)) return;
+  if (item.is(Item::kFreeAcceleration)) inertial.has_free_accel = true;
   if (item.is(Item::kAcceleration)) inertial.accel_m_s2 = vector_of(item);
   if (item.is(Item::kAccelerationHighRate) && !inertial.accel_m_s2) inertial.accel_m_s2 = vector_of(item);
   if (item.is(Item::kRateOfTurn)) inertial.gyro_rad_s = vector_of(item);
   if (item.is(Item::kRateOfTurnHighRate) && !inertial.gyro_rad_s) inertial.gyro_rad_s = vector_of(item);
   if (item.is(Item::kVelocityIncrement)) inertial.velocity_m_s = vector_of(item);
+}
+
+// Nanosecond (32 bits), year (16), month, day, hour, minute, second, validity (8 each).
+void SampleReader::take_time(const DataItem& item, Inertial& inertial) noexcept {
+  constexpr std::size_t kUtcBytes = 12;
+  constexpr std::uint32_t kTicksPerSecond = 10'000;
+  if (!item.is(Item::kUtcTime) || item.data.size() != kUtcBytes) return;
+  const auto nanosecond = static_cast<std::uint32_t>(item.integer(4));
+  const std::uint32_t second = (item.data[8] * 60U + item.data[9]) * 60U + item.data[10];
+  inertial.utc_ticks = second * kTicksPerSecond + nanosecond / static_cast<std::uint32_t>(kTickNs);
+}
+
+const char* SampleReader::lacking_of(const Inertial& inertial, bool interval_known) noexcept {
+  const bool increments =
+      (inertial.velocity_m_s && !inertial.accel_m_s2) || (inertial.turn_rad && !inertial.gyro_rad_s);
+  if (increments && !interval_known) return "a time (SampleTimeFine) for its increments";
+  if (inertial.accel_m_s2) return "rate of turn";
+  if (inertial.has_free_accel) return "acceleration with gravity (it has free acceleration)";
+  return inertial.gyro_rad_s ? "acceleration" : "acceleration and rate of turn";
 }
 
 void SampleReader::take_other(const DataItem& item, Measurement& result) noexcept {
@@ -103,7 +124,8 @@ Measurement SampleReader::read(std::span<const std::uint8_t> data) noexcept {
     take_other(*item, result);
   }
   std::optional<double> interval;
-  if (inertial.velocity_m_s || inertial.turn_rad) interval = interval_s(result.time);
+  if (inertial.velocity_m_s || inertial.turn_rad)
+    interval = interval_s(result.time ? result.time : inertial.utc_ticks);
   if (!inertial.accel_m_s2 && inertial.velocity_m_s && interval) {
     inertial.accel_m_s2 = *inertial.velocity_m_s / *interval;
   }
@@ -113,6 +135,8 @@ Measurement SampleReader::read(std::span<const std::uint8_t> data) noexcept {
     result.reading.has_imu = true;
     result.reading.imu.accel_m_s2 = *inertial.accel_m_s2;
     result.reading.imu.gyro_rad_s = *inertial.gyro_rad_s;
+  } else {
+    result.lacking = lacking_of(inertial, interval.has_value());
   }
   result.reading.pressure.temperature_c = temperature_c_;
   return result;

@@ -22,6 +22,8 @@ struct Measurement {
   std::optional<std::uint16_t> counter;  ///< PacketCounter
   std::optional<std::uint32_t> time;     ///< SampleTimeFine [kTickNs]
   InertialReading reading;               ///< without stamps
+  /// What it lacks of acceleration and rate of turn, in words; static, nullptr: nothing.
+  const char* lacking = nullptr;
 };
 
 /// Attitude in a world with z up; nothing: no attitude, or of a reserved form.
@@ -29,7 +31,7 @@ struct Measurement {
 
 /// MTData2 to measurements. The values stay in the sensor's own frame: x, y as printed on its housing, z up, so
 /// that accel reads (0, 0, +g) at rest and level. Rates and accelerations, else the increments of velocity and
-/// turn ("DeltaV", "DeltaQ") divided by the period of the messages that hold them.
+/// turn ("DeltaV", "DeltaQ") divided by the period of the messages that hold them, by SampleTimeFine or UTC.
 class SampleReader {
  public:
   /// @param data of a sound MTData2
@@ -39,8 +41,12 @@ class SampleReader {
   /// Accelerations and rates of a message in both forms.
   struct Inertial {
     std::optional<Eigen::Vector3d> accel_m_s2, gyro_rad_s, velocity_m_s, turn_rad;
+    bool has_free_accel = false;             ///< acceleration without gravity
+    std::optional<std::uint32_t> utc_ticks;  ///< time of day [kTickNs]
   };
+  static const char* lacking_of(const Inertial& inertial, bool interval_known) noexcept;
   static void take(const DataItem& item, Inertial& inertial) noexcept;
+  static void take_time(const DataItem& item, Inertial& inertial) noexcept;
   void take_other(const DataItem& item, Measurement& result) noexcept;
   /// Interval of one increment [s], nothing when unknown.
   std::optional<double> interval_s(std::optional<std::uint32_t> time) noexcept;

@@ -9,6 +9,7 @@
 #include "drivers/vn100/measurement.hpp"
 #include "drivers/vn100/protocol.hpp"
 #include "drivers/vn100/stream_parser.hpp"
+#include "drivers/vn100/text_measurement.hpp"
 
 namespace {
 
@@ -27,6 +28,7 @@ void read_messages(std::span<const std::uint8_t> stream, std::size_t piece) {
     for (auto frame = parser.next(); frame.kind != vn100::Frame::Kind::kNone; frame = parser.next()) {
       if (frame.bytes.empty() || frame.bytes_on_line < frame.bytes.size()) std::abort();
       if (frame.kind == vn100::Frame::Kind::kBinary) (void)vn100::read_packet(frame.bytes);
+      if (frame.kind == vn100::Frame::Kind::kText) (void)vn100::read_text(frame.text());
     }
   }
 }

@@ -98,6 +98,8 @@ void imu_seeds() {
     const auto packet = test::own_packet(static_cast<std::uint64_t>(n) * 5'000'000);
     vn100.append(packet.begin(), packet.end());
     vn100 += "$VNRRG,5,9600*65\r\n$GPRMC,000012.800,V,,,,,0.00,0.00,060180,,,N*49\r\n";
+    vn100 +=
+        "$VNMAR,+1.0684,-0.2578,+3.0649,-00.005,+00.341,-09.780,-0.000963,+0.000840,-0.000466,S0001*2D\r\n";
     const auto message =
         test::own_message(static_cast<std::uint16_t>(n), static_cast<std::uint32_t>(n) * 100, 0.25, 101'000);
     xsens.append(message.begin(), message.end());

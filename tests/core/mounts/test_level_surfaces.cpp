@@ -47,6 +47,28 @@ class Lidar {
     }
   }
 
+  /// Points all over the field of view, without rings: the scan of a Mid-360, 7 deg below the horizon to 52 above.
+  void scan_without_rings(const World& world, const Eigen::Quaterniond& q_world_lidar,
+                          LevelSurfaces& surfaces) {
+    points_.clear();
+    std::uniform_real_distribution<double> elevation_deg(-7.0, 52.0);
+    std::uniform_real_distribution<double> azimuth_deg(0.0, 360.0);
+    for (int i = 0; i < 25'000; ++i) {
+      const double elevation = elevation_deg(random_);
+      add(world, q_world_lidar, elevation, azimuth_deg(random_));
+    }
+    for (ScanPoint& point : points_) point.ring = 0;
+    surfaces.add(points_);
+  }
+  /// A single laser at the height of the horizon.
+  void scan_of_one_laser(const World& world, const Eigen::Quaterniond& q_world_lidar,
+                         LevelSurfaces& surfaces) {
+    points_.clear();
+    for (int i = 0; i < 20'000; ++i) add(world, q_world_lidar, 0.0, 0.018 * i);
+    for (ScanPoint& point : points_) point.ring = 0;
+    surfaces.add(points_);
+  }
+
  private:
   void add(const World& world, const Eigen::Quaterniond& q_world_lidar, double ring_deg, double azimuth_deg) {
     const double up = ring_deg * kRadPerDeg;
@@ -109,6 +131,34 @@ TEST_CASE("a corridor of 2.5 m tells roll and pitch by its floor and walls") {
   const auto found = found_deg(room(20.0, 1.25), mount_deg);
   REQUIRE(found);
   CHECK((*found - mount_deg.head<2>()).cwiseAbs().maxCoeff() < 0.15);
+}
+
+TEST_CASE("a lidar without rings tells the tilt by a ceiling, or by a floor alone") {
+  World hall = room(12.0, 9.0);
+  for (const bool roofed : {true, false}) {
+    if (!roofed) hall.erase(hall.begin() + 1);
+    LevelSurfaces surfaces;
+    const Eigen::Vector3d mount_deg(0.5, -0.8, 0.0);
+    Lidar().scan_without_rings(hall, exp_so3(mount_deg * kRadPerDeg), surfaces);
+    const auto level = surfaces.find(Eigen::Vector3d::UnitZ(), squared(0.1 * kRadPerDeg));
+    REQUIRE(level);
+    const Eigen::Vector3d found_deg = level->up_by_surfaces.cross(level->up_by_gravity) / kRadPerDeg;
+    CHECK((found_deg - mount_deg).head<2>().norm() < 0.15);
+  }
+}
+
+TEST_CASE("the line of one laser on walls is no floor, by a mount that is off by 1 deg as well") {
+  for (const Eigen::Vector3d& mount_deg : {Eigen::Vector3d(0.0, 0.0, 0.0), Eigen::Vector3d(0.6, 0.8, 0.0)}) {
+    LevelSurfaces surfaces;
+    World walls = room(6.0, 4.0);
+    walls.erase(walls.begin(), walls.begin() + 2);
+    const Eigen::Quaterniond q = exp_so3(mount_deg * kRadPerDeg);
+    // Walls all over, so that they are found, and the line besides.
+    Lidar lidar;
+    lidar.scan_of_one_laser(walls, q, surfaces);
+    lidar.scan_without_rings(walls, q, surfaces);
+    CHECK_FALSE(surfaces.find(Eigen::Vector3d::UnitZ(), squared(0.1 * kRadPerDeg)));
+  }
 }
 
 TEST_CASE("a ramp between plumb walls tells nothing") {

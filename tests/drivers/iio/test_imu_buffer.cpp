@@ -75,26 +75,46 @@ class Bmi160 {
   }
   void remove(const std::string& file) const { fs::remove(path(file)); }
   void send(std::int16_t gyro_z, std::int64_t time_ns) const {
-    std::array<std::int16_t, 6> values{10, -20, gyro_z, 0, 0, 4096};
+    const std::array<std::int16_t, 6> values{10, -20, gyro_z, 0, 0, 4096};
+    // Of a single sensor: three values in eight bytes, the stamp behind. The accelerometer has the last three.
+    const bool is_accel = is_single_ && !fs::exists(path("in_anglvel_scale"));
     std::array<std::uint8_t, 24> scan{};
-    std::memcpy(scan.data(), values.data(), sizeof values);
-    std::memcpy(scan.data() + 16, &time_ns, sizeof time_ns);
-    [[maybe_unused]] const ssize_t count = write(pipe_, scan.data(), scan.size());
+    if (is_single_) {
+      const std::array<std::int16_t, 3> rates{values[0], values[1], values[2]};
+      const std::array<std::int16_t, 3> accelerations{values[3], values[4], values[5]};
+      std::memcpy(scan.data(), is_accel ? accelerations.data() : rates.data(), sizeof rates);
+    } else {
+      std::memcpy(scan.data(), values.data(), sizeof values);
+    }
+    std::memcpy(scan.data() + (is_single_ ? 8 : 16), &time_ns, sizeof time_ns);
+    [[maybe_unused]] const ssize_t count = write(pipe_, scan.data(), is_single_ ? 16 : 24);
   }
   /// Sends at 200 Hz while the buffer is on.
   void serve(std::int64_t now_ns) {
     if (pipe_ < 0 || get("buffer/enable") != "1") {
-      next_ns_ = now_ns;
+      next_ns_ = now_ns + phase_ns;
       return;
     }
     for (; sends && now_ns >= next_ns_; next_ns_ += 5'000'000) send(++count_, next_ns_ - 1'000'000'000'000);
   }
   [[nodiscard]] std::string path(const std::string& file) const { return (folder_.path() / file).string(); }
   [[nodiscard]] iio::ImuBufferSettings settings() const {
-    return {folder_.path().string(), path("device"), "", 200};
+    return {folder_.path().string(), path("device"), "", 200, "", ""};
+  }
+
+  /// Leaves a device of one sensor: "anglvel" or "accel".
+  void keep_only(const std::string& kind) {
+    for (const char* axis : {"x", "y", "z"}) {
+      const std::string other = kind == "accel" ? "anglvel" : "accel";
+      for (const char* file : {"_en", "_index", "_type"})
+        remove("scan_elements/in_" + other + "_" + axis + file);
+    }
+    remove(kind == "accel" ? "in_anglvel_scale" : "in_accel_scale");
+    is_single_ = true;
   }
 
   bool sends = true;
+  std::int64_t phase_ns = 0;  ///< of its measurements, before the first
 
  private:
   void add_channel(const std::string& name, int index, const std::string& type) const {
@@ -104,6 +124,7 @@ class Bmi160 {
   }
 
   TemporaryFolder folder_;
+  bool is_single_ = false;
   int pipe_ = -1;
   std::int16_t count_ = 0;
   std::int64_t next_ns_ = 0;
@@ -163,6 +184,55 @@ TEST_CASE("an offset and a scale of one axis are used, and a missing time stamp 
   CHECK(robot.bench->samples[0].imu.accel_m_s2.x() == doctest::Approx(-96 * kAccelScale));
 }
 
+TEST_CASE("accelerometer and gyro in two devices are one IMU, whatever the phase between them") {
+  Bmi160 gyro;
+  Bmi160 accel;
+  gyro.keep_only("anglvel");
+  accel.keep_only("accel");
+  accel.phase_ns = 2'000'000;
+  iio::ImuBufferSettings settings = gyro.settings();
+  settings.accel_folder = accel.settings().folder;
+  settings.accel_device = accel.settings().device;
+  ImuBench bench(std::make_unique<iio::ImuBuffer>(settings), [&](std::int64_t now_ns) {
+    gyro.serve(now_ns);
+    accel.serve(now_ns);
+  });
+  REQUIRE(bench.run_until_state(0.5, DeviceState::kMeasuring));
+  bench.samples.clear();
+  bench.run(0.3);
+  REQUIRE(bench.samples.size() > 40);
+  CHECK(bench.samples[0].imu.accel_m_s2.z() == doctest::Approx(4096 * kAccelScale));
+  CHECK(bench.samples[0].imu.gyro_rad_s.y() == doctest::Approx(-20 * kGyroScale));
+  CHECK(bench.samples.back().imu.stamp_ns > monotonic_ns() - 50'000'000);
+  // The accelerometer alone vanishes: said at once, and both are back.
+  accel.unplug();
+  REQUIRE(bench.run_until_state(0.2, DeviceState::kNoAnswer));
+  bench.run(0.1);
+  CHECK(bench.fault() == "accelerometer: the buffer cannot be opened (No such file or directory)");
+  accel.plug();
+  CHECK(bench.run_until_state(2.0, DeviceState::kMeasuring));
+}
+
+TEST_CASE("two devices that are no gyro, no accelerometer, or without time stamps are refused by name") {
+  const auto fault_of = [](const char* main_kind, const char* other_kind, const char* removed) {
+    Bmi160 main;
+    Bmi160 other;
+    main.keep_only(main_kind);
+    other.keep_only(other_kind);
+    if (removed != nullptr) other.remove(removed);
+    iio::ImuBufferSettings settings = main.settings();
+    settings.accel_folder = other.settings().folder;
+    settings.accel_device = other.settings().device;
+    ImuBench bench(std::make_unique<iio::ImuBuffer>(settings), [](std::int64_t /*now_ns*/) {});
+    bench.run(0.02);
+    return bench.fault();
+  };
+  CHECK(fault_of("anglvel", "anglvel", nullptr) == "accelerometer: it has no accelerometer");
+  CHECK(fault_of("accel", "accel", nullptr) == "it has no gyro");
+  CHECK(fault_of("anglvel", "accel", "scan_elements/in_timestamp_type") ==
+        "two devices cannot be paired without time stamps");
+}
+
 TEST_CASE("what the device lacks is said by name") {
   const auto fault_without = [](const std::string& file) {
     Robot robot;
@@ -171,7 +241,8 @@ TEST_CASE("what the device lacks is said by name") {
     return robot.bench->fault();
   };
   CHECK(fault_without("buffer/enable") == "no such device, or it has no buffer (No such file or directory)");
-  CHECK(fault_without("scan_elements/in_accel_x_type") == "it has no accelerometer and gyro in one device");
+  CHECK(fault_without("scan_elements/in_accel_x_type") ==
+        "it has not both accelerometer and gyro: set imu.iio.accel_folder");
   CHECK(fault_without("in_accel_scale") == "it has no scale (No such file or directory)");
   CHECK(fault_without("device") == "the buffer cannot be opened (No such file or directory)");
   CHECK(fault_without("sampling_frequency") == "");  // its trigger's rate

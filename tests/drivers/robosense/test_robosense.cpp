@@ -130,6 +130,42 @@ TEST_CASE("Device information whose angles cannot be is said and leaves the angl
         "device information without usable angles: channel 4: has the elevation of channel 3");
 }
 
+TEST_CASE("A pace that is not the return mode's is said once it is certain, and no longer when it fits") {
+  robosense::Decoder decoder(kHelios16p);
+  RobosensePlan plan;
+  // A block is two firings of 55.56 us in single return, one in dual return.
+  const auto send = [&](int packets, std::int64_t packet_us) {
+    for (int i = 0; i < packets; ++i) {
+      (void)read(decoder, build_packet(plan));
+      plan.time_us += packet_us;
+    }
+  };
+  constexpr std::int64_t kSingleUs = 1'333;
+  constexpr std::int64_t kDualUs = 667;
+  constexpr std::uint8_t kDual = 0;
+  constexpr std::uint8_t kStrongest = 4;
+  PacketColumns none;
+  send(200, kDualUs);
+  CHECK(decoder.contradiction() == nullptr);  // the mode is not known
+  (void)decoder.read(build_helios_difop(kElevations, kAzimuths, kStrongest), none);
+  send(50, kDualUs);
+  CHECK(decoder.contradiction() == nullptr);
+  send(100, kDualUs);
+  REQUIRE(decoder.contradiction() != nullptr);
+  CHECK(std::string(decoder.contradiction()) ==
+        "it sends twice the packets of the single return that its device information names: set its return "
+        "mode again");
+  (void)decoder.read(build_helios_difop(kElevations, kAzimuths, kDual), none);
+  send(2, kDualUs);
+  CHECK(decoder.contradiction() == nullptr);
+  send(200, kSingleUs);
+  REQUIRE(decoder.contradiction() != nullptr);
+  CHECK(std::string(decoder.contradiction()).starts_with("it sends half the packets of the dual return"));
+  (void)decoder.read(build_helios_difop(kElevations, kAzimuths, kStrongest), none);
+  send(200, kSingleUs);
+  CHECK(decoder.contradiction() == nullptr);
+}
+
 TEST_CASE("Packets of another RoboSense, garbage and other sizes are refused by kind") {
   robosense::Decoder decoder(kHelios16p);
   PacketColumns packet;

@@ -142,10 +142,10 @@ TEST_CASE("without configuration it takes what the sensor sends, and says what e
   Robot robot(settings);
   robot.sensor->hears = false;
   robot.bench->run_until(0.5, [&] {
-    robot.sensor->terminal.send(vn100::command_line("VNYMR,1,2"));
+    robot.sensor->terminal.send(vn100::command_line("VNYPR,1,2,3"));
     return robot.bench->state() == DeviceState::kSilent;
   });
-  CHECK(robot.bench->fault() == "it sends text, no binary output");
+  CHECK(robot.bench->fault() == "$VNYPR: no acceleration and angular rate; configure = true, or output Imu");
   std::uint64_t time_ns = 0;
   float rate = 0.0F;
   robot.bench->run_until(1.0, [&] {
@@ -153,6 +153,32 @@ TEST_CASE("without configuration it takes what the sensor sends, and says what e
     return robot.bench->state() == DeviceState::kMeasuring;
   });
   CHECK(robot.bench->state() == DeviceState::kMeasuring);
+}
+
+TEST_CASE("without configuration a sensor as it comes measures by its text, stamped by the time of receipt") {
+  vn100::Settings settings;
+  settings.configure = false;
+  settings.rate_hz = 40;
+  Robot robot(settings);
+  robot.sensor->hears = false;
+  int sent = 0;
+  const std::int64_t begin_ns = monotonic_ns();
+  robot.bench->run_until(1.0, [&] {
+    const std::string turn = std::to_string(++sent);
+    robot.sensor->terminal.send(vn100::command_line(
+        "VNYMR,+006.380,+000.023,-001.953,+1.0640,-0.2531,+3.0614,+00.005,+00.344,-09.758,"
+        "-0.001222,-0.000450,-0.000" +
+        turn));
+    return robot.bench->samples.size() >= 20;
+  });
+  REQUIRE(robot.bench->samples.size() >= 20);
+  CHECK(robot.bench->state() == DeviceState::kMeasuring);
+  CHECK(robot.bench->samples[0].imu.accel_m_s2 == Eigen::Vector3d(0.005, 0.344, -9.758));
+  for (const InertialReading& reading : robot.bench->samples) {
+    // A line of 120 characters takes 10 ms.
+    CHECK(reading.imu.stamp_ns > begin_ns - 20'000'000);
+    CHECK(reading.imu.stamp_ns < monotonic_ns());
+  }
 }
 
 TEST_CASE("a rate that the line cannot carry is refused with the remedy") {

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "core/so3.hpp"
+#include "drivers/xsens/protocol.hpp"
 #include "drivers/xsens/sample_reader.hpp"
 #include "tests/drivers/xsens/message_writer.hpp"
 
@@ -51,6 +55,67 @@ TEST_CASE("increments are divided by their period, across lost messages and the 
     CHECK(result.reading.imu.accel_m_s2.z() == doctest::Approx(9.8).epsilon(1e-9));
     CHECK(result.reading.imu.gyro_rad_s.z() == doctest::Approx(2.0).epsilon(1e-9));
   }
+}
+
+TEST_CASE(
+    "increments without SampleTimeFine are divided by the period of UTC, over midnight and over seconds") {
+  const auto message = [](std::uint32_t nanosecond, int hour, int minute, int second) {
+    const auto part = [](int value) { return static_cast<std::uint8_t>(value); };
+    std::vector<std::uint8_t> utc;
+    for (int shift = 24; shift >= 0; shift -= 8)
+      utc.push_back(static_cast<std::uint8_t>(nanosecond >> shift));
+    for (const std::uint8_t byte :
+         {part(0x07), part(0xE8), part(11), part(30), part(hour), part(minute), part(second), part(7)})
+      utc.push_back(byte);
+    const Eigen::Quaterniond turn = exp_so3({0.0, 0.0, 0.02});
+    return MessageWriter()
+        .item(0x1010, utc)
+        .numbers(0x4012, {0.0, 0.0, 0.098})
+        .numbers(0x8030, {turn.w(), turn.x(), turn.y(), turn.z()})
+        .data();
+  };
+  SampleReader reader;
+  const Measurement first = reader.read(message(970'000'000, 10, 59, 59));
+  CHECK_FALSE(first.reading.has_imu);
+  CHECK(std::string(first.lacking) == "a time (SampleTimeFine) for its increments");
+  CHECK_FALSE(reader.read(message(980'000'000, 10, 59, 59)).reading.has_imu);
+  for (const auto& data :
+       {message(990'000'000, 10, 59, 59), message(0, 11, 0, 0), message(10'000'000, 11, 0, 0)}) {
+    const Measurement result = reader.read(data);
+    REQUIRE(result.reading.has_imu);
+    CHECK(result.lacking == nullptr);
+    CHECK(result.reading.imu.accel_m_s2.z() == doctest::Approx(9.8).epsilon(1e-6));
+    CHECK(result.reading.imu.gyro_rad_s.z() == doctest::Approx(2.0).epsilon(1e-6));
+  }
+  CHECK(reader.read(message(990'000'000, 23, 59, 59)).reading.has_imu);
+  CHECK(reader.read(message(0, 0, 0, 0)).reading.imu.gyro_rad_s.z() == doctest::Approx(2.0).epsilon(1e-6));
+}
+
+TEST_CASE("what a message lacks is named, free acceleration and legacy messages besides") {
+  const auto lacking = [](const MessageWriter& writer) {
+    const Measurement result = SampleReader().read(writer.data());
+    CHECK_FALSE(result.reading.has_imu);
+    REQUIRE(result.lacking != nullptr);
+    return std::string(result.lacking);
+  };
+  CHECK(lacking(MessageWriter().numbers(0x4020, {1, 2, 3})) == "rate of turn");
+  CHECK(lacking(MessageWriter().numbers(0x8043, {1, 2, 3})) == "acceleration");
+  CHECK(lacking(MessageWriter().numbers(0x4030, {1, 2, 3}).numbers(0x8020, {1, 2, 3})) ==
+        "acceleration with gravity (it has free acceleration)");
+  CHECK(lacking(MessageWriter().numbers(0x2010, {1, 0, 0, 0})) == "acceleration and rate of turn");
+
+  Settings settings;
+  settings.configure = false;
+  Protocol protocol(settings);
+  protocol.restart();
+  // MTData with a counter of samples alone: preamble, address, id, length, data, checksum.
+  const std::vector<std::uint8_t> legacy{0xFA, 0xFF, 0x32, 0x02, 0x00, 0x07, 0xC6};
+  std::copy(legacy.begin(), legacy.end(), protocol.room().begin());
+  protocol.filled(legacy.size());
+  CHECK(protocol.next().kind == serial::ImuEvent::Kind::kOther);
+  REQUIRE(protocol.heard_instead() != nullptr);
+  CHECK(std::string(protocol.heard_instead()) ==
+        "it sends MTData of old firmware: configure = true sets MTData2");
 }
 
 TEST_CASE("an attitude is in a world with z up whatever the sensor's world and form") {
