@@ -76,11 +76,8 @@ void Forwarding::stop() {
 void Forwarding::set_floors(bool are_published) {
   if (are_published == floors_.has_value()) return;
   const std::lock_guard lock(pose_mutex_);  // the pose thread reads its state
-  if (are_published) {
-    floors_.emplace(*outputs_.floors, stamp_shift_ns_);
-  } else {
-    floors_.reset();
-  }
+  if (!are_published) return floors_.reset();
+  floors_.emplace(*outputs_.floors, stamp_shift_ns_);
 }
 
 void Forwarding::configure(const dds::DdsConfig& config) {
@@ -243,11 +240,10 @@ void Forwarding::add_own_health() {
   add_count("bridge/initial_pose_refused", received.refused_hints.count, received.refused_hints.rule);
   add_count("bridge/shared_memory_faults", ipc::library_fault_count(), "errors in the iceoryx library");
   add_count("bridge/received_too_early", received.too_early, "received before isobard could take it");
-  const AddEntry add_entry = [this](const std::string& name, HealthLevel level, const std::string& message,
-                                    double number) { add(name, level, message, number); };
-  add_floor_health(floors, add_entry);
   add_input_health();
   add_station_health(received);
+  const AddEntry add_entry = [this](const auto&... entry) { add(entry...); };
+  add_floor_health(floors, add_entry);
   add_key_health(keys_.get(), add_entry);
 }
 
