@@ -119,7 +119,7 @@ void require_different(const std::array<NamedText, N>& texts, const Requirements
 }
 
 void check_topic_names(const dds::TopicNames& names, const Requirements& rules) {
-  require_different(std::array<NamedText, 12>{{
+  require_different(std::array<NamedText, 16>{{
                         {"dds.topics.odom", &names.odom},
                         {"dds.topics.pose", &names.pose},
                         {"dds.topics.altitude", &names.altitude},
@@ -127,11 +127,15 @@ void check_topic_names(const dds::TopicNames& names, const Requirements& rules) 
                         {"dds.topics.tf_static", &names.tf_static},
                         {"dds.topics.registered_scan", &names.registered_scan},
                         {"dds.topics.map_cloud", &names.map_cloud},
+                        {"dds.topics.map", &names.map},
+                        {"dds.topics.floor", &names.floor},
+                        {"dds.topics.floor_name", &names.floor_name},
                         {"dds.topics.diagnostics", &names.diagnostics},
                         {"dds.topics.points", &names.points},
                         {"dds.topics.pressure", &names.pressure},
                         {"dds.topics.imu", &names.imu},
                         {"dds.topics.wheel", &names.wheel},
+                        {"dds.topics.initial_pose", &names.initial_pose},
                     }},
                     rules);
   rules.require(names.base_temperature != names.base_pressure, "dds.topics.base_temperature",
@@ -154,13 +158,14 @@ void check_estimator(const Config& config, const Requirements& rules) {
 
 /// tf2 joins frames by their names: two frames of one name are a loop.
 void check_frames(const dds::DdsConfig& dds, const Requirements& rules) {
-  require_different(std::array<NamedText, 6>{{
+  require_different(std::array<NamedText, 7>{{
                         {"dds.map_frame", &dds.map_frame},
                         {"dds.odom_frame", &dds.odom_frame},
                         {"dds.base_frame", &dds.base_frame},
                         {"dds.lidar_frame", &dds.lidar_frame},
                         {"dds.imu_frame", &dds.imu_frame},
                         {"dds.barometer_frame", &dds.barometer_frame},
+                        {"dds.footprint_frame", &dds.footprint_frame},  // empty: no other one is
                     }},
                     rules);
 }

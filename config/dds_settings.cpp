@@ -49,11 +49,16 @@ void add_topics(dds::TopicNames& names, std::vector<Setting>& settings) {
   name("tf_static", names.tf_static, "Name of the fixed transforms, without ros_namespace.");
   name("registered_scan", names.registered_scan, "Name of the registered scan, a cloud in base_link.");
   name("map_cloud", names.map_cloud, "Name of the map's points. Not \"map\", where Nav2 expects a grid.");
+  name("map", names.map, "Name of the occupancy grid of the robot's floor. \"map\": where Nav2 expects it.");
+  name("floor", names.floor, "Name of the number of the robot's floor.");
+  name("floor_name", names.floor_name, "Name of the name of the robot's floor.");
   name("points", names.points, "Name of the lidar's clouds, received where lidar.source is \"dds\".");
   name("pressure", names.pressure,
        "Name of the robot's own air pressure, received where barometer.source is \"dds\".");
   name("imu", names.imu, "Name of the IMU's samples, received where imu.source is \"dds\".");
   name("wheel", names.wheel, "Name of the wheels' odometry, received where wheel.source is \"dds\".");
+  name("initial_pose", names.initial_pose,
+       "Name of the hints of where the robot is. \"initialpose\": where RViz and Nav2 send them.");
 }
 
 void add_input_qos(dds::InputsQos& inputs, std::vector<Setting>& settings) {
@@ -79,6 +84,11 @@ void add_input_qos(dds::InputsQos& inputs, std::vector<Setting>& settings) {
   input("wheel", inputs.wheel,
         "As points_reliability, of dds.topics.wheel. best_effort: the next sample tells the way as well.",
         "As points_depth. 10: a fifth of a second at 50 Hz.");
+  input("initial_pose", inputs.initial_pose,
+        "As points_reliability, of dds.topics.initial_pose. reliable: a hint is sent once, and RViz, "
+        "Foxglove and "
+        "Nav2 offer it.",
+        "As points_depth. 5: a person sends them.");
   input("base_pressure", inputs.base_pressure,
         "As points_reliability, of dds.topics.base_pressure and base_temperature. best_effort: isobar's own "
         "base "
@@ -94,6 +104,14 @@ void add_frames(dds::DdsConfig& dds, SectionBuilder& s) {
   s.text("odom_frame", dds.odom_frame, TextRule::kName,
          "Frame in which the pose has no jumps, named as in REP-105.");
   s.text("base_frame", dds.base_frame, TextRule::kName, "Frame of the robot, named as in REP-105.");
+  s.text("footprint_frame", dds.footprint_frame, TextRule::kNameOrEmpty,
+         "Frame on the ground under base_frame, with its yaw only, such as \"base_footprint\". /tf then has "
+         "odom to "
+         "it and it to base_frame. Empty: none, odom to base_frame.");
+  s.number(
+      "footprint_depth_m", &dds.footprint_depth_m, "m", 0.0, 10.0,
+      "Height of base_frame above the ground where that is level, for footprint_frame. 0: base_frame is on "
+      "the ground.");
   s.text("lidar_frame", dds.lidar_frame, TextRule::kName,
          "Frame of the lidar in /tf_static. Must be unique among the robot's frames.");
   s.text("imu_frame", dds.imu_frame, TextRule::kName,
@@ -127,6 +145,10 @@ void add_inputs(dds::DdsConfig& dds, SectionBuilder& s) {
          "Use the orientation in the messages of dds.topics.imu, where they hold one. false: for an IMU "
          "whose own "
          "filter is not to be trusted.");
+  s.flag(
+      "receive_initial_pose", dds.receive_initial_pose,
+      "Take hints of where the robot is from dds.topics.initial_pose. They are believed only where the scans "
+      "match.");
   s.flag("receive_base_pressure", dds.receive_base_pressure,
          "Receive the base stations' pressure over DDS. true: base stations publish it there.");
 }

@@ -91,6 +91,7 @@ void HealthMonitor::fill(const StatusSnapshot& now, HealthReport& report) {
   fill_map(now, report);
   fill_deadlines(now, report);
   fill_robot_figures(now, last_, *times_, report.status);
+  log_hint(now, last_);
   last_ = now;
 }
 

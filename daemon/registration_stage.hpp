@@ -42,6 +42,8 @@ class RegistrationStage {
   /// See Registration.
   void begin_at(std::uint32_t session, const std::optional<KnownPlace>& place);
   void begin_new_frame();
+  void hint(const PlaceHint& hint) { registration_->hint(hint); }
+  [[nodiscard]] const HintReport& hint_report() const { return registration_->hint_report(); }
   [[nodiscard]] std::uint32_t session() const { return registration_->session(); }
   [[nodiscard]] bool searching() const { return registration_->searching(); }
 

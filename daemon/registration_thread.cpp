@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "daemon/message_loop.hpp"
 #include "drivers/clock/robot_clock.hpp"
@@ -21,6 +22,23 @@ PoseSummary summary_of(const PoseEstimate& pose) noexcept {
   return summary;
 }
 
+// 1 sigma of x and y is that of the worst direction.
+PlaceHint place_hint(const ipc::PoseHint& hint) noexcept {
+  const auto variance = [&hint](std::size_t row, std::size_t column) {
+    return hint.covariance[6 * row + column];
+  };
+  const double mean = 0.5 * (variance(0, 0) + variance(1, 1));
+  const double spread = std::hypot(0.5 * (variance(0, 0) - variance(1, 1)), variance(0, 1));
+  return {.session = hint.session,
+          .p_map_m = {hint.x_m, hint.y_m},
+          .has_z = hint.has_z,
+          .z_m = hint.z_m,
+          .z_sigma_m = std::sqrt(std::max(0.0, variance(2, 2))),
+          .yaw_rad = hint.yaw_rad,
+          .sigma_m = std::sqrt(std::max(0.0, mean + spread)),
+          .sigma_rad = std::sqrt(std::max(0.0, variance(5, 5)))};
+}
+
 }  // namespace
 
 RegistrationThread::RegistrationThread(const StageSettings& stages, SnapshotExchange<MapSnapshot>& snapshots,
@@ -30,6 +48,7 @@ RegistrationThread::RegistrationThread(const StageSettings& stages, SnapshotExch
       priors_(ipc::topics::kPrior),
       scans_(ipc::topics::kLidarScan),
       commands_(ipc::topics::kCommand),
+      hints_(ipc::topics::kPoseHint),
       poses_(ipc::topics::kPose),
       registered_scans_(ipc::topics::kRegisteredScan),
       waiter_({&scans_.raw()}),
@@ -66,6 +85,7 @@ void RegistrationThread::drain() noexcept {
     deadline_.set_limit(change.deadline_ms);
   });
   obey();
+  take_hints();
   while (const auto prior = priors_.take()) stage_.add_prior(*prior);
   const std::int64_t now_ns = RobotClock::now_ns();
   bool scan_arrived = false;
@@ -92,6 +112,17 @@ void RegistrationThread::obey() noexcept {
   if (reason == NewFrameReason::kNone) return;
   stage_.begin_new_frame();
   draft_status_.session_reason = reason;
+}
+
+// Hints come through shared memory, of `isobar initial-pose` or isobar-dds. The newest counts.
+void RegistrationThread::take_hints() noexcept {
+  while (const auto hint = hints_.take()) {
+    if (ipc::implausibility(*hint) != nullptr) {
+      ++draft_status_.bad_hints;
+    } else {
+      stage_.hint(place_hint(*hint));
+    }
+  }
 }
 
 void RegistrationThread::skip_dropped() noexcept {
@@ -143,6 +174,7 @@ void RegistrationThread::report() noexcept {
   }
   draft_status_.session = session;
   draft_status_.searching = stage_.searching();
+  draft_status_.hint = stage_.hint_report();
   status_.put(draft_status_);
 }
 

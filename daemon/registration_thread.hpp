@@ -71,6 +71,8 @@ struct RegistrationStatus {
   std::int64_t lost_since_ns = 0;
   AltimeterState altimeter;  ///< adaptive method only, as the next one
   MountState mount;
+  HintReport hint;              ///< the last hint of where the robot is
+  std::uint64_t bad_hints = 0;  ///< hints that were implausible
   PoseSummary pose;
   DeadlineStatus punctuality;     ///< from the end of a scan to the publication of its pose
   std::uint64_t page_faults = 0;  ///< of this thread, after warm-up
@@ -116,6 +118,7 @@ class RegistrationThread final : private EstimateSink {
   [[nodiscard]] std::chrono::nanoseconds timeout() const noexcept;
   void drain() noexcept;
   void obey() noexcept;
+  void take_hints() noexcept;
   void skip_dropped() noexcept;
   void register_scan(const Scan& scan) noexcept;
   void bridge_silence(bool scan_arrived, std::int64_t now_ns) noexcept;
@@ -127,6 +130,7 @@ class RegistrationThread final : private EstimateSink {
   ipc::Subscriber<Prior> priors_;
   ipc::Subscriber<Scan> scans_;
   ipc::Subscriber<ipc::CommandMessage> commands_;
+  ipc::Subscriber<ipc::PoseHint> hints_;
   ipc::Publisher<PoseEstimate> poses_;
   ipc::Publisher<RegisteredScan> registered_scans_;
   ipc::Waiter waiter_;

@@ -2,7 +2,9 @@
 #include "daemon/run_health.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
+#include <cstdint>
 #include <string>
 
 #include "daemon/health_entries.hpp"
@@ -13,6 +15,9 @@ namespace {
 
 using ipc::HealthLevel;
 using ipc::HealthReport;
+
+/// Time for which a refused hint is a warning [ns].
+constexpr std::int64_t kHintShownNs = 60'000'000'000;
 
 void add_session(const StatusSnapshot& now, HealthReport& report) {
   const RegistrationStatus& registration = now.registration;
@@ -31,6 +36,30 @@ void add_session(const StatusSnapshot& now, HealthReport& report) {
   add_entry(report, "session", level, message, registration.session);
 }
 
+/// A refused hint is a warning for a while.
+HealthLevel hint_level(const HintReport& hint, std::int64_t now_ns) {
+  const bool taken = hint.outcome == HintOutcome::kFound || hint.outcome == HintOutcome::kConfirmed;
+  const bool recent = now_ns - hint.stamp_ns < kHintShownNs;
+  return hint.is_decided() && !taken && recent ? HealthLevel::kWarning : HealthLevel::kOk;
+}
+
+std::string hint_text(const HintReport& hint) {
+  std::string text(kHintOutcomeTexts.name(hint.outcome));
+  if (hint.radius_m > 0.0) text += fmt::format(" (within {:.1f} m)", hint.radius_m);
+  return text + fmt::format("; {:.1f} m from where the robot was", hint.distance_m);
+}
+
+void add_hint(const StatusSnapshot& now, HealthReport& report) {
+  const RegistrationStatus& registration = now.registration;
+  if (registration.bad_hints > 0) {
+    add_entry(report, "initial_pose/implausible", HealthLevel::kOk,
+              "hints refused: not finite, or no covariance", static_cast<double>(registration.bad_hints));
+  }
+  if (registration.hint.given == 0) return;
+  add_entry(report, "initial_pose", hint_level(registration.hint, now.now_ns), hint_text(registration.hint),
+            static_cast<double>(registration.hint.given));
+}
+
 void add_disk(const StatusSnapshot& now, HealthReport& report) {
   if (!now.output.present) return;
   const bool failing = now.output.failing || now.map.disk_failing;
@@ -42,8 +71,19 @@ void add_disk(const StatusSnapshot& now, HealthReport& report) {
 
 }  // namespace
 
+void log_hint(const StatusSnapshot& now, const StatusSnapshot& before) {
+  const HintReport& hint = now.registration.hint;
+  const HintReport& last = before.registration.hint;
+  const bool is_new = hint.is_decided() && (hint.given != last.given || !last.is_decided());
+  // The change to a warning has a line of its own.
+  const bool has_line = hint_level(hint, now.now_ns) == HealthLevel::kWarning &&
+                        hint_level(last, now.now_ns) == HealthLevel::kOk;
+  if (is_new && !has_line) spdlog::info("hint of the place: {}", hint_text(hint));
+}
+
 void add_run_entries(const StatusSnapshot& now, HealthReport& report) {
   add_session(now, report);
+  add_hint(now, report);
   add_disk(now, report);
 }
 

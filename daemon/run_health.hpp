@@ -6,7 +6,11 @@
 
 namespace isobar {
 
-/// Entries `session` (the map frame, and why it is not that of the run before) and `disk` (of the run's files).
+/// Entries `session` (the map frame, and why it is not that of the run before), `initial_pose` (what became of the last
+/// hint; its value is the number of hints) and `disk` (of the run's files).
 void add_run_entries(const StatusSnapshot& now, ipc::HealthReport& report);
+
+/// Says in the log what became of a hint, once it is known.
+void log_hint(const StatusSnapshot& now, const StatusSnapshot& before);
 
 }  // namespace isobar

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <string_view>
 
 #include "core/geometry.hpp"
 #include "core/names.hpp"
@@ -127,6 +129,16 @@ void StageTimes::add(const char* name, const DeadlineStatus& stage, std::int64_t
   if (stage.outputs > 0) figures.worst_ms = static_cast<double>(stage.worst_ns) * 1e-6;
   if (readings.empty()) readings.push_back({now_ns, LatencyHistogram{}});
   if (now_ns - readings.back().time_ns >= kStepNs) readings.push_back({now_ns, stage.times});
+}
+
+void fill_floor(const ipc::CurrentFloor& floor, ipc::FloorFigures& out) {
+  out.present = true;
+  out.known = floor.known;
+  out.number = floor.number;
+  out.certainty = floor.certainty;
+  out.z_m = floor.z_m;
+  const std::string_view name(floor.name, strnlen(floor.name, sizeof(floor.name)));
+  ipc::copy_text(name, out.name, sizeof(out.name));
 }
 
 void fill_robot_figures(const StatusSnapshot& now, const StatusSnapshot& before, StageTimes& times,

@@ -33,6 +33,9 @@ class StageTimes {
 void fill_robot_figures(const StatusSnapshot& now, const StatusSnapshot& before, StageTimes& times,
                         ipc::ServiceStatus& out);
 
+/// The floor that the robot is on.
+void fill_floor(const ipc::CurrentFloor& floor, ipc::FloorFigures& out);
+
 /// The barometer of a base station.
 void fill_station_figures(const StationSnapshot& now, const StationSnapshot& before, ipc::ServiceStatus& out);
 

@@ -21,11 +21,15 @@ struct TopicNames {
   std::string tf_static = "tf_static";
   std::string registered_scan = "registered_scan";
   std::string map_cloud = "map_cloud";
+  std::string map = "map";
+  std::string floor = "floor";
+  std::string floor_name = "floor_name";
   std::string diagnostics = "diagnostics";
   std::string points = "points";
   std::string pressure = "fluid_pressure";
   std::string imu = "imu/data";
   std::string wheel = "wheel/odom";
+  std::string initial_pose = "initialpose";
   std::string base_pressure = "fluid_pressure";
   std::string base_temperature = "temperature";
 };
@@ -53,6 +57,7 @@ struct InputsQos {
   InputQos pressure;
   InputQos imu{.depth = 50};
   InputQos wheel{.depth = 10};
+  InputQos initial_pose{.reliability = Reliability::kReliable};
   InputQos base_pressure;  ///< also of the base stations' temperature
 };
 
@@ -85,6 +90,10 @@ struct DdsConfig {
   std::string map_frame = "map";
   std::string odom_frame = "odom";
   std::string base_frame = "base_link";
+  /// Frame on the ground under base_frame, parent of base_frame in /tf; empty: there is none.
+  std::string footprint_frame;
+  /// Height of base_frame above the ground on level ground [m], >= 0.
+  double footprint_depth_m = 0.0;
   std::string lidar_frame = "lidar";
   std::string imu_frame = "imu";
   std::string barometer_frame = "barometer";
@@ -95,6 +104,7 @@ struct DdsConfig {
   double altitude_rate_hz = 10.0;
   /// Publish the registered scans and the map as clouds.
   bool publish_clouds = true;
+  bool receive_initial_pose = true;  ///< hints of where the robot is, such as RViz's
   bool publish_tf_map_odom = true;   ///< in /tf
   bool publish_tf_odom_base = true;  ///< in /tf
   bool publish_tf_static = true;     ///< the mounts of the sensors

@@ -77,6 +77,16 @@ struct MapFigures {
   double age_s = kNoValue;       ///< since the last update
 };
 
+/// The floor that the robot is on.
+struct FloorFigures {
+  bool present = false;  ///< floors are told
+  bool known = false;    ///< false: the figures are those of the last floor
+  std::int32_t number = 0;
+  double certainty = kNoValue;  ///< 0 … 1
+  double z_m = kNoValue;        ///< of the floor, map frame
+  char name[48] = {};           // NOLINT(modernize-avoid-c-arrays): null-terminated; may be empty
+};
+
 struct ServiceStatus {
   static constexpr std::size_t kMaxSensors = 8;
   static constexpr std::size_t kMaxStages = 8;
@@ -91,6 +101,7 @@ struct ServiceStatus {
   PoseFigures pose;
   HeightFigures height;
   MapFigures map;
+  FloorFigures floor;
 
   /// Appends a sensor; the last one is overwritten when all places are taken.
   SensorStatus& add_sensor(std::string_view name) noexcept {

@@ -10,7 +10,9 @@
 
 #include "core/estimates.hpp"
 #include "core/samples.hpp"
+#include "ipc/floors.hpp"
 #include "ipc/inputs.hpp"
+#include "ipc/pose_hint.hpp"
 #include "ipc/status.hpp"
 
 namespace isobar::ipc {
@@ -141,12 +143,15 @@ inline constexpr Topic<Prior> kPrior{"prior", 256, 0};
 inline constexpr Topic<PoseEstimate> kPose{"pose", 64, 0};
 inline constexpr Topic<RegisteredScan> kRegisteredScan{"registered_scan", 4, 0};
 inline constexpr Topic<MapCloud> kMapCloud{"map_cloud", 4, 1};
+inline constexpr Topic<FloorGrid> kFloorGrid{"floor_grid", 4, 1};
+inline constexpr Topic<CurrentFloor> kFloor{"floor", 4, 1};
 inline constexpr Topic<HealthReport> kHealth{"health", 4, 1};
 inline constexpr Topic<LidarPackets> kLidarPackets{"lidar/packets", 80, 0};
 inline constexpr Topic<RunDescription> kRunDescription{"run_description", 1, 1};
 inline constexpr Topic<BlackBoxOrder> kBlackBoxOrder{"black_box/order", 4, 0};
 inline constexpr Topic<BlackBoxState> kBlackBoxState{"black_box/state", 1, 1};
 inline constexpr Topic<CommandMessage> kCommand{"command", 4, 0};
+inline constexpr Topic<PoseHint> kPoseHint{"pose_hint", 4, 0};
 
 }  // namespace topics
 
@@ -164,7 +169,7 @@ inline constexpr ChunkPool kChunkPools[] = {
     {40 * 1024, 32},    // health
     {60 * 1024, 4},     // description of the run
     {68 * 1024, 100},   // lidar packets: all queues hold the same newest 80 messages
-    {1200 * 1024, 32},  // scans, registered scans, maps
+    {1200 * 1024, 40},  // scans, registered scans, maps, grids
 };
 
 }  // namespace isobar::ipc

@@ -18,19 +18,20 @@ void add_sensitivity_command(CLI::App& experiment);     ///< subcommand of exper
 void add_experiment_all_command(CLI::App& experiment);  ///< subcommand of experiment: every scenario
 void add_calibrate_command(CLI::App& app);              ///< sensor and reference logs -> compensation, report
 void add_calibrate_mounts_command(
-    CLI::App& calibrate);                   ///< subcommand of calibrate: recordings -> mount of the lidar
-void add_config_command(CLI::App& app);     ///< check and show a configuration
-void add_play_command(CLI::App& app);       ///< recording -> UDP in real time
-void add_altitude_command(CLI::App& app);   ///< pressure logs -> heights
-void add_noise_command(CLI::App& app);      ///< pressure log -> sigma, Allan deviation, filter settings
-void add_map_command(CLI::App& app);        ///< info, check and export of a run's map
-void add_status_command(CLI::App& app);     ///< health and figures of the running isobard
-void add_metrics_command(CLI::App& app);    ///< the same for Prometheus
-void add_record_command(CLI::App& app);     ///< running isobard -> recording
-void add_black_box_command(CLI::App& app);  ///< orders to the black box of the running isobard
-void add_reset_command(CLI::App& app);      ///< asks the running isobard for a new map frame
-void add_echo_command(CLI::App& app);       ///< prints what a DDS subscriber receives
-void add_points_command(CLI::App& app);     ///< capture of a lidar -> points
-void add_keys_command(CLI::App& app);       ///< keys that sign base-station pressure
+    CLI::App& calibrate);                      ///< subcommand of calibrate: recordings -> mount of the lidar
+void add_config_command(CLI::App& app);        ///< check and show a configuration
+void add_play_command(CLI::App& app);          ///< recording -> UDP in real time
+void add_altitude_command(CLI::App& app);      ///< pressure logs -> heights
+void add_noise_command(CLI::App& app);         ///< pressure log -> sigma, Allan deviation, filter settings
+void add_map_command(CLI::App& app);           ///< info, check and export of a run's map
+void add_status_command(CLI::App& app);        ///< health and figures of the running isobard
+void add_metrics_command(CLI::App& app);       ///< the same for Prometheus
+void add_record_command(CLI::App& app);        ///< running isobard -> recording
+void add_black_box_command(CLI::App& app);     ///< orders to the black box of the running isobard
+void add_reset_command(CLI::App& app);         ///< asks the running isobard for a new map frame
+void add_initial_pose_command(CLI::App& app);  ///< tells the running isobard where the robot is
+void add_echo_command(CLI::App& app);          ///< prints what a DDS subscriber receives
+void add_points_command(CLI::App& app);        ///< capture of a lidar -> points
+void add_keys_command(CLI::App& app);          ///< keys that sign base-station pressure
 
 }  // namespace isobar::tools

@@ -7,8 +7,10 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -91,6 +93,24 @@ void print(const char* topic, const dds::TfMessage& message) {
                 seconds(header), shown(header.frame_id), shown(child), transform.translation.x,
                 transform.translation.y, transform.translation.z, yaw_deg(transform.rotation));
   }
+}
+
+void print(const char* topic, const dds::GridMessage& message) {
+  const auto& info = message.info;
+  const std::span<const std::uint8_t> cells(message.data._buffer, message.data._length);
+  const auto known = std::count_if(cells.begin(), cells.end(), [](std::uint8_t cell) { return cell <= 100; });
+  std::printf("%s  t %.3f s  %u x %u cells of %.3f m  from x %.3f  y %.3f  z %.3f m  %ld known\n", topic,
+              seconds(message.header), info.width, info.height, static_cast<double>(info.resolution),
+              info.origin.position.x, info.origin.position.y, info.origin.position.z,
+              static_cast<long>(known));
+}
+
+void print(const char* topic, const dds::Int32Message& message) {
+  std::printf("%s  %d\n", topic, message.data);
+}
+
+void print(const char* topic, const dds::StringMessage& message) {
+  std::printf("%s  %s\n", topic, shown(message.data));
 }
 
 /// Prints the statuses that are not ok, or one line when all are.
@@ -176,6 +196,9 @@ std::vector<std::unique_ptr<Echo>> make_echoes(dds_entity_t participant, const E
     add_if(wanted, dds::topics::kAltitude, participant, options, echoes);
     add_if(wanted, dds::topics::kTf, participant, options, echoes);
     add_if(wanted, dds::topics::kTfStatic, participant, options, echoes);
+    add_if(wanted, dds::topics::kMap, participant, options, echoes);
+    add_if(wanted, dds::topics::kFloor, participant, options, echoes);
+    add_if(wanted, dds::topics::kFloorName, participant, options, echoes);
     add_if(wanted, dds::topics::kDiagnostics, participant, options, echoes);
   }
   return echoes;
@@ -222,8 +245,10 @@ void add_echo_command(CLI::App& app) {
   auto options = std::make_shared<EchoOptions>();
   CLI::App* command = app.add_subcommand("echo", "Print received DDS messages, one line each");
   command
-      ->add_option("TOPIC", options->topics, "pose, odom, altitude, tf, tf_static, diagnostics; one or more")
-      ->check(CLI::IsMember({"pose", "odom", "altitude", "tf", "tf_static", "diagnostics"}))
+      ->add_option("TOPIC", options->topics,
+                   "pose, odom, altitude, tf, tf_static, map, floor, floor_name, diagnostics; one or more")
+      ->check(CLI::IsMember(
+          {"pose", "odom", "altitude", "tf", "tf_static", "map", "floor", "floor_name", "diagnostics"}))
       ->capture_default_str();
   command->add_option("--domain", options->domain, "DDS domain")
       ->envname("ROS_DOMAIN_ID")

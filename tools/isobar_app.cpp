@@ -33,6 +33,7 @@ void add_all_commands(CLI::App& app) {
   add_black_box_command(app);
   add_config_command(app);
   add_reset_command(app);
+  add_initial_pose_command(app);
   add_points_command(app);
   add_keys_command(app);
 #if ISOBAR_WITH_DDS

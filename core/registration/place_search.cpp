@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/geometry.hpp"
 #include "core/short_pause.hpp"
@@ -22,6 +23,8 @@ constexpr double kLargestAlongM = 4.0;
 constexpr double kSpacingM = 1.0;
 constexpr double kSpacingAlongM = 0.5;
 constexpr double kSpacingRad = 30.0 * kRadPerDeg;
+// Of a radius of one spacing the diagonal neighbours are part.
+constexpr double kDiagonal = 1.5;
 // Error of a hypothesis, 1 sigma.
 constexpr double kHypothesisM = 0.4;
 constexpr double kHypothesisRad = 0.2;
@@ -118,7 +121,7 @@ void PlaceSearch::add_hypotheses(double along_m, double track_rad) {
     for (int along = -steps; along <= steps; ++along) {
       for (int across = -1; across <= 1; ++across) {
         const Eigen::Vector2d p = R_map_track * Eigen::Vector2d(along * spacing_m, across * kSpacingM);
-        hypotheses_.push_back({p.x(), p.y(), yaw_rad});
+        add(p.x(), p.y(), yaw_rad);
       }
     }
   };
@@ -127,14 +130,50 @@ void PlaceSearch::add_hypotheses(double along_m, double track_rad) {
   add_around(kSpacingM, kSpacingM, -kSpacingRad);
   const auto turns = static_cast<int>(std::lround(kPi / kSpacingRad));
   for (int turn = 2; turn <= turns; ++turn) {
-    hypotheses_.push_back({0.0, 0.0, turn * kSpacingRad});
-    if (turn < turns) hypotheses_.push_back({0.0, 0.0, -turn * kSpacingRad});
+    add(0.0, 0.0, turn * kSpacingRad);
+    if (turn < turns) add(0.0, 0.0, -turn * kSpacingRad);
   }
+  sort_hypotheses();
+}
+
+void PlaceSearch::add(double x_m, double y_m, double yaw_rad) {
+  if (hypotheses_.size() < kMostHypotheses) hypotheses_.push_back({x_m, y_m, yaw_rad, hypotheses_.size()});
+}
+
+// The nearest first. Not std::stable_sort, which allocates.
+void PlaceSearch::sort_hypotheses() {
   const auto size = [](const Hypothesis& h) {
     return std::hypot(h.x_m, h.y_m) / kSpacingM + std::abs(h.yaw_rad) / kSpacingRad;
   };
-  std::stable_sort(hypotheses_.begin(), hypotheses_.end(),
-                   [&](const Hypothesis& a, const Hypothesis& b) { return size(a) < size(b); });
+  std::sort(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& a, const Hypothesis& b) {
+    return std::pair(size(a), a.number) < std::pair(size(b), b.number);
+  });
+}
+
+void PlaceSearch::begin_around(const HintedPlace& place) {
+  hypotheses_.clear();
+  const auto steps = static_cast<int>(std::floor(place.radius_m / kSpacingM));
+  const auto half_turn = static_cast<int>(std::lround(kPi / kSpacingRad));
+  const auto turns = std::min(static_cast<int>(std::lround(place.turn_rad / kSpacingRad)), half_turn);
+  for (int x = -steps; x <= steps; ++x) {
+    for (int y = -steps; y <= steps; ++y) {
+      if (std::hypot(x, y) * kSpacingM > std::max(place.radius_m, kDiagonal * kSpacingM)) continue;
+      for (int turn = turns == half_turn ? 1 - turns : -turns; turn <= turns; ++turn) {
+        add(x * kSpacingM, y * kSpacingM, turn * kSpacingRad);
+      }
+    }
+  }
+  sort_hypotheses();
+  KnownPlace known;
+  known.overlap = place.overlap;
+  known.residual_rms_m = place.residual_rms_m;
+  set_limits(known, false, 0.0);
+  expected_error_m_ = place.sigma_m;
+  stood_ = false;
+  has_height_ = place.has_height;
+  rounds_ = kRounds - 1;
+  active_ = true;
+  restart_round();
 }
 
 void PlaceSearch::set_limits(const KnownPlace& place, bool short_pause, double unseen_m) {

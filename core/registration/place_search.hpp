@@ -23,18 +23,34 @@ enum class PlaceVerdict : std::uint8_t {
   kUnseen,  ///< no hypothesis matches, but the robot stood: it is where it was, and its surroundings are new
 };
 
+/// Where a search around a hint looks, and what a match must show.
+struct HintedPlace {
+  double radius_m = 1.0;        ///< hypotheses of the position lie within it
+  double turn_rad = 0.5;        ///< those of the yaw within this, and half a spacing
+  double sigma_m = 0.5;         ///< of the position, 1 sigma
+  double overlap = 0.0;         ///< of the last scans that matched the map; 0: unknown
+  double residual_rms_m = 0.0;  ///< the same
+  bool has_height = false;      ///< the height is known
+};
+
 /// The robot stands where it was last, or near: it drove on before this process was ready, it was pushed, or
 /// it was turned on the spot. Hypotheses of the pose around the expected one, the nearest first, are matched a few a
 /// scan. Of the matches that fit, the one with the largest posterior is taken: the share of the scan that matches,
 /// times the density of the expected pose, which decides where the scans cannot, as along a bare corridor or on a
-/// flight of equal steps. kConfirmingScans scans in a row must then confirm it. Allocates in begin() only.
+/// flight of equal steps. kConfirmingScans scans in a row must then confirm it. Allocates in its constructor only.
 class PlaceSearch {
  public:
+  PlaceSearch() { hypotheses_.reserve(kMostHypotheses); }
+
+  /// Most hypotheses of a search: 81 places within 5 m, 12 headings.
+  static constexpr std::size_t kMostHypotheses = 1024;
   /// Hypotheses to be matched with one scan: the expected pose and its neighbours. Bounds the time of a scan.
   static constexpr std::size_t kPerScan = 9;
 
   /// Begins the search for a robot that was at `place`, `pause_s` ago, around `expected`.
   void begin(const KnownPlace& place, double pause_s, const ExpectedPlace& expected);
+  /// Begins a search around a place that somebody names: one round.
+  void begin_around(const HintedPlace& place);
   void stop() {
     active_ = false;
     hypotheses_.clear();
@@ -66,10 +82,13 @@ class PlaceSearch {
     double x_m = 0.0;
     double y_m = 0.0;
     double yaw_rad = 0.0;
+    std::size_t number = 0;  ///< decides between equals
   };
 
   [[nodiscard]] PlaceVerdict end_of_round();
   void add_hypotheses(double along_m, double track_rad);
+  void add(double x_m, double y_m, double yaw_rad);
+  void sort_hypotheses();
   void set_limits(const KnownPlace& place, bool short_pause, double unseen_m);
   void restart_round();
   [[nodiscard]] double expectation(const Prediction& expected, const MatchResult& result) const;

@@ -44,6 +44,7 @@ void PosePropagator::add_pose(const PoseEstimate& pose) {
     return;
   }
   if (new_session) begin_session(pose);
+  if (has_anchor_ && has_prior_) follow_relocation(pose);
   Anchor next;
   next.pose = pose;
   next.carried = PoseAnchor(pose.T_map_base, pose.T_map_odom.inverse() * pose.T_map_base);
@@ -62,6 +63,19 @@ void PosePropagator::begin_session(const PoseEstimate& first) {
   if (has_odometry_) T_odom_map_ = T_odom_base_ * first.T_map_base.inverse(Eigen::Isometry);
   has_anchor_ = has_prior_ = false;
   height_count_ = 0;
+}
+
+// Found elsewhere, by a search or a hint: the robot has not driven there. Odom stays, at the time of the pose.
+void PosePropagator::follow_relocation(const PoseEstimate& pose) {
+  Prior then = last_prior_;
+  then.stamp_ns = pose.stamp_ns;
+  then.T_odom_base = pose.T_map_odom.inverse(Eigen::Isometry) * pose.T_map_base;
+  if (anchor_.follows_altimeter && !height_at(pose.stamp_ns, then.height_m)) return;
+  const Eigen::Isometry3d believed = best_pose(then);
+  const double distance_m = (pose.T_map_base.translation() - believed.translation()).norm();
+  const Eigen::Matrix3d turn = pose.T_map_base.linear() * believed.linear().transpose();
+  if (distance_m < kElsewhereM && Eigen::AngleAxisd(turn).angle() < kElsewhereRad) return;
+  T_odom_map_ = T_odom_map_ * believed * pose.T_map_base.inverse(Eigen::Isometry);
 }
 
 bool PosePropagator::propagate(const Prior& prior, Odometry& out) {

@@ -46,9 +46,14 @@ struct Odometry {
 ///
 /// The odom frame of the result is not that of Prior::T_odom_base, which drifts without bound: the
 /// registration's corrections enter it, low-passed and rate-limited. It continues when a new map frame begins
-/// (PoseEstimate::session): then only T_map_odom jumps. Allocates nothing. Not thread-safe.
+/// (PoseEstimate::session), and when the robot turns out to be elsewhere in the map (by kElsewhereM or kElsewhereRad): then
+/// only T_map_odom jumps. Allocates nothing. Not thread-safe.
 class PosePropagator {
  public:
+  /// A correction beyond one of these is no error of the last pose.
+  static constexpr double kElsewhereM = 2.0;
+  static constexpr double kElsewhereRad = 0.6;
+
   explicit PosePropagator(const PosePropagatorConfig& config = {});
 
   /// Takes a result of the registration. Ignores poses that are not finite, or not newer than the last one of
@@ -77,6 +82,7 @@ class PosePropagator {
   static constexpr std::size_t kHeights = 512;
 
   void begin_session(const PoseEstimate& first);
+  void follow_relocation(const PoseEstimate& pose);
   [[nodiscard]] Eigen::Isometry3d best_pose(const Prior& prior) const;
   [[nodiscard]] bool height_at(std::int64_t stamp_ns, double& height_m) const;
   [[nodiscard]] Eigen::Vector3d registered_velocity(const PoseEstimate& pose) const;

@@ -158,24 +158,21 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
   own_covariance(end, traits, registered, pose);
   if (traits.method != Method::kAdaptive) describe_ground(end, pose);
   if (registered) watch(end, pose);
-  if (lost()) {
-    state_.last = pose;
-    return;
-  }
-
   continue_from(end, prediction, registered, pose);
+  if (!riding && !lost()) try_hint_beside(map, end, prediction, pose);
 }
 
 // The start of the next prediction. A scan with neither registration nor IMU nor wheels does not become it: the scan
 // before it stays the start.
 void Registration::continue_from(const Prior& end, const Prediction& prediction, bool registered,
                                  const PoseEstimate& pose) {
+  state_.last = pose;
+  if (lost()) return;  // the search has taken over
   if (registered) {
     state_.motion.correct(end, pose.T_map_base);
   } else if (end.attitude_valid || end.velocity_valid) {
     state_.motion.keep_prediction(end, prediction);
   }
-  state_.last = pose;
 }
 
 MatchResult Registration::match(const MapSnapshot& map, const Prior& prior, const Prediction& prediction,

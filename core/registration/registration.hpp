@@ -19,6 +19,7 @@
 #include "core/registration/dead_reckoning_error.hpp"
 #include "core/registration/halt_turn.hpp"
 #include "core/registration/held_pose.hpp"
+#include "core/registration/hint_trial.hpp"
 #include "core/registration/known_place.hpp"
 #include "core/registration/lost_detector.hpp"
 #include "core/registration/map_drift.hpp"
@@ -26,6 +27,7 @@
 #include "core/registration/method.hpp"
 #include "core/registration/motion_model.hpp"
 #include "core/registration/mount_doubt.hpp"
+#include "core/registration/place_hint.hpp"
 #include "core/registration/place_search.hpp"
 #include "core/registration/registration_config.hpp"
 #include "core/registration/scan_matcher.hpp"
@@ -75,6 +77,7 @@ struct RegistrationState {
   SpeedSearch speed;
   double wheel_turn_rad = 0.0;  ///< Prior::wheel_turn_rad of the last registered scan
   PlaceSearch search;
+  HintTrial hint;
   LostDetector lost_detector;
   LostState lost;
   std::int64_t ground_since_ns = 0;  ///< methods that ask no altimeter: start of a ride; 0: none
@@ -109,6 +112,11 @@ class Registration {
   [[nodiscard]] bool searching() const {
     return state_.place.has_value() || (state_.search.active() && !lost());
   }
+
+  /// Somebody says where the robot is. The next scans are tried there; the robot goes on from there only where they
+  /// match, and otherwise nothing changes. Instead of an earlier hint. See hint_report().
+  void hint(const PlaceHint& hint);
+  [[nodiscard]] const HintReport& hint_report() const { return state_.hint.report(); }
 
   /// Appends a prior; priors come in order of time.
   void add_prior(const Prior& prior);
@@ -161,6 +169,15 @@ class Registration {
                               const MethodTraits& traits, std::size_t per_scan);
   PlaceVerdict confirm_place(const MapSnapshot& map, const Prior& end, const Prediction& expected,
                              const MethodTraits& traits, PoseEstimate& pose);
+  [[nodiscard]] static Prediction with_height_error(Prediction prediction, const Prior& prior);
+  // registration_hint.cpp
+  void begin_hint(const MapSnapshot& map, const Prior& end, const Eigen::Isometry3d& T_believed);
+  PlaceVerdict judge_hint(const MapSnapshot& map, const Prior& end, const Prediction& prediction,
+                          std::size_t per_scan, MatchResult& found);
+  void search_hint(const MapSnapshot& map, const Prior& end, const Prediction& expected, RegisteredScan& out);
+  void try_hint_beside(const MapSnapshot& map, const Prior& end, const Prediction& prediction,
+                       PoseEstimate& pose);
+  void go_on_from(const Prior& end, const MatchResult& found, PoseEstimate& pose);
   [[nodiscard]] MatchResult match(const MapSnapshot& map, const Prior& prior, const Prediction& prediction,
                                   const MethodTraits& traits);
   [[nodiscard]] bool acceptable(const MatchResult& match, const Prediction& prediction) const;

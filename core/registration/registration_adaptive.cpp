@@ -101,7 +101,8 @@ void Registration::learn(const Prior& end, const Prediction& prediction, const M
 void Registration::learn_mount(const Prior& end, const MethodTraits& traits, const PoseEstimate& pose) {
   ScanMotionEvidence evidence;
   evidence.stamp_ns = pose.stamp_ns;
-  evidence.session = pose.session;
+  // A hint that was taken is no motion.
+  evidence.session = pose.session + (state_.hint.relocations() << 16U);
   evidence.T_map_base = pose.T_map_base;
   evidence.q_base_lidar = state_.q_base_lidar;
   if (end.velocity_valid) evidence.wheel_turn_rad = end.wheel_turn_rad - state_.wheel_turn_rad;

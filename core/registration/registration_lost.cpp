@@ -92,6 +92,7 @@ void Registration::watch(const Prior& end, PoseEstimate& pose) {
     return;
   }
   LostState& before = state_.lost;
+  state_.hint.watch(end.stamp_ns, pose.overlap, before.matched_overlap);
   const double gain = before.matched_overlap > 0.0 ? kMatchGain : 1.0;
   before.matched_overlap += gain * (pose.overlap - before.matched_overlap);
   before.matched_rms_m += gain * (pose.residual_rms_m - before.matched_rms_m);
@@ -167,6 +168,11 @@ void Registration::search_lost(const MapSnapshot& map, const Prior& end, const P
   pose.mode = PoseMode::kPriorOnly;
   pose.T_map_base = dead_reckoned(end);
   describe_lost(end, pose);
+  begin_hint(map, end, pose.T_map_base);
+  if (state_.hint.active()) {
+    search_hint(map, end, expected, out);
+    return;
+  }
   if (!PlaceSearch::can_judge(sampler_.sample().size())) {
     state_.motion.keep_prediction(end, expected);
   } else if (state_.search.confirming()) {

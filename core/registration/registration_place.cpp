@@ -40,14 +40,14 @@ Matrix6d covariance_of_unseen(const Prior& prior) {
   return covariance;
 }
 
+}  // namespace
+
 // The height of the start is known less well than the one of a run.
-Prediction with_height_error(Prediction prediction, const Prior& prior) {
+Prediction Registration::with_height_error(Prediction prediction, const Prior& prior) {
   const double height_sd_m = std::sqrt(std::max(prior.height_variance_m2, 0.0));
   prediction.deviation(5) = std::max(prediction.deviation(5), std::min(height_sd_m, kLargestHeightErrorM));
   return prediction;
 }
-
-}  // namespace
 
 // The scans find z as well, near the altimeter's height: a robot that was killed on stairs, in an elevator or on a
 // rope has climbed unseen.
@@ -79,6 +79,7 @@ void Registration::next_frame() {
   state_.last = blank;
   state_.motion = MotionModel(config_);
   state_.search.stop();
+  if (state_.hint.active()) state_.hint.finish(HintOutcome::kOtherFrame, blank.stamp_ns);
   state_.speed.restart();
   state_.lost_detector.restart();
   state_.lost = {};
@@ -121,6 +122,11 @@ void Registration::search_place(const MapSnapshot& map, const Prior& end, const 
   out.point_count = 0;
   pose.T_map_base = expected.T_map_base;
   pose.covariance = unknown_covariance();
+  begin_hint(map, end, expected.T_map_base);
+  if (state_.hint.active()) {
+    search_hint(map, end, expected, out);
+    return;
+  }
   // A dropped scan has no points.
   if (!PlaceSearch::can_judge(sampler_.sample().size())) {
     state_.motion.keep_prediction(end, expected);

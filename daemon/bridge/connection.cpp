@@ -40,6 +40,7 @@ bool Connection::check() {
   if (receiving_) {
     forwarding_.put_received(receiving_->counts());
     forwarding_.put_inputs(receiving_->states());
+    if (forwarding_.floor_writer_count() != announced_floor_writers_) announce();
   }
   forwarding_.put_keys(network_.keys().status());
   if (const auto reason = reason_to_restart()) {
@@ -74,6 +75,7 @@ void Connection::renew_network() {
 
 void Connection::change_settings(const Settings& next, const std::function<void()>& change) {
   forwarding_.set_clouds(forwarding_.has_clouds() && publishes_clouds(next));
+  if (next.is_base_station) forwarding_.set_floors(false);
   {
     const auto pause = forwarding_.pause();
     receiving_.reset();
@@ -82,6 +84,7 @@ void Connection::change_settings(const Settings& next, const std::function<void(
     network_.wait_for_readers();
   }
   forwarding_.set_clouds(publishes_clouds(settings_));
+  forwarding_.set_floors(!settings_.is_base_station);
   receive();
 }
 
@@ -90,6 +93,13 @@ void Connection::receive() {
   forwarding_.put_network(network_.state());
   if (!network_.is_up()) return;
   receiving_.emplace(network_.participant(), network_.keys().participant(), settings_, forwarding_.clock());
+  announce();
+}
+
+// Under the lock of the thread that makes writers.
+void Connection::announce() {
+  const auto pause = forwarding_.pause_floors();
+  announced_floor_writers_ = forwarding_.floor_writer_count();
   network_.announce(receiving_->readers());
 }
 

@@ -2,6 +2,7 @@
 // The bridge's connection to isobard.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -45,6 +46,7 @@ class Connection {
 
  private:
   void receive();
+  void announce();
   [[noreturn]] void restart();
   [[nodiscard]] std::optional<std::string> reason_to_restart() const;
 
@@ -55,6 +57,7 @@ class Connection {
   ipc::Subscriber<ipc::RunDescription> descriptions_{ipc::topics::kRunDescription};
   std::optional<Receiving> receiving_;  ///< while there is a network
   std::uint64_t rounds_ = 0;
+  std::size_t announced_floor_writers_ = 0;
 };
 
 /// Attaches to isobard, and publishes its absence in the diagnostics until it runs.

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "daemon/base_station_health.hpp"
+#include "daemon/bridge/floor_health.hpp"
 #include "daemon/bridge/key_health.hpp"
 #include "daemon/bridge/steady_time.hpp"
 #include "daemon/logging.hpp"
@@ -58,6 +59,7 @@ Forwarding::Forwarding(Outputs& outputs, const dds::DdsConfig& config)
       pose_waiter_({&prior_in_.raw(), &pose_in_.raw(), &station_in_.raw(), &health_in_.raw()}),
       last_report_ns_(steady_ns()) {
   configure(config);
+  set_floors(outputs.floors.has_value());
   pose_thread_ = std::thread([this] { forward_poses(); });
   set_clouds(outputs.clouds.has_value());
 }
@@ -68,6 +70,14 @@ void Forwarding::stop() {
   pose_waiter_.stop();
   if (pose_thread_.joinable()) pose_thread_.join();
   set_clouds(false);
+  set_floors(false);
+}
+
+void Forwarding::set_floors(bool are_published) {
+  if (are_published == floors_.has_value()) return;
+  const std::lock_guard lock(pose_mutex_);  // the pose thread reads its state
+  if (!are_published) return floors_.reset();
+  floors_.emplace(*outputs_.floors, stamp_shift_ns_);
 }
 
 void Forwarding::configure(const dds::DdsConfig& config) {
@@ -213,23 +223,28 @@ void Forwarding::add_own_health() {
                                (outputs_.poses ? outputs_.poses->failures() : 0) +
                                (outputs_.station ? outputs_.station->failures() : 0);
   const ReceivedCounts received = received_.get();
+  const FloorState floors = floors_ ? floors_->state() : FloorState{};
   add_count("bridge/samples_lost", prior_in_.dropped() + pose_in_.dropped() + station_in_.dropped(),
             "isobar-dds is slower than isobard");
-  add_count("bridge/clouds_lost", value(clouds_dropped_), "isobar-dds is slower than isobard");
+  add_count("bridge/clouds_lost", value(clouds_dropped_) + floors.lost, "isobar-dds is slower than isobard");
   add_count("bridge/messages_unsent", unsent, "a DDS reader is too slow");
-  add_count("bridge/clouds_unsent", value(cloud_failures_), "a DDS reader is too slow");
+  add_count("bridge/clouds_unsent", value(cloud_failures_) + floors.unsent, "a DDS reader is too slow");
   add_count("bridge/samples_refused",
-            prior_in_.rejected() + pose_in_.rejected() + station_in_.rejected() + health_in_.rejected(),
+            prior_in_.rejected() + pose_in_.rejected() + station_in_.rejected() + health_in_.rejected() +
+                floors.rejected,
             "isobard and isobar-dds come from different builds");
+  add_count("bridge/floors_refused", floors.refused, "implausible grids of floors");
   add_count("bridge/received_implausible", received.refused, "a DDS writer sends implausible values");
   add_count("bridge/received_other_senders", received.other_senders,
             "a second node writes the topic of the IMU or of the wheels: refused; stop one of them");
+  add_count("bridge/initial_pose_refused", received.refused_hints.count, received.refused_hints.rule);
   add_count("bridge/shared_memory_faults", ipc::library_fault_count(), "errors in the iceoryx library");
   add_count("bridge/received_too_early", received.too_early, "received before isobard could take it");
   add_input_health();
   add_station_health(received);
-  add_key_health(keys_.get(), [this](const std::string& name, HealthLevel level, const std::string& message,
-                                     double number) { add(name, level, message, number); });
+  const AddEntry add_entry = [this](const auto&... entry) { add(entry...); };
+  add_floor_health(floors, add_entry);
+  add_key_health(keys_.get(), add_entry);
 }
 
 void Forwarding::add_input_health() {

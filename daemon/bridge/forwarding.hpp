@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <mutex>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "core/time/system_clock_watch.hpp"
+#include "daemon/bridge/floor_forwarding.hpp"
 #include "daemon/bridge/network.hpp"
 #include "daemon/bridge/outputs.hpp"
 #include "daemon/bridge/receiving.hpp"
@@ -28,7 +30,7 @@ namespace isobar::bridge {
 /// Publishes a diagnostics error, "isobard is not running". Only while no Forwarding exists.
 void report_absence(Outputs& outputs, dds::DiagnosticsBuilder& builder);
 
-/// Forwards poses and clouds in two threads, so that a cloud of 1 MiB never delays odometry. Requires an
+/// Forwards poses, clouds and floors, each in a thread, so that a cloud of 1 MiB never delays odometry. Requires an
 /// Attachment to isobard and, except during a pause(), exclusive use of the outputs during its lifetime.
 class Forwarding {
  public:
@@ -38,17 +40,30 @@ class Forwarding {
   Forwarding(const Forwarding&) = delete;
   Forwarding& operator=(const Forwarding&) = delete;
 
-  /// Keeps both threads from the outputs as long as the result exists. Messages of isobard wait meanwhile.
+  /// Keeps all threads from the outputs as long as the result exists. Messages of isobard wait meanwhile.
   struct Pause {
     std::unique_lock<std::mutex> poses;
     std::unique_lock<std::mutex> clouds;
+    std::unique_lock<std::mutex> floors;
   };
-  [[nodiscard]] Pause pause() { return {std::unique_lock(pose_mutex_), std::unique_lock(cloud_mutex_)}; }
+  [[nodiscard]] Pause pause() {
+    return {std::unique_lock(pose_mutex_), std::unique_lock(cloud_mutex_), pause_floors()};
+  }
+  /// Keeps the thread of the floors, which makes writers, from the outputs.
+  [[nodiscard]] std::unique_lock<std::mutex> pause_floors() {
+    return floors_ ? floors_->pause() : std::unique_lock<std::mutex>();
+  }
   /// Takes other settings, during a pause().
   void configure(const dds::DdsConfig& config);
   /// Starts or stops the thread of the clouds, outside of a pause(). Requires outputs for clouds while it runs.
   void set_clouds(bool are_published);
-  /// Ends both threads, for good. Outside of a pause().
+  /// Starts or stops the thread of the floors, outside of a pause(). Requires outputs for floors while it runs.
+  void set_floors(bool are_published);
+  /// See FloorForwarding::writer_count().
+  [[nodiscard]] std::size_t floor_writer_count() const noexcept {
+    return floors_ ? floors_->writer_count() : 0;
+  }
+  /// Ends all threads, for good. Outside of a pause().
   void stop();
   [[nodiscard]] bool has_clouds() const noexcept { return clouds_in_.has_value(); }
   /// Passes on the state of the network, for the diagnostics.
@@ -120,6 +135,7 @@ class Forwarding {
   std::optional<SystemClockWatch> system_clock_;  ///< pose thread; from the first health report on
   std::atomic<std::int64_t> stamp_shift_ns_{0};   ///< time of day minus robot clock
   std::int64_t last_report_ns_ = 0;               ///< steady clock; pose thread
+  std::optional<FloorForwarding> floors_;
   std::thread pose_thread_;
   std::thread cloud_thread_;
 };

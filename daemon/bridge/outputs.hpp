@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "daemon/bridge/settings.hpp"
+#include "ipc/dds/floor_outputs.hpp"
 #include "ipc/dds/outputs.hpp"
 
 namespace isobar::bridge {
@@ -15,12 +16,13 @@ namespace isobar::bridge {
   return !settings.is_base_station && settings.dds.publish_clouds;
 }
 
-/// All DDS outputs of this machine: pose and clouds on a robot, pressure on a base station, diagnostics on
+/// All DDS outputs of this machine: pose, clouds and floors on a robot, pressure on a base station, diagnostics on
 /// both.
 struct Outputs {
   std::optional<dds::Writer<dds::DiagnosticsMessage>> diagnostics;  ///< while open
   std::optional<dds::PoseOutputs> poses;                            ///< robot only
   std::optional<dds::CloudOutputs> clouds;                          ///< robot only, with dds.publish_clouds
+  std::optional<dds::FloorOutputs> floors;                          ///< robot only
   std::optional<dds::StationOutputs> station;                       ///< base station only
 
   explicit Outputs(const Settings& settings) { configure(settings); }
@@ -31,6 +33,7 @@ struct Outputs {
     configure(station, settings.is_base_station, settings.dds);
     configure(poses, !settings.is_base_station, settings.dds, settings.mounts);
     configure(clouds, publishes_clouds(settings), settings.dds);
+    configure(floors, !settings.is_base_station, settings.dds);
   }
 
   /// @param for_station participant of the base station's topics; 0: these stay closed
@@ -39,12 +42,14 @@ struct Outputs {
     diagnostics.emplace(participant, dds::topics::kDiagnostics, "", diagnostics_name_);
     if (poses) poses->open(participant);
     if (clouds) clouds->open(participant);
+    if (floors) floors->open(participant);
     if (station && for_station != 0) station->open(for_station);
   }
   void close() noexcept {
     diagnostics.reset();
     if (poses) poses->close();
     if (clouds) clouds->close();
+    if (floors) floors->close();
     if (station) station->close();
   }
 
@@ -57,6 +62,7 @@ struct Outputs {
     };
     append(poses);
     append(clouds);
+    append(floors);
     append(station);
     return writers;
   }

@@ -39,6 +39,9 @@ Receiving::Receiving(dds_entity_t participant, dds_entity_t of_stations, const S
     }
   }
   if (settings.receives_points) cloud_ = std::make_unique<CloudInput>(participant, settings);
+  if (config.receive_initial_pose && !settings.is_base_station) {
+    hints_ = std::make_unique<PoseHintInput>(participant, config);
+  }
   if (settings.receives_pressure) {
     open(pressure_, dds::topics::kPressure, config.topics.pressure, config.input_qos.pressure,
          ipc::topics::kBarometer);
@@ -72,6 +75,7 @@ void Receiving::wait_for_data(dds_entity_t participant) {
     dds_set_status_mask(cloud_->reader(), DDS_DATA_AVAILABLE_STATUS);
     dds_waitset_attach(waitset_.get(), cloud_->reader(), 0);
   }
+  if (hints_) dds_waitset_attach(waitset_.get(), hints_->reader(), 0);
   attach(pressure_);
   attach(imu_);
   attach(wheel_);
@@ -84,6 +88,7 @@ void Receiving::wait_for_data(dds_entity_t participant) {
 void Receiving::watch_writers(dds_entity_t participant, dds_entity_t of_stations) {
   Watched sensors{dds::WriterWatch(participant), {}};
   if (cloud_) sensors.inputs.push_back({"points", cloud_->reader()});
+  if (hints_) sensors.inputs.push_back({"initial_pose", hints_->reader()});
   if (pressure_) sensors.inputs.push_back({"pressure", pressure_->reader.get()});
   if (imu_) sensors.inputs.push_back({"imu", imu_->reader.get()});
   if (wheel_) sensors.inputs.push_back({"wheel", wheel_->reader.get()});
@@ -117,6 +122,7 @@ std::vector<dds_entity_t> Receiving::readers() const {
     readers.push_back(station->temperature_reader());
   }
   if (cloud_) readers.push_back(cloud_->reader());
+  if (hints_) readers.push_back(hints_->reader());
   add_reader(pressure_, readers);
   add_reader(imu_, readers);
   add_reader(wheel_, readers);
@@ -128,6 +134,7 @@ ReceivedCounts Receiving::counts() const noexcept {
   return {refused_.load(std::memory_order_relaxed) + (cloud_ ? cloud_->refused() : 0),
           other_senders_.load(std::memory_order_relaxed) + (cloud_ ? cloud_->other_senders() : 0),
           too_early_.load(std::memory_order_relaxed),
+          refused_hints_.get(),
           station_status_.get(),
           stations_.size(),
           clock_.now_ns()};
@@ -177,6 +184,12 @@ void Receiving::forward_cloud() {
   }
 }
 
+void Receiving::forward_hints() {
+  if (!hints_) return;
+  too_early_.fetch_add(hints_->take(), std::memory_order_relaxed);
+  refused_hints_.put(hints_->refused());
+}
+
 void Receiving::forward_stations() {
   std::array<BaseStationStatus, 2> status;
   for (std::size_t i = 0; i < stations_.size(); ++i) {
@@ -206,6 +219,7 @@ void Receiving::loop() noexcept {
     forward(pressure_);
     forward(imu_);
     forward_cloud();
+    forward_hints();
     static_cast<void>(dds_read_guardcondition(stop_.get(), &stopped));
   }
 }

@@ -14,6 +14,7 @@
 #include "core/time/clock_anchor.hpp"
 #include "core/time/system_clock_watch.hpp"
 #include "daemon/bridge/cloud_input.hpp"
+#include "daemon/bridge/pose_hint_input.hpp"
 #include "daemon/bridge/settings.hpp"
 #include "daemon/bridge/station_input.hpp"
 #include "daemon/bridge/writer_choice.hpp"
@@ -46,6 +47,7 @@ struct ReceivedCounts {
   std::uint64_t refused = 0;        ///< implausible
   std::uint64_t other_senders = 0;  ///< of a second IMU or of second wheels
   std::uint64_t too_early = 0;      ///< no clock of isobard yet, or no free chunk in shared memory
+  RefusedHints refused_hints;
   /// Base stations with readers, [0 … station_count-1].
   std::array<BaseStationStatus, 2> stations;
   std::size_t station_count = 0;
@@ -100,6 +102,7 @@ class Receiving {
   template <class Message, class Sample>
   void forward(std::optional<Stream<Message, Sample>>& stream);
   void forward_cloud();
+  void forward_hints();
   void forward_stations();
   void wait_for_data(dds_entity_t participant);
   void watch_writers(dds_entity_t participant, dds_entity_t of_stations);
@@ -110,6 +113,7 @@ class Receiving {
   std::vector<std::unique_ptr<StationInput>> stations_;
   std::optional<ipc::Publisher<PressureSample>> base_pressure_;
   std::unique_ptr<CloudInput> cloud_;
+  std::unique_ptr<PoseHintInput> hints_;
   std::optional<Stream<dds::PressureMessage, PressureSample>> pressure_;
   std::optional<Stream<dds::ImuMessage, ImuSample>> imu_;
   std::optional<Stream<dds::OdometryMessage, WheelSample>> wheel_;
@@ -122,6 +126,7 @@ class Receiving {
   std::atomic<std::uint64_t> too_early_{0};
   std::atomic<std::uint64_t> other_senders_{0};
   SeqLock<std::array<BaseStationStatus, 2>> station_status_;
+  SeqLock<RefusedHints> refused_hints_;
   std::thread thread_;
 };
 

@@ -77,6 +77,8 @@ Settings settings_of(Config config, const Options& options) {
         &settings.dds.lidar_frame, &settings.dds.imu_frame, &settings.dds.barometer_frame}) {
     *frame = config.dds.frame_prefix + *frame;
   }
+  std::string& footprint = settings.dds.footprint_frame;
+  if (!footprint.empty()) footprint = config.dds.frame_prefix + footprint;
   settings.environment = apply_environment(settings.dds, &read_environment);
   settings.mounts = {config.lidar.mount, config.imu.mount, config.barometer.mount};
   return settings;

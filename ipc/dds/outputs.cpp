@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ipc/dds/footprint.hpp"
 #include "ipc/dds/samples.hpp"
 
 namespace isobar::dds {
@@ -100,15 +101,21 @@ void PoseOutputs::follow_session(std::uint32_t session) {
 }
 
 void PoseOutputs::write_transforms(const Odometry& odometry) {
-  std::array<TransformStampedMessage, 2> transforms{};
+  std::array<TransformStampedMessage, 3> transforms{};
   std::size_t count = 0;
   if (config_.publish_tf_map_odom) {
     fill_transform(odometry.stamp_ns, config_.map_frame, config_.odom_frame, odometry.T_map_odom,
                    transforms[count++]);
   }
-  if (config_.publish_tf_odom_base) {
+  const std::string& footprint = config_.footprint_frame;
+  if (config_.publish_tf_odom_base && footprint.empty()) {
     fill_transform(odometry.stamp_ns, config_.odom_frame, config_.base_frame, odometry.T_odom_base,
                    transforms[count++]);
+  } else if (config_.publish_tf_odom_base) {
+    const Eigen::Isometry3d T_odom_footprint = footprint_of(odometry.T_odom_base, config_.footprint_depth_m);
+    fill_transform(odometry.stamp_ns, config_.odom_frame, footprint, T_odom_footprint, transforms[count++]);
+    fill_transform(odometry.stamp_ns, footprint, config_.base_frame,
+                   T_odom_footprint.inverse(Eigen::Isometry) * odometry.T_odom_base, transforms[count++]);
   }
   to_->tf->write(message_over(transforms.data(), count));
 }

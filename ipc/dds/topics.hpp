@@ -18,6 +18,9 @@ using TwistMessage = geometry_msgs_msg_dds__TwistWithCovarianceStamped_;
 using TfMessage = tf2_msgs_msg_dds__TFMessage_;
 using AltitudeMessage = isobar_msgs_msg_dds__Altitude_;
 using CloudMessage = sensor_msgs_msg_dds__PointCloud2_;
+using GridMessage = nav_msgs_msg_dds__OccupancyGrid_;
+using Int32Message = std_msgs_msg_dds__Int32_;
+using StringMessage = std_msgs_msg_dds__String_;
 using DiagnosticsMessage = diagnostic_msgs_msg_dds__DiagnosticArray_;
 using PressureMessage = sensor_msgs_msg_dds__FluidPressure_;
 using TemperatureMessage = sensor_msgs_msg_dds__Temperature_;
@@ -43,6 +46,9 @@ inline const DdsTopic<TfMessage> kTfStatic{"tf_static", &tf2_msgs_msg_dds__TFMes
 inline const DdsTopic<AltitudeMessage> kAltitude{"altitude", &isobar_msgs_msg_dds__Altitude__desc, Delivery::kReliable, 10, false};
 inline const DdsTopic<CloudMessage> kRegisteredScan{"registered_scan", &sensor_msgs_msg_dds__PointCloud2__desc, Delivery::kReliable, 5, false};
 inline const DdsTopic<CloudMessage> kMapCloud{"map_cloud", &sensor_msgs_msg_dds__PointCloud2__desc, Delivery::kLatched, 1, false};
+inline const DdsTopic<GridMessage> kMap{"map", &nav_msgs_msg_dds__OccupancyGrid__desc, Delivery::kLatched, 1, false};
+inline const DdsTopic<Int32Message> kFloor{"floor", &std_msgs_msg_dds__Int32__desc, Delivery::kLatched, 1, false};
+inline const DdsTopic<StringMessage> kFloorName{"floor_name", &std_msgs_msg_dds__String__desc, Delivery::kLatched, 1, false};
 inline const DdsTopic<DiagnosticsMessage> kDiagnostics{"diagnostics", &diagnostic_msgs_msg_dds__DiagnosticArray__desc, Delivery::kReliable, 10, true};
 
 // Topics of a base station, with its name as namespace, such as "base".
@@ -53,6 +59,7 @@ inline const DdsTopic<PressureMessage> kPressure{"fluid_pressure", &sensor_msgs_
 inline const DdsTopic<ImuMessage> kImu{"imu/data", &sensor_msgs_msg_dds__Imu__desc, Delivery::kBestEffort, 5, false};
 inline const DdsTopic<OdometryMessage> kWheel{"wheel/odom", &nav_msgs_msg_dds__Odometry__desc, Delivery::kBestEffort, 5, false};
 inline const DdsTopic<TwistMessage> kWheelTwist{"wheel/twist", &geometry_msgs_msg_dds__TwistWithCovarianceStamped__desc, Delivery::kBestEffort, 5, false};
+inline const DdsTopic<PoseMessage> kInitialPose{"initialpose", &geometry_msgs_msg_dds__PoseWithCovarianceStamped__desc, Delivery::kReliable, 5, false};
 // clang-format on
 
 }  // namespace topics

@@ -53,7 +53,8 @@ struct Change {
   template <typename Integer>
   void operator()(Integer* v) const {
     if constexpr (std::is_enum_v<Integer>) {
-      *v = static_cast<Integer>(setting.choices.size() - 1);
+      const auto last = static_cast<Integer>(setting.choices.size() - 1);
+      *v = *v == last ? Integer{} : last;
     } else {
       *v = !setting.choices.empty() ? static_cast<Integer>(std::stoi(setting.choices.back()))
                                     : static_cast<Integer>(*v > setting.lowest ? *v - 1 : *v + 1);

@@ -4,10 +4,13 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 #include "daemon/health_summary.hpp"
+#include "daemon/status_figures.hpp"
 #include "ipc/topics.hpp"
 
 namespace isobar::test::test_robot_health {
@@ -89,6 +92,43 @@ TEST_CASE("12 s after all sensors fell silent no entry is ok any more but what t
   }
   CHECK(entry(report, "lidar").level == HealthLevel::kError);
   CHECK(std::string(entry(report, "height").message) == "no IMU sample for 12 s");
+}
+
+TEST_CASE("what became of a hint is an entry, a refused one a warning for a minute") {
+  HealthMonitor monitor{Config{}};
+  StatusSnapshot status = working(kStart, true);
+  const HealthReport without = report_of(monitor, status);
+  for (std::uint32_t i = 0; i < without.entry_count; ++i) {
+    CHECK(std::string(without.entries[i].name) != "initial_pose");
+  }
+  status.registration.hint = {
+      .given = 2, .outcome = HintOutcome::kNoMatch, .stamp_ns = kStart, .radius_m = 1.5, .distance_m = 50.25};
+  const HealthReport report = report_of(monitor, status);
+  CHECK(entry(report, "initial_pose").level == HealthLevel::kWarning);
+  CHECK(entry(report, "initial_pose").value == 2.0);
+  CHECK(std::string(entry(report, "initial_pose").message) ==
+        "refused: no hypothesis around it matches (within 1.5 m); 50.2 m from where the robot was");
+  StatusSnapshot later = working(kStart + 61 * kSecond, true);
+  later.registration.hint = status.registration.hint;
+  CHECK(entry(report_of(monitor, later), "initial_pose").level == HealthLevel::kOk);
+  status.registration.hint.outcome = HintOutcome::kFound;
+  CHECK(entry(report_of(monitor, status), "initial_pose").level == HealthLevel::kOk);
+}
+
+TEST_CASE("the floor of the status is the one that was told, with a name that ends") {
+  ipc::CurrentFloor floor;
+  floor.known = true;
+  floor.number = 3;
+  floor.certainty = 0.75;
+  floor.z_m = 7.0;
+  std::fill(std::begin(floor.name), std::end(floor.name), 'x');
+  ipc::FloorFigures figures;
+  fill_floor(floor, figures);
+  CHECK(figures.present);
+  CHECK(figures.known);
+  CHECK(figures.number == 3);
+  CHECK(figures.certainty == 0.75);
+  CHECK(std::string(figures.name) == std::string(sizeof(figures.name) - 1, 'x'));
 }
 
 TEST_CASE("wheels that were never heard are none, unless they are expected; once heard, silence is a fault") {

@@ -29,6 +29,9 @@ TEST_CASE("types have their ROS 2 names") {
   CHECK(std::string(topics::kTfStatic.descriptor->m_typename) == "tf2_msgs::msg::dds_::TFMessage_");
   CHECK(std::string(topics::kAltitude.descriptor->m_typename) == "isobar_msgs::msg::dds_::Altitude_");
   CHECK(std::string(topics::kMapCloud.descriptor->m_typename) == "sensor_msgs::msg::dds_::PointCloud2_");
+  CHECK(std::string(topics::kMap.descriptor->m_typename) == "nav_msgs::msg::dds_::OccupancyGrid_");
+  CHECK(std::string(topics::kFloor.descriptor->m_typename) == "std_msgs::msg::dds_::Int32_");
+  CHECK(std::string(topics::kFloorName.descriptor->m_typename) == "std_msgs::msg::dds_::String_");
   CHECK(std::string(topics::kDiagnostics.descriptor->m_typename) ==
         "diagnostic_msgs::msg::dds_::DiagnosticArray_");
   CHECK(std::string(topics::kBasePressure.descriptor->m_typename) ==

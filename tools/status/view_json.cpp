@@ -83,6 +83,15 @@ Json map_json(const ipc::ServiceStatus& status) {
           {"age_s", map.age_s}};
 }
 
+Json floor_json(const ipc::FloorFigures& floor) {
+  if (!floor.present) return nullptr;
+  return {{"known", floor.known},
+          {"number", floor.number},
+          {"name", floor.name},
+          {"certainty", floor.certainty},
+          {"z_m", floor.z_m}};
+}
+
 }  // namespace
 
 std::string status_json(const ipc::HealthReport& report, double age_s) {
@@ -100,6 +109,7 @@ std::string status_json(const ipc::HealthReport& report, double age_s) {
   json["pose"] = pose_json(status.pose);
   json["height"] = height_json(status.height);
   json["map"] = map_json(status);
+  json["floor"] = floor_json(status.floor);
   json["stages"] = stages_json(status);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -117,6 +117,14 @@ std::string count_rows(const ipc::ServiceStatus& status) {
   return out;
 }
 
+std::string floor_row(const ipc::FloorFigures& floor) {
+  if (!floor.present) return {};
+  const std::string which =
+      floor.name[0] == '\0' ? std::to_string(floor.number) : fmt::format("{} ({})", floor.number, floor.name);
+  if (!floor.known) return row("floor", fmt::format("not known; last: {}", which));
+  return row("floor", fmt::format("{}, certain to {}", which, figure(100.0 * floor.certainty, 0, " %")));
+}
+
 std::string estimate_rows(const ipc::ServiceStatus& status) {
   const ipc::PoseFigures& pose = status.pose;
   const ipc::HeightFigures& height = status.height;
@@ -140,6 +148,7 @@ std::string estimate_rows(const ipc::ServiceStatus& status) {
                                      height.source, duration(std::max(0.0, height.age_s))));
     out += row("", fmt::format("bias {:.3f} m, sd {:.3f} m", height.bias_m, height.bias_sd_m));
   }
+  out += floor_row(status.floor);
   const std::string disk = map.on_disk ? fmt::format("{} tiles, {:.1f} MB on disk", map.tiles,
                                                      static_cast<double>(map.disk_bytes) * 1e-6)
                                        : std::string("not written to disk");

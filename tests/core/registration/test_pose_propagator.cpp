@@ -144,6 +144,28 @@ TEST_CASE("a jump of the registration enters odom at the slew rate at most, and 
   CHECK((now.T_map_odom.matrix() - Eigen::Matrix4d::Identity()).norm() < 1e-6);  // exp(-100) and rounding
 }
 
+TEST_CASE("a robot that turns out to be elsewhere has not driven there: odom goes on, map to odom jumps") {
+  for (const Eigen::Isometry3d& jump : {pose_of(20.0, -7.0, 0.0, 1.0), pose_of(0.2, 0.1, 0.0, 2.5)}) {
+    const Drive drive;
+    PosePropagator propagator;
+    Odometry before;
+    Odometry now;
+    propagator.add_pose(drive.registered(0));
+    REQUIRE(propagator.propagate(drive.prior(1), before));
+    // The pose of a scan 40 ms ago.
+    for (int step = 2; step < 2 + kDelay; ++step) REQUIRE(propagator.propagate(drive.prior(step), before));
+    propagator.add_pose(drive.registered(2, jump));
+    for (int step = 2 + kDelay; step < 400; ++step, before = now) {
+      REQUIRE(propagator.propagate(drive.prior(step), now));
+      const Eigen::Isometry3d T_truth = drive.truth(step - 1).inverse() * drive.truth(step);
+      CHECK((before.T_odom_base.inverse() * now.T_odom_base * T_truth.inverse())
+                .isApprox(Eigen::Isometry3d::Identity(), 1e-9));
+      CHECK((now.T_map_base.matrix() - (jump * drive.truth(step)).matrix()).norm() < 1e-9);
+      CHECK((now.T_map_odom.matrix() - jump.matrix()).norm() < 1e-6);
+    }
+  }
+}
+
 TEST_CASE("in an elevator the height between scans is the altimeter's") {
   const Drive drive{.climb_m_s = 1.5};
   run(drive, 1000, [&](int step, const Odometry& odometry) {

@@ -186,6 +186,8 @@ class Robot {
     }
     return samples;
   }
+  /// Waits until isobard prints that it has received this.
+  bool receives(const std::string& text) { return stand_in_.read_until(text, std::chrono::seconds(20)); }
   /// Waits until the bridge logs this.
   bool logs(const std::string& text, std::chrono::milliseconds limit = std::chrono::seconds(10)) {
     return bridge_.read_until(text, limit);

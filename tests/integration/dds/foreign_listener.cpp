@@ -38,7 +38,7 @@ struct Expected {
   bool best_effort = false;
 };
 
-constexpr std::array<Expected, 11> kExpected{{
+constexpr std::array<Expected, 14> kExpected{{
     {"rt/odom", "nav_msgs::msg::dds_::Odometry_", false},
     {"rt/pose", "geometry_msgs::msg::dds_::PoseWithCovarianceStamped_", false},
     {"rt/tf", "tf2_msgs::msg::dds_::TFMessage_", false},
@@ -46,6 +46,9 @@ constexpr std::array<Expected, 11> kExpected{{
     {"rt/altitude", "isobar_msgs::msg::dds_::Altitude_", false},
     {"rt/registered_scan", "sensor_msgs::msg::dds_::PointCloud2_", false},
     {"rt/map_cloud", "sensor_msgs::msg::dds_::PointCloud2_", true},
+    {"rt/map", "nav_msgs::msg::dds_::OccupancyGrid_", true},
+    {"rt/floor", "std_msgs::msg::dds_::Int32_", true},
+    {"rt/floor_name", "std_msgs::msg::dds_::String_", true},
     {"rt/diagnostics", "diagnostic_msgs::msg::dds_::DiagnosticArray_", false},
     {"ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_", true},
     {"rt/roof/fluid_pressure", "sensor_msgs::msg::dds_::FluidPressure_", false, true},

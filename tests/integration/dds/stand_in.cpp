@@ -2,7 +2,8 @@
 // Stand-in for isobard: holds the broker and publishes the data of stand_in.hpp in real time until SIGTERM.
 // Prints "ready", then once a second the number of priors published ("priors N"), and each base-station
 // pressure received, with its age on the stand-in's clock: "base PASCAL MILLISECONDS STATION VARIANCE
-// DEGREES", and each wheel sample: "wheel VX VX_VARIANCE WZ_VARIANCE".
+// DEGREES", each wheel sample: "wheel VX VX_VARIANCE WZ_VARIANCE", and each hint: "hint X Y Z HAS_Z YAW SESSION
+// SOURCE X_VARIANCE".
 //   stand_in [--initializing]
 // --initializing: every pose is one of the bootstrap.
 #include <signal.h>  // NOLINT(modernize-deprecated-headers)
@@ -60,6 +61,43 @@ void publish_map(ipc::Publisher<ipc::MapCloud>& maps, const PoseEstimate& pose, 
   maps.publish(map);
 }
 
+/// Publishes the rows of the grid from `first_row` on.
+/// @return the first row of the next piece
+std::uint32_t publish_grid(ipc::Publisher<ipc::FloorGrid>& grids, std::int64_t stamp_ns,
+                           std::uint32_t first_row) {
+  ipc::FloorGrid* grid = grids.loan();
+  if (grid == nullptr) return first_row;
+  grid->stamp_ns = stamp_ns;
+  grid->sequence = 1;
+  grid->floor = stand_in::kFloor;
+  ipc::copy_to_field(stand_in::kFloorName, grid->floor_name);
+  grid->z_m = stand_in::kFloorZM;
+  grid->resolution_m = stand_in::kGridResolutionM;
+  grid->origin_x_m = stand_in::kGridOriginXM;
+  grid->origin_y_m = stand_in::kGridOriginYM;
+  grid->width = stand_in::kGridWidth;
+  grid->height = stand_in::kGridHeight;
+  grid->first_row = first_row;
+  grid->row_count = std::min(ipc::FloorGrid::kMaxCells / grid->width, grid->height - first_row);
+  for (std::uint32_t i = 0; i < grid->row_count * grid->width; ++i) {
+    grid->cells[i] = stand_in::cell_at(first_row * grid->width + i);
+  }
+  const std::uint32_t next = first_row + grid->row_count;
+  grids.publish(grid);
+  return next;
+}
+
+void publish_floor(ipc::Publisher<ipc::CurrentFloor>& floors, std::int64_t stamp_ns) {
+  ipc::CurrentFloor floor;
+  floor.stamp_ns = stamp_ns;
+  floor.known = true;
+  floor.number = stand_in::kFloor;
+  floor.certainty = 0.997;
+  floor.z_m = stand_in::kFloorZM;
+  ipc::copy_to_field(stand_in::kFloorName, floor.name);
+  floors.send(floor);
+}
+
 void publish_health(ipc::Publisher<ipc::HealthReport>& reports, std::int64_t stamp_ns,
                     std::int64_t clock_offset_ns) {
   ipc::HealthReport* report = reports.loan();
@@ -83,13 +121,17 @@ int run(bool is_initializing) {
   ipc::Publisher<PoseEstimate> poses(ipc::topics::kPose);
   ipc::Publisher<RegisteredScan> scans(ipc::topics::kRegisteredScan);
   ipc::Publisher<ipc::MapCloud> maps(ipc::topics::kMapCloud);
+  ipc::Publisher<ipc::FloorGrid> grids(ipc::topics::kFloorGrid);
+  ipc::Publisher<ipc::CurrentFloor> floors(ipc::topics::kFloor);
   ipc::Publisher<ipc::HealthReport> reports(ipc::topics::kHealth);
   ipc::Subscriber<PressureSample> base_pressure(ipc::topics::kBaseBarometer);
   ipc::Subscriber<WheelSample> wheels(ipc::topics::kWheel);
+  ipc::Subscriber<ipc::PoseHint> hints(ipc::topics::kPoseHint);
   const auto start = std::chrono::steady_clock::now();
   const std::int64_t start_ns =
       std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
   const std::int64_t clock_offset_ns = start_ns - start.time_since_epoch() / std::chrono::nanoseconds(1);
+  std::uint32_t grid_row = 0;
   std::puts("ready");
   for (std::uint64_t step = 0;; ++step) {
     priors.send(stand_in::prior_at(start_ns, step));
@@ -108,6 +150,18 @@ int run(bool is_initializing) {
     if (const std::uint64_t piece = step % 400 / 20; step % 20 == 0 && piece < stand_in::kMapPieces) {
       publish_map(maps, stand_in::pose_at(start_ns, step), static_cast<std::uint32_t>(step / 400),
                   static_cast<std::uint32_t>(piece) * ipc::MapCloud::kMaxPoints);
+    }
+    // The same grid again every 2 s, as isobard does; the floor once a second.
+    if (step % 400 == 0 || (step % 20 == 0 && grid_row < stand_in::kGridHeight)) {
+      if (step % 400 == 0) grid_row = 0;
+      grid_row = publish_grid(grids, start_ns, grid_row);
+    }
+    if (step % 200 == 0) publish_floor(floors, start_ns);
+    while (const auto hint = hints.take()) {
+      std::printf("hint %.3f %.3f %.3f %d %.4f %u %d %.4f\n", hint->x_m, hint->y_m, hint->z_m,
+                  static_cast<int>(hint->has_z), hint->yaw_rad, hint->session, static_cast<int>(hint->source),
+                  hint->covariance[0]);
+      std::fflush(stdout);
     }
     while (const auto sample = wheels.take()) {
       std::printf("wheel %.2f %.4f %.4f\n", sample->vx_m_s, sample->vx_variance_m2_s2,

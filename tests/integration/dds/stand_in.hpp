@@ -19,6 +19,16 @@ inline constexpr std::uint32_t kScanPoints = 2000;
 inline constexpr std::uint32_t kMapPoints = 150'000;
 inline constexpr std::uint32_t kMapPieces = 3;  ///< of ipc::MapCloud::kMaxPoints each, but the last
 
+/// Grid of the floor: 1.5 million cells, more than one piece holds.
+inline constexpr std::uint32_t kGridWidth = 1500;
+inline constexpr std::uint32_t kGridHeight = 1000;
+inline constexpr double kGridResolutionM = 0.05;
+inline constexpr double kGridOriginXM = -30.0;
+inline constexpr double kGridOriginYM = 12.5;
+inline constexpr std::int32_t kFloor = -1;
+inline constexpr const char* kFloorName = "parking";
+inline constexpr double kFloorZM = -3.5;
+
 /// Pose on a straight, climbing drive along the map's x axis, `time_s` after the start.
 inline Eigen::Isometry3d T_map_base(double time_s) {  // NOLINT(readability-identifier-naming)
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
@@ -70,5 +80,8 @@ inline ScanPoint point_at(std::uint32_t i) {
   point.intensity = static_cast<std::uint8_t>(i % 256);
   return point;
 }
+
+/// Cell i of the grid: -1 … 100.
+inline std::int8_t cell_at(std::uint32_t i) { return static_cast<std::int8_t>(i % 102) - 1; }
 
 }  // namespace isobar::stand_in

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writers of sensor topics that fit isobar-dds and writers that do not, and the covariance of the wheels.
+// Writers of sensor topics that fit isobar-dds and writers that do not, the covariance of the wheels, hints of where the
+// robot is, and the frame on the ground.
 #include <doctest/doctest.h>
 
 #include <chrono>
 #include <cmath>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "ipc/dds/writer_watch.hpp"
 #include "tests/integration/dds/base_station_peers.hpp"
+#include "tests/integration/dds/stand_in.hpp"
 
 namespace isobar::test::test_dds_inputs {
 
@@ -100,6 +103,70 @@ TEST_CASE("a topic whose messages are of another type is said with the type") {
           "dds.topics.wheel");
   }
   CHECK(robot.says("bridge/wheel_writer", kOk));  // the node has gone
+}
+
+/// A hint as RViz sends it.
+dds::PoseMessage rviz_hint(const char* frame) {
+  dds::PoseMessage hint{};
+  hint.header = {dds::to_time(wall_ns()), dds::text(frame)};
+  hint.pose.pose.position = {4.0, -3.0, 0.0};
+  hint.pose.pose.orientation = {0.0, 0.0, std::sin(0.35), std::cos(0.35)};
+  hint.pose.covariance[0] = hint.pose.covariance[7] = 0.25;
+  hint.pose.covariance[35] = 0.0685;
+  return hint;
+}
+
+bool wait_for_reader(const dds::Writer<dds::PoseMessage>& writer) {
+  for (int i = 0; i < 200 && !writer.has_readers(); ++i) std::this_thread::sleep_for(50ms);
+  return writer.has_readers();
+}
+
+TEST_CASE("a hint of where the robot is reaches isobard; one of another frame is refused, and said") {
+  Robot robot;
+  dds::Writer<dds::PoseMessage> writer(robot.participant(), dds::topics::kInitialPose);
+  REQUIRE(wait_for_reader(writer));
+  CHECK(robot.says("bridge/initial_pose_refused", kOk));
+  REQUIRE(writer.write(rviz_hint("odom")));
+  CHECK(robot.says("bridge/initial_pose_refused", kWarning));
+  CHECK(robot.logs("its frame must be the map's, or empty"));
+  REQUIRE(writer.write(rviz_hint("map")));
+  CHECK(robot.receives("hint 4.000 -3.000 0.000 0 0.7000 1 1 0.2500"));
+}
+
+TEST_CASE("hints have the configured topic and reliability: best effort fits every writer") {
+  Robot robot("[dds]\ntopics.initial_pose = \"where\"\nqos.initial_pose_reliability = \"best_effort\"\n");
+  dds::DdsTopic<dds::PoseMessage> topic = dds::topics::kInitialPose;
+  topic.delivery = dds::Delivery::kBestEffort;
+  dds::Writer<dds::PoseMessage> writer(robot.participant(), topic, "", "where");
+  REQUIRE(wait_for_reader(writer));
+  // The reader may match later than the writer: what is sent before is lost.
+  const Ticker sender([&] { writer.write(rviz_hint("")); });
+  CHECK(robot.receives("hint 4.000 -3.000 0.000 0 0.7000 0 1 0.2500"));
+}
+
+TEST_CASE("with a frame on the ground /tf has odom to it and it to base_link, which stays where it is") {
+  Robot robot("[dds]\nfootprint_frame = \"base_footprint\"\nfootprint_depth_m = 0.25\n");
+  dds::Reader<dds::TfMessage> reader(robot.participant(), dds::topics::kTf);
+  bool seen = false;
+  for (int i = 0; i < 200 && !seen; ++i) {
+    std::this_thread::sleep_for(50ms);
+    reader.take([&](const dds::TfMessage& message) {
+      if (seen) return;
+      seen = true;
+      REQUIRE(message.transforms._length == 3);
+      const auto* transforms = message.transforms._buffer;
+      CHECK(std::string(transforms[1].header.frame_id) == "odom");
+      CHECK(std::string(transforms[1].child_frame_id) == "base_footprint");
+      CHECK(std::string(transforms[2].header.frame_id) == "base_footprint");
+      CHECK(std::string(transforms[2].child_frame_id) == "base_link");
+      // The stand-in's robot is level.
+      CHECK(std::abs(transforms[1].transform.rotation.z - std::sin(stand_in::kYawRad / 2)) < 1e-9);
+      CHECK(std::abs(transforms[2].transform.translation.z - 0.25) < 1e-9);
+      CHECK(std::abs(transforms[2].transform.translation.x) < 1e-9);
+      CHECK(std::abs(transforms[2].transform.rotation.w - 1.0) < 1e-9);
+    });
+  }
+  CHECK(seen);
 }
 
 TEST_CASE("Cyclone DDS reports no inconsistent topic: only the list of writers shows another type") {

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <cstdint>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -120,6 +121,30 @@ TEST_CASE("a cloud of a megabyte") {
     REQUIRE(got.fields._length == 5);
     CHECK(std::string(got.fields._buffer[4].name) == "ring");
   });
+}
+
+TEST_CASE("a grid of a floor, and its number and name") {
+  std::vector<std::uint8_t> cells(12, 255);  // -1: unknown
+  cells[5] = 100;
+  GridMessage grid{};
+  grid.header.frame_id = text("map");
+  grid.info.resolution = 0.05F;
+  grid.info.width = 4;
+  grid.info.height = 3;
+  grid.info.origin.position.x = -1.5;
+  grid.data._buffer = cells.data();
+  grid.data._length = grid.data._maximum = 12;
+  round_trip(topics::kMap, grid, [](const GridMessage& got) {
+    CHECK(got.info.resolution == 0.05F);
+    CHECK(got.info.height == 3);
+    CHECK(got.info.origin.position.x == -1.5);
+    REQUIRE(got.data._length == 12);
+    CHECK(got.data._buffer[5] == 100);
+    CHECK(static_cast<std::int8_t>(got.data._buffer[11]) == -1);
+  });
+  round_trip(topics::kFloor, Int32Message{-2}, [](const Int32Message& got) { CHECK(got.data == -2); });
+  round_trip(topics::kFloorName, StringMessage{text("cellar")},
+             [](const StringMessage& got) { CHECK(std::string(got.data) == "cellar"); });
 }
 
 TEST_CASE("diagnostics") {

@@ -85,6 +85,20 @@ TEST_CASE("an old report is an error that says how old it is, whatever it says i
 
 }  // namespace
 
+TEST_CASE("the floor has its number, name and certainty, and no row where none is told") {
+  HealthReport report = robot();
+  CHECK_FALSE(has(tools::status_text(report, 0.2, {}), "\nfloor"));
+  CHECK(nlohmann::json::parse(tools::status_json(report, 0.2)).at("floor").is_null());
+  report.status.floor = {.present = true, .known = true, .number = -1, .certainty = 0.997, .z_m = -3.5};
+  ipc::copy_text("parking", report.status.floor.name, sizeof(report.status.floor.name));
+  CHECK(has(tools::status_text(report, 0.2, {}), "\nfloor         -1 (parking), certain to 100 %\n"));
+  const auto json = nlohmann::json::parse(tools::status_json(report, 0.2)).at("floor");
+  CHECK(json.at("number") == -1);
+  CHECK(json.at("name") == "parking");
+  report.status.floor.known = false;
+  CHECK(has(tools::status_text(report, 0.2, {}), "\nfloor         not known; last: -1 (parking)\n"));
+}
+
 TEST_CASE("the screen has health first, at most 80 columns and 24 lines, and no colours in a pipe") {
   const std::string text = tools::status_text(robot(), 0.2, {});
   CHECK(text.starts_with("warning       lidar/packets_lost: packets lost\n"));

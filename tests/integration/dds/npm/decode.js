@@ -135,6 +135,22 @@ const checks = {
   },
   registered_scan() { checkCloud("rt.registered_scan", "base_link", 2000, ["x", "y", "z", "intensity", "ring"]); },
   map_cloud() { checkCloud("rt.map_cloud", "map", 150000, ["x", "y", "z", "intensity"]); },
+  map() {
+    const grid = read("rt.map", "nav_msgs/OccupancyGrid");
+    checkStamp(grid.header, "map");
+    assert.equal(grid.header.frame_id, "map");
+    assert.deepEqual(grid.info.map_load_time, grid.header.stamp);
+    assert.equal(grid.info.resolution, Math.fround(0.05));
+    assert.deepEqual([grid.info.width, grid.info.height], [1500, 1000]);
+    assert.deepEqual(grid.info.origin, { position: { x: -30, y: 12.5, z: -3.5 }, orientation: { x: 0, y: 0, z: 0, w: 1 } });
+    assert.ok(grid.data instanceof Int8Array);
+    assert.equal(grid.data.length, 1500 * 1000);
+    assert.equal(grid.data.findIndex((cell, i) => cell !== (i % 102) - 1), -1);
+  },
+  floor() {
+    assert.equal(read("rt.floor", "std_msgs/Int32").data, -1);
+    assert.equal(read("rt.floor_name", "std_msgs/String").data, "parking");
+  },
   diagnostics() {
     const { status } = read("rt.diagnostics", "diagnostic_msgs/DiagnosticArray");
     const byName = new Map(status.map((entry) => [entry.name, entry]));
@@ -143,6 +159,7 @@ const checks = {
     assert.equal(lost.message, "gaps in time");
     assert.deepEqual(lost.values, [{ key: "value", value: "3" }]);
     assert.equal(byName.get("isobar: lidar/packets").level, 0);
+    assert.equal(byName.get("isobar: floor").message, "-1 (parking), certain to 99 %");
     assert.equal(byName.get("isobar: bridge/messages_unsent").level, 0);
   },
   ros_discovery_info() {
