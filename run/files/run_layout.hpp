@@ -11,7 +11,7 @@ namespace isobar::files {
 inline constexpr const char* kTrajectoryFile = "trajectory.tum";  ///< pose of base_link per scan (TUM format)
 inline constexpr const char* kStatusFile = "status.csv";  ///< how each pose came about: kStatusColumns
 inline constexpr const char* kCovarianceFile = "covariance.csv";  ///< of each pose: kCovarianceColumns
-inline constexpr const char* kMapPointsFile = "map.ply";          ///< the map's points: x, y, z, intensity
+inline constexpr const char* kMapPointsFile = "map.ply";          ///< the map's points
 inline constexpr const char* kSettingsFile = "settings.toml";     ///< every setting of the run
 inline constexpr const char* kCountersFile = "counters.csv";      ///< name, count, first message
 inline constexpr const char* kMountsFile = "mounts.toml";         ///< mounts as found, for the configuration
