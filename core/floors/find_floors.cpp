@@ -18,9 +18,9 @@ namespace {
 constexpr double kMergedM = 0.6;       // levels this near are one floor with a step or a short ramp in it
 constexpr double kEvenM = 0.6;         // range of heights of a floor in a building
 constexpr double kLeastLevel = 0.6;    // share of the way that is level in a building
-constexpr double kUsualDriveM = 10.0;  // after which a floor is believed by 1 - 1/e
+constexpr double kUsualDriveM = 6.0;   // after which a floor is believed by 1 - 1/e
 constexpr double kUsualAreaM2 = 20.0;
-constexpr double kWithoutPath = 0.7;   // nobody has shown that one can stand there
+constexpr double kWithoutPath = 0.6;   // nobody has shown that one can stand there
 constexpr double kUnconfirmed = 0.3;   // a floor that is only assumed, where the run began
 
 double gap_m(const FloorLevel& a, const FloorLevel& b) {

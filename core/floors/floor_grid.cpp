@@ -16,7 +16,12 @@ namespace {
 constexpr int kMarginCells = 4;      // of unknown around the known part
 constexpr float kUprightM = 0.5F;    // horizontal part of a normal above which a surface is drawn as a line
 constexpr double kRayStartsM = 1.0;  // between places of the path from which rays are cast
+constexpr std::int8_t kWeak = 50;    // an obstacle that counts if it is connected to a confirmed one
 constexpr int kSpeckNeighbours = 6;  // free ones of 8 that make an unknown cell free
+
+bool is_observed(const MapPoint& point, int least) {
+  return point.observations == 0 || point.observations >= least;
+}
 
 /// Empty grid over the columns of the ground.
 OccupancyGrid grid_over(const FloorGround& ground, const GridConfig& config) {
@@ -62,8 +67,9 @@ void FloorGrid::add(const MapPoint& point) {
   float ground_m = 0.0F;
   if (!ground_.height_near(column, ground_m)) return;
   const double above_m = point.p_map.z() - static_cast<double>(ground_m);
-  if (!(std::abs(above_m) <= config_.lowest_obstacle_m || above_m > 0.0) || above_m > config_.robot_height_m) return;
-  if (above_m > config_.lowest_obstacle_m) {
+  if (above_m < -config_.lowest_obstacle_m || above_m > config_.robot_height_m) return;
+  const double lowest_m = ground_.is_driven(column) ? config_.driven_obstacle_m : config_.lowest_obstacle_m;
+  if (above_m > lowest_m) {
     draw_obstacle(point, p_cells);
   } else if (GroundColumns::is_upward(point) && ground_.kind(column) == FloorGround::Kind::kGround) {
     draw_ground(p_cells);
@@ -86,16 +92,18 @@ void FloorGrid::draw_ground(const Eigen::Vector2d& p_cells) {
   }
 }
 
-// A wall's patch is a line in plan, a table's an area; a point without a normal is one cell.
+// A wall's patch is a line in plan, a table's an area; a point without a normal is one cell. Most of what has no plane
+// and few observations is what people leave who walk beside the robot: no ray has passed there again.
 void FloorGrid::draw_obstacle(const MapPoint& point, const Eigen::Vector2d& p_cells) {
   const Eigen::Vector2f normal = point.normal_map.head<2>();
   const double half = 0.5 * config_.surface_m / config_.resolution_m;
   const int steps = static_cast<int>(std::ceil(2.0 * half));  // of at most one cell
   const float length = normal.norm();
   if (point.normal_map.isZero()) {
-    mark(p_cells, kCellOccupied);
+    if (is_observed(point, config_.confirmed_observations)) mark(p_cells, kCellOccupied);
     return;
   }
+  const std::int8_t value = is_observed(point, config_.wall_observations) ? kCellOccupied : kWeak;
   const bool is_upright = length > kUprightM;
   Eigen::Vector2d along = Eigen::Vector2d::UnitX();
   if (is_upright) along = Eigen::Vector2f(-normal.y() / length, normal.x() / length).cast<double>();
@@ -104,7 +112,7 @@ void FloorGrid::draw_obstacle(const MapPoint& point, const Eigen::Vector2d& p_ce
     const double across = rows == 0 ? 0.0 : half * (2.0 * j / rows - 1.0);
     for (int i = 0; i <= steps; ++i) {
       const double way = half * (2.0 * i / steps - 1.0);
-      mark(p_cells + way * along + Eigen::Vector2d(0.0, across), kCellOccupied);
+      mark(p_cells + way * along + Eigen::Vector2d(0.0, across), value);
     }
   }
 }
@@ -173,7 +181,34 @@ void FloorGrid::fill_specks() {
   }
 }
 
+// Hysteresis: weak cells that are connected with an occupied one become occupied, the others what the ground says.
+void FloorGrid::confirm() {
+  std::vector<std::size_t> front;
+  for (std::size_t at = 0; at < grid_.cells.size(); ++at) {
+    if (grid_.cells[at] == kCellOccupied) front.push_back(at);
+  }
+  const auto width = static_cast<std::size_t>(grid_.width);
+  while (!front.empty()) {
+    const std::size_t from = front.back();
+    front.pop_back();
+    const int x = static_cast<int>(from % width);
+    const int y = static_cast<int>(from / width);
+    for (int i = 0; i < 9; ++i) {
+      const int to_x = x + i % 3 - 1;
+      const int to_y = y + i / 3 - 1;
+      if (!grid_.contains(to_x, to_y) || grid_.cells[grid_.index(to_x, to_y)] != kWeak) continue;
+      grid_.cells[grid_.index(to_x, to_y)] = kCellOccupied;
+      front.push_back(grid_.index(to_x, to_y));
+    }
+  }
+  for (std::size_t at = 0; at < grid_.cells.size(); ++at) {
+    if (grid_.cells[at] != kWeak) continue;
+    grid_.cells[at] = cell_ground_[at] == CellGround::kSeen ? kCellFree : kCellUnknown;
+  }
+}
+
 OccupancyGrid FloorGrid::finish() {
+  confirm();
   clear_path();
   block_ways_out();
   cast_rays();

@@ -35,6 +35,7 @@ FloorGround::FloorGround(const GroundColumns& columns, const Floors& floors, con
   place(growth.grow());
   fill();
   mark_drops(columns);
+  mark_driven();
 }
 
 const FloorGround::Column* FloorGround::find(const ColumnIndex& column) const {
@@ -60,6 +61,23 @@ bool FloorGround::height_near(const ColumnIndex& column, float& height_m) const 
   return true;
 }
 
+bool FloorGround::is_driven(const ColumnIndex& column) const {
+  const Column* found = find(column);
+  return found != nullptr && found->driven;
+}
+
+void FloorGround::mark_driven() {
+  for (const Eigen::Vector3d& p_map : path_) {
+    const ColumnIndex centre = GroundColumns::column_of(p_map);
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        Column* column = find({centre.x + dx, centre.y + dy});
+        if (column != nullptr) column->driven = true;
+      }
+    }
+  }
+}
+
 void FloorGround::place(const std::vector<GroundGrowth::Reached>& reached) {
   if (reached.empty()) return;
   low_ = high_ = reached.front().column;
@@ -78,7 +96,7 @@ void FloorGround::place(const std::vector<GroundGrowth::Reached>& reached) {
   columns_.assign(static_cast<std::size_t>(width * height), {});
   for (const GroundGrowth::Reached& at : reached) {
     const Kind kind = slab_.contains(static_cast<double>(at.height_m)) ? Kind::kGround : Kind::kBeyond;
-    *find(at.column) = {at.height_m, kind, kind};
+    *find(at.column) = {at.height_m, kind, kind, false};
   }
 }
 

@@ -34,6 +34,8 @@ class FloorGround {
   /// Height of the ground in a column, or of the nearest ground up to 3 m around it [m]. False if there is none, or if
   /// the nearest one is kBeyond.
   [[nodiscard]] bool height_near(const ColumnIndex& column, float& height_m) const;
+  /// True for a column that the robot drove over.
+  [[nodiscard]] bool is_driven(const ColumnIndex& column) const;
 
   /// Columns that may have a height: `low` inclusive, `high` exclusive; empty without ground.
   [[nodiscard]] const ColumnIndex& low() const { return low_; }
@@ -46,12 +48,14 @@ class FloorGround {
     float height_m = 0.0F;
     Kind kind = Kind::kUnknown;
     Kind nearest = Kind::kUnknown;  ///< of the column whose height it has
+    bool driven = false;
   };
   [[nodiscard]] Column* find(const ColumnIndex& column);
   [[nodiscard]] const Column* find(const ColumnIndex& column) const;
   void place(const std::vector<GroundGrowth::Reached>& reached);
   void mark_drops(const GroundColumns& columns);
   void fill();
+  void mark_driven();
 
   Floors::Slab slab_;
   ColumnIndex low_;

@@ -12,6 +12,7 @@ namespace {
 // Stairs have 50 to 70 %.
 constexpr float kRampSlope = 0.25F;
 constexpr float kUnevenM = 0.05F;
+constexpr float kMostStepM = 0.13F;    // also over a gap: steps of stairs are 0.15 … 0.2 m
 constexpr int kReachColumns = 2;       // gaps of one column are crossed
 constexpr float kAtPathM = 0.15F;      // the path's height against the map's
 constexpr int kFootprintColumns = 1;   // 0.25 … 0.5 m around the path
@@ -77,7 +78,7 @@ void GroundGrowth::propose_around(const Reached& from) {
       const float way_m = std::hypot(static_cast<float>(dx), static_cast<float>(dy)) *
                           static_cast<float>(GroundColumns::kColumnM);
       for (const GroundColumns::Surface& surface : columns_.at(column)) {
-        if (std::abs(surface.height_m - from.height_m) <= kUnevenM + kRampSlope * way_m) {
+        if (std::abs(surface.height_m - from.height_m) <= std::min(kUnevenM + kRampSlope * way_m, kMostStepM)) {
           propose(column, surface.height_m);
         }
       }

@@ -33,6 +33,8 @@ bool project_onto_plane(const Eigen::Vector3f& q_cell, const Eigen::Vector3f& no
   return std::abs(p_cell[axis]) < cell_m * (0.5F + 1.0F / kThirds);
 }
 
+std::uint8_t observations_of(const MapCell& cell) { return static_cast<std::uint8_t>(cell.moments.count()); }
+
 struct CellPlace {
   Eigen::Vector3d centre_map;
   float cell_m;
@@ -55,7 +57,8 @@ void append_plane_points(const MapCell& cell, const CellPlace& place, const Eige
       continue;
     }
     done.at(static_cast<std::size_t>(column)) = true;
-    points.push_back({place.centre_map + p_cell.cast<double>(), normal, cell.intensity});
+    points.push_back({place.centre_map + p_cell.cast<double>(), normal, cell.intensity,
+                      observations_of(cell)});
   }
 }
 
@@ -63,7 +66,8 @@ void append_sub_cell_centres(const MapCell& cell, const CellPlace& place, std::v
   for (int bit = 0; bit < kSubCells; ++bit) {
     if ((cell.occupied_sub_cells >> static_cast<unsigned>(bit) & 1U) == 0) continue;
     const Eigen::Vector3f p_cell = sub_cell_centre(sub_cell(bit), place.cell_m);
-    points.push_back({place.centre_map + p_cell.cast<double>(), Eigen::Vector3f::Zero(), cell.intensity});
+    points.push_back({place.centre_map + p_cell.cast<double>(), Eigen::Vector3f::Zero(), cell.intensity,
+                      observations_of(cell)});
   }
 }
 

@@ -32,15 +32,15 @@ Scene floors_with_ramp() {
   }
   const Eigen::Vector3d up(30.0, 0.0, 3.0);
   scene.add({20.0, 0.0, 0.0}, up, {0.0, 4.0, 0.0});
-  scene.add_ground(50.0, 0.0, 54.0, 10.0, 3.0);
-  scene.add_ground(0.0, 6.0, 50.0, 10.0, 3.0);
-  scene.add_ground(0.0, 4.0, 4.0, 6.0, 3.0);
+  scene.add_ground(50.0, 0.0, 54.0, 13.0, 3.0);
+  scene.add_ground(0.0, 9.0, 50.0, 13.0, 3.0);
+  scene.add_ground(0.0, 4.0, 4.0, 9.0, 3.0);
   scene.drive_to({2.0, 2.0, 0.0});
   scene.drive_to({20.0, 2.0, 0.0});
   scene.drive_to({50.0, 2.0, 3.0});
   scene.drive_to({52.0, 2.0, 3.0});
-  scene.drive_to({52.0, 8.0, 3.0});
-  scene.drive_to({2.0, 8.0, 3.0});
+  scene.drive_to({52.0, 11.0, 3.0});
+  scene.drive_to({2.0, 11.0, 3.0});
   scene.drive_to({2.0, 2.0, 3.0});
   scene.drive_to({18.0, 2.0, 3.0});
   return scene;
