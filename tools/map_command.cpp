@@ -164,13 +164,16 @@ Subcommand<MapOptions> add_part(CLI::App& map, const char* name, const char* pur
 }  // namespace
 
 void add_map_command(CLI::App& app) {
-  CLI::App& map = *app.add_subcommand("map", "Show, check and export the map of a run; its floors and their grids");
+  CLI::App& map =
+      *app.add_subcommand("map", "Show, check and export the map of a run; its floors and their grids");
   map.require_subcommand(1);
   add_part(map, "info", "Tiles, bytes, extent, damage", run_info);
   add_part(map, "check", "Read every tile; exit code 65 when any is damaged", run_check);
   const auto [command, options] =
       add_part(map, "export", "Write the points for other programs, in the order of the tiles", run_export);
-  command.add_option("--out", options.out, "file of points, in the format of its ending: " + std::string(files::kPointFileEndings))
+  command
+      .add_option("--out", options.out,
+                  "file of points, in the format of its ending: " + std::string(files::kPointFileEndings))
       ->required();
   command.add_option("--box", options.box, "only points in the box X0 Y0 Z0 X1 Y1 Z1 [m]")->expected(6);
   add_map_floors_command(map);

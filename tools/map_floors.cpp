@@ -70,13 +70,13 @@ std::string extent_text(const Floor& floor) {
 }
 
 void print_table(const Floors& floors, const files::FloorNames& names) {
-  std::printf("%6s  %-20s %9s  %8s  %8s  %9s  %s\n", "floor", "name", "height m", "area m2", "driven m", "certainty",
-              "extent x, y m");
+  std::printf("%6s  %-20s %9s  %8s  %8s  %9s  %s\n", "floor", "name", "height m", "area m2", "driven m",
+              "certainty", "extent x, y m");
   for (const Floor& floor : floors.floors) {
     const std::string name = names.name_of(floor);
-    std::printf("%6d  %-20s %9.2f  %8.0f  %8.0f  %9.2f  %s%s\n", floor.number, name.empty() ? "-" : name.c_str(),
-                floor.height_m, floor.area_m2, floor.driven_m, floor.certainty, extent_text(floor).c_str(),
-                floor.is_terrain ? "  (terrain)" : "");
+    std::printf("%6d  %-20s %9.2f  %8.0f  %8.0f  %9.2f  %s%s\n", floor.number,
+                name.empty() ? "-" : name.c_str(), floor.height_m, floor.area_m2, floor.driven_m,
+                floor.certainty, extent_text(floor).c_str(), floor.is_terrain ? "  (terrain)" : "");
   }
   for (const HalfLevel& level : floors.half_levels) {
     std::printf("no floor: a level at %.2f m, driven %.0f m, %.0f m2 (landing, split level or mezzanine)\n",
@@ -117,10 +117,12 @@ void run_floors(const FloorsOptions& options) {
 }  // namespace
 
 void add_map_floors_command(CLI::App& map) {
-  const auto [command, options] =
-      add_subcommand<FloorsOptions>(map, "floors", "Floors of the map: number, name, height, extent", run_floors);
+  const auto [command, options] = add_subcommand<FloorsOptions>(
+      map, "floors", "Floors of the map: number, name, height, extent", run_floors);
   command.add_option("DIR", options.directory, "folder of a map, or of a run")->required();
-  command.add_option("--name", options.names, "FLOOR=NAME: name a floor by its number or former name; kept in floors.toml")
+  command
+      .add_option("--name", options.names,
+                  "FLOOR=NAME: name a floor by its number or former name; kept in floors.toml")
       ->take_all();
   command.add_flag("--json", options.json, "print JSON");
 }

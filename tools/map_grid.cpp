@@ -48,8 +48,8 @@ void run_grid(const GridOptions& options) {
     const OccupancyGrid grid = files::stored_floor_grid(*store, found, floor, path, options.grid);
     const std::string name = "floor_" + std::to_string(floor.number);
     files::write_grid(options.out, name, title_of(floor, names.name_of(floor)), grid);
-    std::printf("%s: %d x %d cells of %g m, floor %d at %.2f m\n", (options.out / (name + ".yaml")).c_str(), grid.width,
-                grid.height, grid.resolution_m, floor.number, floor.height_m);
+    std::printf("%s: %d x %d cells of %g m, floor %d at %.2f m\n", (options.out / (name + ".yaml")).c_str(),
+                grid.width, grid.height, grid.resolution_m, floor.number, floor.height_m);
   }
   if (found.read.unreadable > 0) {
     throw DataError(options.directory.string() + ": " + std::to_string(found.read.unreadable) +
@@ -63,7 +63,8 @@ void add_map_grid_command(CLI::App& map) {
   const auto [command, options] = add_subcommand<GridOptions>(
       map, "grid", "Occupancy grids as pgm and yaml, one a floor, for map_server and Nav2", run_grid);
   command.add_option("DIR", options.directory, "folder of a map, or of a run")->required();
-  command.add_option("--out", options.out, "folder for floor_N.pgm and floor_N.yaml, created if missing")->required();
+  command.add_option("--out", options.out, "folder for floor_N.pgm and floor_N.yaml, created if missing")
+      ->required();
   command.add_option("--floor", options.floor, "number or name of a floor, or all")->capture_default_str();
   command.add_option("--resolution", options.grid.resolution_m, "edge of a cell [m]")
       ->capture_default_str()

@@ -15,13 +15,13 @@ namespace isobar {
 
 namespace {
 
-constexpr double kMergedM = 0.6;       // levels this near are one floor with a step or a short ramp in it
-constexpr double kEvenM = 0.6;         // range of heights of a floor in a building
-constexpr double kLeastLevel = 0.6;    // share of the way that is level in a building
-constexpr double kUsualDriveM = 6.0;   // after which a floor is believed by 1 - 1/e
+constexpr double kMergedM = 0.6;      // levels this near are one floor with a step or a short ramp in it
+constexpr double kEvenM = 0.6;        // range of heights of a floor in a building
+constexpr double kLeastLevel = 0.6;   // share of the way that is level in a building
+constexpr double kUsualDriveM = 6.0;  // after which a floor is believed by 1 - 1/e
 constexpr double kUsualAreaM2 = 20.0;
-constexpr double kWithoutPath = 0.6;   // nobody has shown that one can stand there
-constexpr double kUnconfirmed = 0.3;   // a floor that is only assumed, where the run began
+constexpr double kWithoutPath = 0.6;  // nobody has shown that one can stand there
+constexpr double kUnconfirmed = 0.3;  // a floor that is only assumed, where the run began
 
 double gap_m(const FloorLevel& a, const FloorLevel& b) {
   return std::max({a.lowest_m - b.highest_m, b.lowest_m - a.highest_m, 0.0});
@@ -74,8 +74,8 @@ Choice choose(std::vector<FloorLevel> levels, bool has_path, const FloorConfig& 
         choice.floors.begin(), choice.floors.end(),
         [&](const FloorLevel& a, const FloorLevel& b) { return gap_m(a, level) < gap_m(b, level); });
     const bool any = nearest != choice.floors.end();
-    const bool is_large = level.area_m2 >= config.least_area_m2 &&
-                          (!has_path || level.driven_m >= config.least_drive_m);
+    const bool is_large =
+        level.area_m2 >= config.least_area_m2 && (!has_path || level.driven_m >= config.least_drive_m);
     if (any && gap_m(*nearest, level) < kMergedM) {
       *nearest = merged(*nearest, level);
     } else if (is_large && (!any || gap_m(*nearest, level) >= config.least_storey_m)) {

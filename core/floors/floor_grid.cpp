@@ -13,11 +13,14 @@ namespace isobar {
 
 namespace {
 
-constexpr int kMarginCells = 4;      // of unknown around the known part
-constexpr float kUprightM = 0.5F;    // horizontal part of a normal above which a surface is drawn as a line
-constexpr double kRayStartsM = 1.0;  // between places of the path from which rays are cast
-constexpr std::int8_t kWeak = 50;    // an obstacle that counts if it is connected to a confirmed one
-constexpr int kSpeckNeighbours = 6;  // free ones of 8 that make an unknown cell free
+constexpr int kMarginCells = 4;       // of unknown around the known part
+constexpr float kUprightM = 0.5F;     // horizontal part of a normal above which a surface is drawn as a line
+constexpr double kRayStartsM = 1.0;   // between places of the path from which rays are cast
+constexpr std::int8_t kWeak = 50;     // an obstacle that counts if it is connected to a confirmed one
+constexpr std::int8_t kBlurred = 40;  // one without a plane all over its cell of the map
+constexpr int kBlurredThirds = 18;    // of 27
+constexpr int kSeenNeighbours = 5;    // cells of 9 with ground below what has moved
+constexpr int kSpeckNeighbours = 6;   // free ones of 8 that make an unknown cell free
 
 bool is_observed(const MapPoint& point, int least) {
   return point.observations == 0 || point.observations >= least;
@@ -34,9 +37,8 @@ OccupancyGrid grid_over(const FloorGround& ground, const GridConfig& config) {
   const Eigen::Array2d count = (high / config.resolution_m).ceil() - first;
   if (count.prod() > config.cells_at_most) {
     throw DataError("the floor extends over " + std::to_string(std::lround(high.x() - low.x())) + " x " +
-                    std::to_string(std::lround(high.y() - low.y())) +
-                    " m: a grid has at most " + std::to_string(std::lround(config.cells_at_most)) +
-                    " cells, so larger cells are needed");
+                    std::to_string(std::lround(high.y() - low.y())) + " m: a grid has at most " +
+                    std::to_string(std::lround(config.cells_at_most)) + " cells, so larger cells are needed");
   }
   grid.origin_m = first * config.resolution_m;
   grid.width = static_cast<int>(count.x());
@@ -100,7 +102,8 @@ void FloorGrid::draw_obstacle(const MapPoint& point, const Eigen::Vector2d& p_ce
   const int steps = static_cast<int>(std::ceil(2.0 * half));  // of at most one cell
   const float length = normal.norm();
   if (point.normal_map.isZero()) {
-    if (is_observed(point, config_.confirmed_observations)) mark(p_cells, kCellOccupied);
+    if (!is_observed(point, config_.confirmed_observations)) return;
+    mark(p_cells, point.filled >= kBlurredThirds ? kBlurred : kCellOccupied);
     return;
   }
   const std::int8_t value = is_observed(point, config_.wall_observations) ? kCellOccupied : kWeak;
@@ -181,6 +184,25 @@ void FloorGrid::fill_specks() {
   }
 }
 
+// What fills its cell, has no plane, and has ground below that was seen, has moved: a bush hides its ground, a post is
+// narrow.
+void FloorGrid::settle_blurred() {
+  for (int y = 0; y < grid_.height; ++y) {
+    for (int x = 0; x < grid_.width; ++x) {
+      std::int8_t& cell = grid_.cells[grid_.index(x, y)];
+      if (cell != kBlurred) continue;
+      int seen = 0;
+      for (int i = 0; i < 9; ++i) {
+        const int to_x = x + i % 3 - 1;
+        const int to_y = y + i / 3 - 1;
+        seen +=
+            grid_.contains(to_x, to_y) && cell_ground_[grid_.index(to_x, to_y)] == CellGround::kSeen ? 1 : 0;
+      }
+      cell = seen >= kSeenNeighbours ? kCellFree : kCellOccupied;
+    }
+  }
+}
+
 // Hysteresis: weak cells that are connected with an occupied one become occupied, the others what the ground says.
 void FloorGrid::confirm() {
   std::vector<std::size_t> front;
@@ -208,6 +230,7 @@ void FloorGrid::confirm() {
 }
 
 OccupancyGrid FloorGrid::finish() {
+  settle_blurred();
   confirm();
   clear_path();
   block_ways_out();

@@ -38,6 +38,7 @@ class FloorGrid {
   void draw_ground(const Eigen::Vector2d& p_cells);
   void draw_obstacle(const MapPoint& point, const Eigen::Vector2d& p_cells);
   void mark(const Eigen::Vector2d& p_cells, std::int8_t value);
+  void settle_blurred();
   void confirm();
   void block_ways_out();
   void clear_path();

@@ -13,11 +13,11 @@ namespace isobar {
 
 namespace {
 
-constexpr int kFillColumns = 12;         // 3 m: walls stand at most this far from ground that is seen
-constexpr double kMostColumns = 6.4e7;   // 2 km x 2 km
-constexpr float kDropM = 0.25F;          // more than any threshold or kerb that the ground is grown over
-constexpr float kDeepestDropM = 2.2F;    // below that it may be the floor below, under this one's slab
-constexpr double kMarginM = 0.5;         // beyond the slab, so that its border is seen as a way on
+constexpr int kFillColumns = 12;        // 3 m: walls stand at most this far from ground that is seen
+constexpr double kMostColumns = 6.4e7;  // 2 km x 2 km
+constexpr float kDropM = 0.25F;         // more than any threshold or kerb that the ground is grown over
+constexpr float kDeepestDropM = 2.2F;   // below that it may be the floor below, under this one's slab
+constexpr double kMarginM = 0.5;        // beyond the slab, so that its border is seen as a way on
 constexpr double kColumnM = GroundColumns::kColumnM;
 
 }  // namespace

@@ -12,11 +12,11 @@ namespace isobar {
 
 namespace {
 
-constexpr double kLevelGapM = 0.3;     // heights farther apart are of two levels
-constexpr double kNearLevelM = 0.2;    // ground this far beyond the driven heights is of the level
-constexpr double kBinM = 0.1;          // of the histogram of ground
-constexpr int kBinsAround = 2;         // that belong to a peak, on either side
-constexpr double kLeastPeak = 0.2;     // share of the largest peak that makes a level
+constexpr double kLevelGapM = 0.3;   // heights farther apart are of two levels
+constexpr double kNearLevelM = 0.2;  // ground this far beyond the driven heights is of the level
+constexpr double kBinM = 0.1;        // of the histogram of ground
+constexpr int kBinsAround = 2;       // that belong to a peak, on either side
+constexpr double kLeastPeak = 0.2;   // share of the largest peak that makes a level
 constexpr double kMostBaseHeightM = 2.0;
 constexpr double kColumnM2 = GroundColumns::kColumnM * GroundColumns::kColumnM;
 constexpr std::size_t kMostBins = 100'000;  // 10 km
@@ -57,8 +57,8 @@ Histogram histogram_of(const GroundColumns& ground) {
   histogram.area_m2.resize(std::min(static_cast<std::size_t>(last - histogram.first) + 1, kMostBins));
   for (const GroundColumns::Surface& surface : ground.surfaces()) {
     if (surface.count < GroundColumns::kLeastPoints) continue;
-    const auto bin = static_cast<std::size_t>(
-        floor_int(static_cast<double>(surface.height_m) / kBinM) - histogram.first);
+    const auto bin =
+        static_cast<std::size_t>(floor_int(static_cast<double>(surface.height_m) / kBinM) - histogram.first);
     if (bin < histogram.area_m2.size()) histogram.area_m2[bin] += kColumnM2;
   }
   return histogram;
@@ -124,11 +124,11 @@ std::vector<FloorLevel> levels_of_ground(const GroundColumns& ground, double lea
     const auto most = std::max_element(histogram.area_m2.begin(), histogram.area_m2.end());
     const std::ptrdiff_t bin = most - histogram.area_m2.begin();
     const FloorLevel level = peak_at(histogram, static_cast<std::size_t>(bin));
-    if (level.area_m2 <= 0.0 || (!levels.empty() && level.area_m2 < kLeastPeak * levels.front().area_m2)) break;
+    if (level.area_m2 <= 0.0 || (!levels.empty() && level.area_m2 < kLeastPeak * levels.front().area_m2))
+      break;
     levels.push_back(level);
     const std::ptrdiff_t first = std::max<std::ptrdiff_t>(bin - gap, 0);
-    const std::ptrdiff_t last =
-        std::min(bin + gap, static_cast<std::ptrdiff_t>(histogram.area_m2.size()));
+    const std::ptrdiff_t last = std::min(bin + gap, static_cast<std::ptrdiff_t>(histogram.area_m2.size()));
     std::fill(histogram.area_m2.begin() + first, histogram.area_m2.begin() + last, 0.0);
   }
   const auto is_below = [](const FloorLevel& a, const FloorLevel& b) { return a.height_m < b.height_m; };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/map/grid.hpp"
 
@@ -11,6 +12,8 @@ namespace isobar {
 namespace {
 
 constexpr float kSameSurfaceM = 0.12F;  // points of a column closer than this are of one surface
+constexpr float kThinM = 0.45F;         // below a surface; an object on the ground is drawn by its sides
+constexpr std::uint32_t kLarger = 2;    // times the points
 constexpr std::size_t kMostPending = std::size_t{1} << 20;
 constexpr double kFarthestM = 1e8;
 
@@ -52,6 +55,21 @@ void GroundColumns::compress() {
   }
   pending_.clear();
   pending_.shrink_to_fit();
+}
+
+void GroundColumns::finish() {
+  compress();
+  std::vector<Surface> kept;
+  kept.reserve(surfaces_.size());
+  for (auto at = surfaces_.begin(); at != surfaces_.end(); ++at) {
+    bool covered = false;
+    for (auto above = at + 1; above != surfaces_.end() && above->column == at->column; ++above) {
+      if (above->height_m - at->height_m > kThinM) break;
+      covered = covered || above->count >= kLarger * at->count;
+    }
+    if (!covered) kept.push_back(*at);
+  }
+  surfaces_ = std::move(kept);
 }
 
 std::span<const GroundColumns::Surface> GroundColumns::at(const ColumnIndex& column) const {

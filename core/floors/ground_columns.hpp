@@ -25,7 +25,8 @@ class GroundColumns {
   static constexpr double kColumnM = 0.25;     ///< edge of a column
   static constexpr float kLeastUpward = 0.8F;  ///< z of the normals, 37 degrees
 
-  static constexpr std::uint32_t kLeastPoints = 2;  ///< of a surface that counts as ground: single ones are noise
+  static constexpr std::uint32_t kLeastPoints =
+      2;  ///< of a surface that counts as ground: single ones are noise
 
   struct Surface {
     ColumnIndex column;
@@ -40,8 +41,9 @@ class GroundColumns {
   /// Takes the upward points; points that are not finite or beyond 1e8 m are left out. Memory: 32 bytes a surface and
   /// a bounded buffer.
   void add(std::span<const MapPoint> points);
-  /// After the last add(), before the first reading.
-  void finish() { compress(); }
+  /// After the last add(), before the first reading. Removes surfaces that lie close below a larger one of their column,
+  /// such as the underside of a thin deck: nothing can stand there.
+  void finish();
 
   /// Surfaces of a column, from the lowest to the highest.
   [[nodiscard]] std::span<const Surface> at(const ColumnIndex& column) const;

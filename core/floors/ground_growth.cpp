@@ -12,11 +12,11 @@ namespace {
 // Stairs have 50 to 70 %.
 constexpr float kRampSlope = 0.25F;
 constexpr float kUnevenM = 0.05F;
-constexpr float kMostStepM = 0.13F;    // also over a gap: steps of stairs are 0.15 … 0.2 m
-constexpr int kReachColumns = 2;       // gaps of one column are crossed
-constexpr float kAtPathM = 0.15F;      // the path's height against the map's
-constexpr int kFootprintColumns = 1;   // 0.25 … 0.5 m around the path
-constexpr double kAtLevelM = 0.1;      // ground this near to the driven heights is ground, connected or not
+constexpr float kMostStepM = 0.13F;   // also over a gap: steps of stairs are 0.15 … 0.2 m
+constexpr int kReachColumns = 2;      // gaps of one column are crossed
+constexpr float kAtPathM = 0.15F;     // the path's height against the map's
+constexpr int kFootprintColumns = 1;  // 0.25 … 0.5 m around the path
+constexpr double kAtLevelM = 0.1;     // ground this near to the driven heights is ground, connected or not
 
 std::uint64_t key_of(const ColumnIndex& column) {
   return std::uint64_t{static_cast<std::uint32_t>(column.x)} << 32U | static_cast<std::uint32_t>(column.y);
@@ -78,7 +78,8 @@ void GroundGrowth::propose_around(const Reached& from) {
       const float way_m = std::hypot(static_cast<float>(dx), static_cast<float>(dy)) *
                           static_cast<float>(GroundColumns::kColumnM);
       for (const GroundColumns::Surface& surface : columns_.at(column)) {
-        if (std::abs(surface.height_m - from.height_m) <= std::min(kUnevenM + kRampSlope * way_m, kMostStepM)) {
+        if (std::abs(surface.height_m - from.height_m) <=
+            std::min(kUnevenM + kRampSlope * way_m, kMostStepM)) {
           propose(column, surface.height_m);
         }
       }

@@ -50,16 +50,14 @@ std::vector<DrivenPlace> driven_places(std::span<const Eigen::Vector3d> path, do
   for (const Eigen::Vector3d& p_map : path) {
     if (!p_map.allFinite()) continue;
     newest = &p_map;
-    if (places.empty() ||
-        (p_map - places.back().p_map).head<2>().norm() >= DrivenPlace::kStepM) {
+    if (places.empty() || (p_map - places.back().p_map).head<2>().norm() >= DrivenPlace::kStepM) {
       places.push_back({p_map, false});
     }
   }
   if (newest != nullptr && *newest != places.back().p_map) places.push_back({*newest, false});
   std::size_t first = 0;
   for (std::size_t i = 1; i <= places.size(); ++i) {
-    const bool ends =
-        i == places.size() || std::abs(places[i].p_map.z() - places[i - 1].p_map.z()) > kJumpM;
+    const bool ends = i == places.size() || std::abs(places[i].p_map.z() - places[i - 1].p_map.z()) > kJumpM;
     if (!ends) continue;
     judge(std::span(places).subspan(first, i - first), most_slope);
     first = i;

@@ -33,7 +33,8 @@ OccupancyGrid cropped(const OccupancyGrid& grid, int margin) {
   part.origin_m += low.cast<double>() * grid.resolution_m;
   part.width = high.x() - low.x() + 1;
   part.height = high.y() - low.y() + 1;
-  part.cells.assign(static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height), kCellUnknown);
+  part.cells.assign(static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height),
+                    kCellUnknown);
   for (int y = std::max(low.y(), 0); y <= std::min(high.y(), grid.height - 1); ++y) {
     const int first = std::max(low.x(), 0);
     const int last = std::min(high.x(), grid.width - 1);

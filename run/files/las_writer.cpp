@@ -52,10 +52,11 @@ LasWriter::LasWriter(const std::filesystem::path& file) : name_(file.string()), 
 std::string LasWriter::header() const {
   const auto count = static_cast<std::uint32_t>(count_);
   LasBytes out;
-  out.put_text("LASF", 4).put<std::uint16_t>(0).put<std::uint16_t>(0).put_zeros(16);  // source, encoding, project
-  out.put<std::uint8_t>(1).put<std::uint8_t>(2);                                      // version
-  out.put_text("OTHER", 32).put_text("isobar", 32);       // "OTHER": created by neither of the listed processes
-  out.put<std::uint16_t>(0).put<std::uint16_t>(0);        // day and year of creation
+  out.put_text("LASF", 4).put<std::uint16_t>(0).put<std::uint16_t>(0).put_zeros(
+      16);                                           // source, encoding, project
+  out.put<std::uint8_t>(1).put<std::uint8_t>(2);     // version
+  out.put_text("OTHER", 32).put_text("isobar", 32);  // "OTHER": created by neither of the listed processes
+  out.put<std::uint16_t>(0).put<std::uint16_t>(0);   // day and year of creation
   out.put<std::uint16_t>(kHeaderBytes).put<std::uint32_t>(kHeaderBytes);  // the points follow at once
   out.put<std::uint32_t>(0);                                              // variable length records
   out.put<std::uint8_t>(0).put<std::uint16_t>(kRecordBytes);
@@ -63,20 +64,24 @@ std::string LasWriter::header() const {
   for (int axis = 0; axis < 3; ++axis) out.put(kScaleM);
   out.put_zeros(3 * sizeof(double));  // offsets
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    out.put(count_ > 0 ? highest_mm_[axis] * kScaleM : 0.0).put(count_ > 0 ? lowest_mm_[axis] * kScaleM : 0.0);
+    out.put(count_ > 0 ? highest_mm_[axis] * kScaleM : 0.0)
+        .put(count_ > 0 ? lowest_mm_[axis] * kScaleM : 0.0);
   }
   return out.bytes();
 }
 
 void LasWriter::add(const MapPoint& point) {
   const Eigen::Vector3d p_mm = (point.p_map / kScaleM).array().round();
-  const bool fits = p_mm.cwiseAbs().maxCoeff() <= static_cast<double>(std::numeric_limits<std::int32_t>::max());
-  if (!fits) throw DataError(name_ + ": a point lies farther from the origin than LAS can tell in millimetres");
+  const bool fits =
+      p_mm.cwiseAbs().maxCoeff() <= static_cast<double>(std::numeric_limits<std::int32_t>::max());
+  if (!fits)
+    throw DataError(name_ + ": a point lies farther from the origin than LAS can tell in millimetres");
   if (count_ == std::numeric_limits<std::uint32_t>::max()) {
     throw DataError(name_ + ": LAS 1.2 holds no more than 4294967295 points; use --box");
   }
   constexpr std::uint8_t kOnlyReturn = 1U | 1U << 3U;  // return 1 of 1
-  const std::array<std::int32_t, 3> x{static_cast<std::int32_t>(p_mm.x()), static_cast<std::int32_t>(p_mm.y()),
+  const std::array<std::int32_t, 3> x{static_cast<std::int32_t>(p_mm.x()),
+                                      static_cast<std::int32_t>(p_mm.y()),
                                       static_cast<std::int32_t>(p_mm.z())};
   // "Normalised" to 16 bits, as the specification demands: 255 becomes 65535.
   const auto intensity = static_cast<std::uint16_t>(point.intensity * 257);

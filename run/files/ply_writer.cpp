@@ -47,8 +47,13 @@ void PlyWriter::add(const MapPoint& point) {
     add(p_map.x(), p_map.y(), p_map.z(), point.intensity);
     return;
   }
-  const std::array<float, 7> vertex{p_map.x(),  p_map.y(),  p_map.z(), normal.x(),
-                                    normal.y(), normal.z(), static_cast<float>(point.intensity)};
+  const std::array<float, 7> vertex{p_map.x(),
+                                    p_map.y(),
+                                    p_map.z(),
+                                    normal.x(),
+                                    normal.y(),
+                                    normal.z(),
+                                    static_cast<float>(point.intensity)};
   file_.write(vertex.data(), sizeof(vertex));
   ++count_;
 }

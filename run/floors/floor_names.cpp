@@ -121,9 +121,8 @@ FloorNames FloorNames::parse(const std::string& text, const std::string& file) {
 const FloorNames::Entry* FloorNames::find(const Floor& floor) const {
   const auto distance_m = [&](const Entry& entry) { return std::abs(entry.name.height_m - floor.height_m); };
   const auto nearest =
-      std::min_element(entries_.begin(), entries_.end(), [&](const Entry& a, const Entry& b) {
-        return distance_m(a) < distance_m(b);
-      });
+      std::min_element(entries_.begin(), entries_.end(),
+                       [&](const Entry& a, const Entry& b) { return distance_m(a) < distance_m(b); });
   return nearest != entries_.end() && distance_m(*nearest) < kReachM ? &*nearest : nullptr;
 }
 
@@ -132,7 +131,8 @@ std::string FloorNames::name_of(const Floor& floor) const {
   return entry != nullptr ? entry->name.name : std::string();
 }
 
-void FloorNames::set(const std::filesystem::path& map_directory, const Floor& floor, const std::string& name) {
+void FloorNames::set(const std::filesystem::path& map_directory, const Floor& floor,
+                     const std::string& name) {
   const std::filesystem::path path = map_directory / kFloorNamesFile;
   if (!is_name(name)) throw DataError(path.string() + ": name: " + rule_of_name());
   const Entry* own = find(floor);
@@ -167,8 +167,8 @@ const Floor& floor_by(const Floors& floors, const FloorNames& names, const std::
   for (const Floor& floor : floors.floors) {
     const std::string name = names.name_of(floor);
     if (word == std::to_string(floor.number) || (!name.empty() && word == name)) return floor;
-    known += (known.empty() ? "" : ", ") + std::to_string(floor.number) +
-             (name.empty() ? "" : " (" + name + ")");
+    known +=
+        (known.empty() ? "" : ", ") + std::to_string(floor.number) + (name.empty() ? "" : " (" + name + ")");
   }
   throw UsageError("'" + word + "' is no floor of this map; it has " + (known.empty() ? "none" : known));
 }

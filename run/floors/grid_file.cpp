@@ -34,16 +34,18 @@ std::string one_line(std::string text) {
 void write_grid(const std::filesystem::path& directory, const std::string& name, const std::string& title,
                 const OccupancyGrid& grid) {
   const std::string comment = "# " + one_line(title) + "\n";
-  std::string image = "P5\n" + comment + std::to_string(grid.width) + " " + std::to_string(grid.height) + "\n255\n";
+  std::string image =
+      "P5\n" + comment + std::to_string(grid.width) + " " + std::to_string(grid.height) + "\n255\n";
   image.reserve(image.size() + grid.cells.size());
   for (int y = grid.height - 1; y >= 0; --y) {  // the first row of an image is the uppermost one
     for (int x = 0; x < grid.width; ++x) image += level_of(grid.cells[grid.index(x, y)]);
   }
   replace_file(directory / (name + ".pgm"), image);
   std::array<char, 160> numbers{};
-  std::snprintf(numbers.data(), numbers.size(), "resolution: %.6g\norigin: [%.6f, %.6f, 0.0]\n", grid.resolution_m,
-                grid.origin_m.x(), grid.origin_m.y());
-  replace_file(directory / (name + ".yaml"), comment + "image: " + name + ".pgm\nmode: trinary\n" + numbers.data() +
+  std::snprintf(numbers.data(), numbers.size(), "resolution: %.6g\norigin: [%.6f, %.6f, 0.0]\n",
+                grid.resolution_m, grid.origin_m.x(), grid.origin_m.y());
+  replace_file(directory / (name + ".yaml"), comment + "image: " + name + ".pgm\nmode: trinary\n" +
+                                                 numbers.data() +
                                                  "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.1\n");
 }
 

@@ -40,7 +40,8 @@ std::filesystem::path trajectory_of_map(const std::filesystem::path& map_directo
   const std::string number = name.substr(std::string_view(kMapDirectory).size());  // "", "_2" …
   for (const char* file : {kCorrectedFile, kTrajectoryFile}) {
     const std::filesystem::path of_frame = std::filesystem::path(file).stem().string() + number + ".tum";
-    if (std::filesystem::exists(folder.parent_path() / of_frame, error)) return folder.parent_path() / of_frame;
+    if (std::filesystem::exists(folder.parent_path() / of_frame, error))
+      return folder.parent_path() / of_frame;
   }
   return {};
 }
@@ -71,7 +72,8 @@ OccupancyGrid stored_floor_grid(FileTileStore& store, const StoredFloors& found,
   FloorGrid grid(found.ground, found.floors, floor, path, config);
   constexpr double kFar = std::numeric_limits<double>::max();
   const Floors::Slab slab = found.floors.slab_of(floor);
-  const MapBox box{{-kFar, -kFar, slab.lowest_m - 1.0}, {kFar, kFar, slab.highest_m + config.robot_height_m + 1.0}};
+  const MapBox box{{-kFar, -kFar, slab.lowest_m - 1.0},
+                   {kFar, kFar, slab.highest_m + config.robot_height_m + 1.0}};
   for_each_tile(store, store.header(), box, [&](std::span<const MapPoint> points) { grid.add(points); });
   return grid.finish();
 }

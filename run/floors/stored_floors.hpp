@@ -33,7 +33,8 @@ struct StoredFloors {
 
 /// Grid of one floor: reads the tiles around it once more.
 /// @param config surface_m is taken from the map
-[[nodiscard]] OccupancyGrid stored_floor_grid(FileTileStore& store, const StoredFloors& found, const Floor& floor,
-                                              const std::vector<Eigen::Vector3d>& path, GridConfig config);
+[[nodiscard]] OccupancyGrid stored_floor_grid(FileTileStore& store, const StoredFloors& found,
+                                              const Floor& floor, const std::vector<Eigen::Vector3d>& path,
+                                              GridConfig config);
 
 }  // namespace isobar::files

@@ -38,14 +38,16 @@ Eigen::Isometry3d transform_of(const StampedPose& pose) {
 /// A pose of the run, and where the robot was in truth.
 struct Anchor {
   Eigen::Vector3d p_map;
-  Eigen::Isometry3d T_true_map;  ///< by this pose alone: the grid as the robot there needs it, without drift elsewhere
+  Eigen::Isometry3d
+      T_true_map;  ///< by this pose alone: the grid as the robot there needs it, without drift elsewhere
 };
 
 std::vector<Anchor> anchors_of(const evaluation::Trajectory& run, const evaluation::Trajectory& reference) {
   std::vector<Anchor> anchors;
   for (const StampedPose& pose : run.poses) {
-    const auto at = std::lower_bound(reference.poses.begin(), reference.poses.end(), pose.stamp_ns,
-                                     [](const StampedPose& a, std::int64_t stamp) { return a.stamp_ns < stamp; });
+    const auto at =
+        std::lower_bound(reference.poses.begin(), reference.poses.end(), pose.stamp_ns,
+                         [](const StampedPose& a, std::int64_t stamp) { return a.stamp_ns < stamp; });
     if (at == reference.poses.end() || at->stamp_ns - pose.stamp_ns > 20'000'000) continue;
     if (!anchors.empty() && (pose.position_m - anchors.back().p_map).norm() < 0.25) continue;
     anchors.push_back({pose.position_m, transform_of(*at) * transform_of(pose).inverse()});
@@ -81,7 +83,8 @@ class FloorTruth {
         const Eigen::Vector2d p_map =
             grid.origin_m + (Eigen::Vector2d(x, y).array() + 0.5).matrix() * grid.resolution_m;
         const Anchor& anchor = nearest(p_map);
-        const Eigen::Vector3d p_true = anchor.T_true_map * Eigen::Vector3d(p_map.x(), p_map.y(), anchor.p_map.z());
+        const Eigen::Vector3d p_true =
+            anchor.T_true_map * Eigen::Vector3d(p_map.x(), p_map.y(), anchor.p_map.z());
         const Square square = TrueSection::square_of(p_true.head<2>());
         if (cell == kCellOccupied) {
           drawn.insert({square.x(), square.y()});
@@ -152,7 +155,8 @@ class FloorTruth {
 };
 
 /// Floors and the grid of one floor from points in memory, as a live map has them: 50 m x 50 m around a place.
-void measure_live(FileTileStore& store, const files::StoredFloors& found, const std::vector<Eigen::Vector3d>& path) {
+void measure_live(FileTileStore& store, const files::StoredFloors& found,
+                  const std::vector<Eigen::Vector3d>& path) {
   const Eigen::Vector3d centre = path[path.size() / 2];
   const Eigen::Vector3d reach(25.0, 25.0, 70.0);
   std::vector<MapPoint> points;
@@ -169,8 +173,8 @@ void measure_live(FileTileStore& store, const files::StoredFloors& found, const 
   const FloorGuess guess = floor_at(found.floors, centre, 0.05);
   const auto begin = Clock::now();
   const OccupancyGrid grid = floor_grid(points, found.floors, *guess.floor, near);
-  std::printf("50 m x 50 m in memory: %zu points, %zu poses, %d x %d cells: %.0f ms\n", points.size(), near.size(),
-              grid.width, grid.height, ms_since(begin));
+  std::printf("50 m x 50 m in memory: %zu points, %zu poses, %d x %d cells: %.0f ms\n", points.size(),
+              near.size(), grid.width, grid.height, ms_since(begin));
 }
 
 void run(const std::string& recording, const std::string& run_folder) {
@@ -180,15 +184,18 @@ void run(const std::string& recording, const std::string& run_folder) {
   const std::vector<Eigen::Vector3d> path = files::path_of(trajectory);
   auto begin = Clock::now();
   const files::StoredFloors found = files::find_stored_floors(*store, path);
-  std::printf("%zu floors of %llu points: %.0f ms, base_link %.3f m above the ground\n", found.floors.floors.size(),
-              static_cast<unsigned long long>(found.read.points), ms_since(begin), found.floors.base_height_m);
+  std::printf("%zu floors of %llu points: %.0f ms, base_link %.3f m above the ground\n",
+              found.floors.floors.size(), static_cast<unsigned long long>(found.read.points), ms_since(begin),
+              found.floors.base_height_m);
   const auto read = [](const std::filesystem::path& file) {
     return evaluation::parse_tum(files::read_text_file(file), file.string());
   };
   const std::vector<Anchor> anchors =
       anchors_of(read(trajectory), read(std::filesystem::path(recording) / "reference.tum"));
   const TrueSection section(files::read_stl(std::filesystem::path(recording) / files::kSurfacesFile));
-  std::printf("floor  height m  grid cells    ms  occupied  on wall %%  within a cell %%  seen walls  covered %%  free in sight %%\n");
+  std::printf(
+      "floor  height m  grid cells    ms  occupied  on wall %%  within a cell %%  seen walls  covered %%  "
+      "free in sight %%\n");
   for (const Floor& floor : found.floors.floors) {
     begin = Clock::now();
     const GridConfig config;
@@ -200,10 +207,10 @@ void run(const std::string& recording, const std::string& run_folder) {
       if (slab.contains(anchor.p_map.z() - found.floors.base_height_m)) own.push_back(anchor);
     }
     const Shares shares = FloorTruth(section, own, found.floors.base_height_m, config).compare(grid);
-    std::printf("%5d  %8.2f  %10zu  %4.0f  %8zu  %9.1f  %15.1f  %10zu  %9.1f  %15.1f\n", floor.number, floor.height_m,
-                grid.cells.size(), ms, shares.occupied, percent(shares.on_wall, shares.occupied),
-                percent(shares.near_wall, shares.occupied), shares.seen, percent(shares.covered, shares.seen),
-                percent(shares.free_visible, shares.free));
+    std::printf("%5d  %8.2f  %10zu  %4.0f  %8zu  %9.1f  %15.1f  %10zu  %9.1f  %15.1f\n", floor.number,
+                floor.height_m, grid.cells.size(), ms, shares.occupied,
+                percent(shares.on_wall, shares.occupied), percent(shares.near_wall, shares.occupied),
+                shares.seen, percent(shares.covered, shares.seen), percent(shares.free_visible, shares.free));
   }
   measure_live(*store, found, path);
 }

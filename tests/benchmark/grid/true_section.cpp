@@ -12,7 +12,8 @@ namespace {
 constexpr double kSampleM = 0.03;
 
 std::uint64_t key_of(const TrueSection::Square& square) {
-  return std::uint64_t{static_cast<std::uint32_t>(square.x())} << 32U | static_cast<std::uint32_t>(square.y());
+  return std::uint64_t{static_cast<std::uint32_t>(square.x())} << 32U |
+         static_cast<std::uint32_t>(square.y());
 }
 
 }  // namespace

@@ -47,7 +47,8 @@ TEST_CASE("certainty falls with the uncertainty of the height, down to the share
   CHECK(last < 0.34);
 }
 
-TEST_CASE("far from all floors the nearest is named with certainty 0, and a height that is no number with none") {
+TEST_CASE(
+    "far from all floors the nearest is named with certainty 0, and a height that is no number with none") {
   const Floors floors = three();
   const FloorGuess far = floor_at(floors, {5.0, 5.0, 900.0}, 0.05);
   REQUIRE(far.floor != nullptr);

@@ -73,10 +73,11 @@ void see_room(LocalMap& map, std::int64_t& stamp_ns, int seconds, bool person) {
       for (int ring = 0; ring < 32; ++ring) {
         const double azimuth = 0.4 * i * std::numbers::pi / 180.0;
         const double elevation = (-15.5 + ring) * std::numbers::pi / 180.0;
-        const Eigen::Vector3d d(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
-                                std::sin(elevation));
+        const Eigen::Vector3d d(std::cos(elevation) * std::cos(azimuth),
+                                std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
         const Eigen::Vector3f p = (range_in_room(d, person) * d).cast<float>();
-        scan->points[scan->point_count++] = ScanPoint{p.x(), p.y(), p.z(), 0, static_cast<std::uint8_t>(ring), 50};
+        scan->points[scan->point_count++] =
+            ScanPoint{p.x(), p.y(), p.z(), 0, static_cast<std::uint8_t>(ring), 50};
       }
     }
     map.update(*scan);
