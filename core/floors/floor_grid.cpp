@@ -17,9 +17,11 @@ constexpr int kMarginCells = 4;       // of unknown around the known part
 constexpr float kUprightM = 0.5F;     // horizontal part of a normal above which a surface is drawn as a line
 constexpr double kRayStartsM = 1.0;   // between places of the path from which rays are cast
 constexpr std::int8_t kWeak = 50;     // an obstacle that counts if it is connected to a confirmed one
-constexpr std::int8_t kBlurred = 40;  // one without a plane all over its cell of the map
-constexpr int kBlurredThirds = 18;    // of 27
-constexpr int kSeenNeighbours = 5;    // cells of 9 with ground below what has moved
+constexpr std::int8_t kBlurred = 40;  // one without a plane, in many places of its cell of the map
+constexpr int kBlurredThirds = 8;     // of 27; a post has 3 to 6
+constexpr double kTrailWallM = 0.6;   // MapConfig::see_through_margin_m and a cell of the map
+constexpr int kTrailGroundCells = 3;  // around a cell
+constexpr int kTrailGroundSeen = 5;   // of these 49
 constexpr int kSpeckNeighbours = 6;   // free ones of 8 that make an unknown cell free
 
 bool is_observed(const MapPoint& point, int least) {
@@ -184,23 +186,38 @@ void FloorGrid::fill_specks() {
   }
 }
 
-// What fills its cell, has no plane, and has ground below that was seen, has moved: a bush hides its ground, a post is
-// narrow.
-void FloorGrid::settle_blurred() {
-  for (int y = 0; y < grid_.height; ++y) {
-    for (int x = 0; x < grid_.width; ++x) {
-      std::int8_t& cell = grid_.cells[grid_.index(x, y)];
-      if (cell != kBlurred) continue;
-      int seen = 0;
-      for (int i = 0; i < 9; ++i) {
-        const int to_x = x + i % 3 - 1;
-        const int to_y = y + i / 3 - 1;
-        seen +=
-            grid_.contains(to_x, to_y) && cell_ground_[grid_.index(to_x, to_y)] == CellGround::kSeen ? 1 : 0;
-      }
-      cell = seen >= kSeenNeighbours ? kCellFree : kCellOccupied;
+int FloorGrid::count_around(int x, int y, int reach,
+                            const std::function<bool(std::size_t)>& is_counted) const {
+  int count = 0;
+  for (int to_y = std::max(y - reach, 0); to_y <= std::min(y + reach, grid_.height - 1); ++to_y) {
+    for (int to_x = std::max(x - reach, 0); to_x <= std::min(x + reach, grid_.width - 1); ++to_x) {
+      count += is_counted(grid_.index(to_x, to_y)) ? 1 : 0;
     }
   }
+  return count;
+}
+
+// The map clears what people leave once rays end well behind it. Before a wall that is nearer they do not, and a trail of
+// what has no plane stays, with the ground below it seen, and apart from the wall.
+void FloorGrid::settle_blurred() {
+  const int wall_reach = static_cast<int>(kTrailWallM / grid_.resolution_m);
+  const auto is_plane = [&](std::size_t at) {
+    return grid_.cells[at] == kWeak || grid_.cells[at] == kCellOccupied;
+  };
+  const auto is_seen = [&](std::size_t at) { return cell_ground_[at] == CellGround::kSeen; };
+  std::vector<std::size_t> moved;
+  std::vector<std::size_t> stays;
+  for (int y = 0; y < grid_.height; ++y) {
+    for (int x = 0; x < grid_.width; ++x) {
+      if (grid_.cells[grid_.index(x, y)] != kBlurred) continue;
+      const bool has_moved = count_around(x, y, 1, is_plane) == 0 &&
+                             count_around(x, y, kTrailGroundCells, is_seen) >= kTrailGroundSeen &&
+                             count_around(x, y, wall_reach, is_plane) > 0;
+      (has_moved ? moved : stays).push_back(grid_.index(x, y));
+    }
+  }
+  for (const std::size_t at : moved) grid_.cells[at] = is_seen(at) ? kCellFree : kCellUnknown;
+  for (const std::size_t at : stays) grid_.cells[at] = kCellOccupied;
 }
 
 // Hysteresis: weak cells that are connected with an occupied one become occupied, the others what the ground says.

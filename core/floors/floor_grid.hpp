@@ -3,7 +3,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -38,6 +40,8 @@ class FloorGrid {
   void draw_ground(const Eigen::Vector2d& p_cells);
   void draw_obstacle(const MapPoint& point, const Eigen::Vector2d& p_cells);
   void mark(const Eigen::Vector2d& p_cells, std::int8_t value);
+  [[nodiscard]] int count_around(int x, int y, int reach,
+                                 const std::function<bool(std::size_t)>& is_counted) const;
   void settle_blurred();
   void confirm();
   void block_ways_out();

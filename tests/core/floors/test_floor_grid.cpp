@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "core/errors.hpp"
 #include "core/floors/find_floors.hpp"
 #include "core/floors/floor_grid.hpp"
@@ -146,6 +148,60 @@ TEST_CASE("a table is an obstacle; a threshold, a ceiling and a sign above the r
   for (double x = 4.1; x < 4.9; x += 0.05) CHECK(grid.at({x, 4.5}) == kCellOccupied);
   CHECK(grid.at({7.15, 3.0}) == kCellFree);
   CHECK(grid.at({2.0, 4.5}) == kCellFree);
+}
+
+TEST_CASE("what walked by leaves no obstacle; a post, a chair, a bush and a wall that is seen twice stay") {
+  Scene scene;
+  scene.add_ground(0.0, 0.0, 10.0, 6.0, 0.0);
+  std::erase_if(scene.points, [](const MapPoint& p) {  // the bush hides its ground
+    return std::abs(p.p_map.x() - 6.0) < 0.5 && std::abs(p.p_map.y() - 5.0) < 0.5;
+  });
+  const auto add_column = [&](double x, double y, int observations, int filled) {
+    for (double dx = -0.09; dx < 0.1; dx += 0.09) {
+      for (double z = 0.2; z < 1.5; z += 0.09) {
+        MapPoint point{{x + dx, y, z}, {0.0F, 0.0F, 0.0F}, 50};
+        point.observations = static_cast<std::uint8_t>(observations);
+        point.filled = static_cast<std::uint8_t>(filled);
+        scene.points.push_back(point);
+      }
+    }
+  };
+  add_column(2.0, 5.0, 12, 20);  // a person who passed
+  add_column(3.0, 5.0, 80, 12);  // one who walked between the robot and a wall
+  scene.add_wall({3.4, 5.4}, {2.6, 5.4}, 0.0, 2.0);
+  add_column(4.0, 5.0, 80, 9);   // a post
+  add_column(5.0, 5.0, 80, 12);  // a chair
+  add_column(6.0, 5.0, 80, 27);  // a bush
+  const auto wall = static_cast<std::ptrdiff_t>(scene.points.size());
+  scene.add_wall({9.0, 4.5}, {7.0, 4.5}, 0.0, 2.0);  // seen seldom, but for an end
+  scene.add_wall({7.0, 5.5}, {6.8, 5.5}, 0.0, 2.0);  // seen seldom, alone
+  std::for_each(scene.points.begin() + wall, scene.points.end(),
+                [](MapPoint& p) { p.observations = p.p_map.x() > 8.5 ? 20 : 5; });
+  scene.drive_to({1.0, 2.0, 0.0});
+  scene.drive_to({9.0, 2.0, 0.0});
+  const OccupancyGrid grid = grid_of(scene);
+  CHECK(grid.at({2.0, 5.0}) == kCellFree);
+  CHECK(grid.at({3.0, 5.0}) == kCellFree);
+  CHECK(grid.at({5.0, 5.0}) == kCellOccupied);
+  CHECK(grid.at({4.0, 5.0}) == kCellOccupied);
+  CHECK(grid.at({6.0, 5.0}) == kCellOccupied);
+  CHECK(std::max(grid.at({7.5, 4.48}), grid.at({7.5, 4.52})) == kCellOccupied);
+  CHECK(std::max(grid.at({6.9, 5.48}), grid.at({6.9, 5.52})) != kCellOccupied);
+}
+
+TEST_CASE("the underside of a thin deck that seems to face upwards makes no obstacle of the deck") {
+  Scene scene;
+  scene.add_ground(0.0, 0.0, 10.0, 4.0, 0.0);
+  for (double x = 4.0; x < 6.0; x += 0.2) {  // a few points of it, 0.25 m below
+    scene.points.push_back({{x, 2.05, -0.25}, {0.0F, 0.0F, 1.0F}, 50});
+    scene.points.push_back({{x, 2.15, -0.25}, {0.0F, 0.0F, 1.0F}, 50});
+  }
+  scene.add({10.0, 0.0, 0.0}, {4.0, 0.0, -0.3},
+            {0.0, 4.0, 0.0});  // leads down, so that the underside is near a height
+  scene.drive_to({1.0, 2.0, 0.0});
+  scene.drive_to({13.0, 2.0, -0.22});
+  const OccupancyGrid grid = grid_of(scene);
+  CHECK(std::count(grid.cells.begin(), grid.cells.end(), kCellOccupied) == 0);
 }
 
 TEST_CASE("a grid that would be too large is refused") {

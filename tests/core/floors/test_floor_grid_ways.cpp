@@ -165,13 +165,14 @@ TEST_CASE("stairs that lead up are an obstacle, unless the robot drove them") {
 TEST_CASE("a ray clears nothing far beyond the last ground that was seen, unless it meets a wall near it") {
   Scene scene;
   scene.add_ground(0.0, 0.0, 6.0, 6.0, 0.0);
-  scene.add_wall({12.0, 6.0}, {12.0, 0.0}, 0.0, 2.5);  // 6 m without ground before it
+  scene.add_wall({8.8, 6.0}, {8.8, 0.0}, 0.0, 2.5);  // 2.8 m without ground before it
   scene.add_wall({0.0, 7.5}, {0.0, 0.0}, 0.0, 2.5);
   scene.add_wall({6.0, 7.5}, {0.0, 7.5}, 0.0, 2.5);  // 1.5 m without ground before it
   scene.drive_to({1.0, 3.0, 0.0});
   scene.drive_to({5.0, 3.0, 0.0});
   const OccupancyGrid grid = grid_of(scene, 0);
-  CHECK(grid.at({8.0, 3.0}) == kCellUnknown);
+  CHECK(std::max(grid.at({8.78, 3.0}), grid.at({8.82, 3.0})) == kCellOccupied);
+  CHECK(grid.at({7.5, 3.0}) == kCellUnknown);
   CHECK(grid.at({3.0, 7.0}) == kCellFree);
 }
 
