@@ -166,7 +166,7 @@ TEST_CASE("what walked by leaves no obstacle; a post, a chair, a bush and a wall
       }
     }
   };
-  add_column(2.0, 5.0, 12, 20);  // a person who passed
+  add_column(1.2, 4.0, 12, 20);  // a person who passed
   add_column(3.0, 5.0, 80, 12);  // one who walked between the robot and a wall
   scene.add_wall({3.4, 5.4}, {2.6, 5.4}, 0.0, 2.0);
   add_column(4.0, 5.0, 80, 9);   // a post
@@ -180,7 +180,7 @@ TEST_CASE("what walked by leaves no obstacle; a post, a chair, a bush and a wall
   scene.drive_to({1.0, 2.0, 0.0});
   scene.drive_to({9.0, 2.0, 0.0});
   const OccupancyGrid grid = grid_of(scene);
-  CHECK(grid.at({2.0, 5.0}) == kCellFree);
+  CHECK(grid.at({1.2, 4.0}) == kCellFree);
   CHECK(grid.at({3.0, 5.0}) == kCellFree);
   CHECK(grid.at({5.0, 5.0}) == kCellOccupied);
   CHECK(grid.at({4.0, 5.0}) == kCellOccupied);
@@ -189,19 +189,19 @@ TEST_CASE("what walked by leaves no obstacle; a post, a chair, a bush and a wall
   CHECK(std::max(grid.at({6.9, 5.48}), grid.at({6.9, 5.52})) != kCellOccupied);
 }
 
-TEST_CASE("the underside of a thin deck that seems to face upwards makes no obstacle of the deck") {
+TEST_CASE("the underside of a thin deck that seems to face upwards is no ground, a floor a storey below is") {
   Scene scene;
-  scene.add_ground(0.0, 0.0, 10.0, 4.0, 0.0);
-  for (double x = 4.0; x < 6.0; x += 0.2) {  // a few points of it, 0.25 m below
-    scene.points.push_back({{x, 2.05, -0.25}, {0.0F, 0.0F, 1.0F}, 50});
-    scene.points.push_back({{x, 2.15, -0.25}, {0.0F, 0.0F, 1.0F}, 50});
+  scene.add_ground(0.0, 0.0, 1.0, 1.0, 0.0);
+  for (const double z : {-0.25, -3.0}) {
+    for (const double x : {0.1, 0.15}) scene.points.push_back({{x, 0.1, z}, {0.0F, 0.0F, 1.0F}, 50});
   }
-  scene.add({10.0, 0.0, 0.0}, {4.0, 0.0, -0.3},
-            {0.0, 4.0, 0.0});  // leads down, so that the underside is near a height
-  scene.drive_to({1.0, 2.0, 0.0});
-  scene.drive_to({13.0, 2.0, -0.22});
-  const OccupancyGrid grid = grid_of(scene);
-  CHECK(std::count(grid.cells.begin(), grid.cells.end(), kCellOccupied) == 0);
+  GroundColumns ground;
+  ground.add(scene.points);
+  ground.finish();
+  const auto surfaces = ground.at({0, 0});
+  REQUIRE(surfaces.size() == 2);
+  CHECK(surfaces[0].height_m == doctest::Approx(-3.0));
+  CHECK(surfaces[1].height_m == doctest::Approx(0.0));
 }
 
 TEST_CASE("a grid that would be too large is refused") {
