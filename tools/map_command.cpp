@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `isobar map`: contents, check and export of the map of a run.
+// `isobar map`: contents, check and export of the map of a run; floors and grids are in files of their own.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -15,31 +15,37 @@
 #include "run/files/run_layout.hpp"
 #include "run/tile_store/file_tile_store.hpp"
 #include "tools/commands.hpp"
+#include "tools/map_parts.hpp"
 #include "tools/subcommand.hpp"
 
 namespace isobar::tools {
+
+std::filesystem::path map_folder_of(const std::filesystem::path& directory) {
+  const std::filesystem::path inside = directory / files::kMapDirectory;
+  const bool is_run =
+      !std::filesystem::exists(directory / "map.toml") && std::filesystem::exists(inside / "map.toml");
+  return is_run ? inside : directory;
+}
+
+std::unique_ptr<FileTileStore> open_map(const std::filesystem::path& directory) {
+  return FileTileStore::open_to_read(map_folder_of(directory));
+}
+
+void print_faults(const TileStoreCounters& counters) {
+  if (counters.torn > 0) {
+    std::printf("torn: %llu tiles with an interrupted or unfinished write\n",
+                static_cast<unsigned long long>(counters.torn));
+  }
+  if (counters.damaged > 0) {
+    std::printf("damaged: %llu\n", static_cast<unsigned long long>(counters.damaged));
+  }
+  if (!counters.first_damage.empty()) std::printf("first: %s\n", counters.first_damage.c_str());
+}
 
 namespace {
 
 using Store = std::unique_ptr<FileTileStore>;
 using Count = unsigned long long;
-
-/// Opens a map's folder, or the map in the folder of a run.
-Store open_map(const std::filesystem::path& directory) {
-  const std::filesystem::path inside = directory / files::kMapDirectory;
-  const bool is_run =
-      !std::filesystem::exists(directory / "map.toml") && std::filesystem::exists(inside / "map.toml");
-  return FileTileStore::open_to_read(is_run ? inside : directory);
-}
-
-/// Prints the damage found on opening; nothing without damage.
-void print_faults(const TileStoreCounters& counters) {
-  if (counters.torn > 0) {
-    std::printf("torn: %llu tiles with an interrupted or unfinished write\n", Count{counters.torn});
-  }
-  if (counters.damaged > 0) std::printf("damaged: %llu\n", Count{counters.damaged});
-  if (!counters.first_damage.empty()) std::printf("first: %s\n", counters.first_damage.c_str());
-}
 
 files::MapBox extent_of(const std::vector<TileKey>& keys, double tile_m) {
   files::MapBox extent = files::MapBox::of_tile(keys.front(), tile_m);
@@ -129,9 +135,9 @@ void run_export(const MapOptions& options) {
   if (store->tile_count() == 0) {
     throw DataError(options.directory.string() + ": the map holds no tiles yet, so nothing was exported");
   }
-  files::PlyWriter ply(options.out);
-  const files::MapExport done = files::export_map(*store, store->header(), box, ply);
-  ply.close();
+  const auto file = files::open_point_file(options.out);
+  const files::MapExport done = files::export_map(*store, store->header(), box, *file);
+  file->close();
   print_faults(store->counters());
   std::printf("%llu points of %llu tiles in %s\n", Count{done.points}, Count{done.tiles},
               options.out.c_str());
@@ -158,14 +164,20 @@ Subcommand<MapOptions> add_part(CLI::App& map, const char* name, const char* pur
 }  // namespace
 
 void add_map_command(CLI::App& app) {
-  CLI::App& map = *app.add_subcommand("map", "Show, check and export the map of a run");
+  CLI::App& map =
+      *app.add_subcommand("map", "Show, check and export the map of a run; its floors and their grids");
   map.require_subcommand(1);
   add_part(map, "info", "Tiles, bytes, extent, damage", run_info);
   add_part(map, "check", "Read every tile; exit code 65 when any is damaged", run_check);
   const auto [command, options] =
-      add_part(map, "export", "Write the points as PLY, in the order of the tiles", run_export);
-  command.add_option("--out", options.out, "PLY file: x y z intensity")->required();
+      add_part(map, "export", "Write the points for other programs, in the order of the tiles", run_export);
+  command
+      .add_option("--out", options.out,
+                  "file of points, in the format of its ending: " + std::string(files::kPointFileEndings))
+      ->required();
   command.add_option("--box", options.box, "only points in the box X0 Y0 Z0 X1 Y1 Z1 [m]")->expected(6);
+  add_map_floors_command(map);
+  add_map_grid_command(map);
 }
 
 }  // namespace isobar::tools

@@ -2,6 +2,7 @@
 // Points of a tile for files and viewers.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 
@@ -38,6 +39,18 @@ struct CellPlace {
   float cell_m;
 };
 
+// A point of the cell. `p_cell`: from its centre [m].
+MapPoint point_of(const MapCell& cell, const CellPlace& place, const Eigen::Vector3f& p_cell,
+                  const Eigen::Vector3f& normal) {
+  MapPoint point;
+  point.p_map = place.centre_map + p_cell.cast<double>();
+  point.normal_map = normal;
+  point.intensity = cell.intensity;
+  point.observations = static_cast<std::uint8_t>(cell.moments.count());
+  point.filled = static_cast<std::uint8_t>(std::popcount(cell.occupied_sub_cells));
+  return point;
+}
+
 // One point per column of sub-cells along the axis nearest to the normal. `q_cell`: the plane's point from
 // the cell's centre [m].
 void append_plane_points(const MapCell& cell, const CellPlace& place, const Eigen::Vector3f& q_cell,
@@ -55,7 +68,7 @@ void append_plane_points(const MapCell& cell, const CellPlace& place, const Eige
       continue;
     }
     done.at(static_cast<std::size_t>(column)) = true;
-    points.push_back({place.centre_map + p_cell.cast<double>(), normal, cell.intensity});
+    points.push_back(point_of(cell, place, p_cell, normal));
   }
 }
 
@@ -63,7 +76,7 @@ void append_sub_cell_centres(const MapCell& cell, const CellPlace& place, std::v
   for (int bit = 0; bit < kSubCells; ++bit) {
     if ((cell.occupied_sub_cells >> static_cast<unsigned>(bit) & 1U) == 0) continue;
     const Eigen::Vector3f p_cell = sub_cell_centre(sub_cell(bit), place.cell_m);
-    points.push_back({place.centre_map + p_cell.cast<double>(), Eigen::Vector3f::Zero(), cell.intensity});
+    points.push_back(point_of(cell, place, p_cell, Eigen::Vector3f::Zero()));
   }
 }
 

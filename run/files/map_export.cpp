@@ -25,8 +25,8 @@ std::string tile_name(const TileKey& key) {
   return "tile (" + std::to_string(key.x) + ", " + std::to_string(key.y) + ", " + std::to_string(key.z) + ")";
 }
 
-MapExport export_map(FileTileStore& store, const MapHeader& header, const std::optional<MapBox>& box,
-                     PlyWriter& ply) {
+MapExport for_each_tile(FileTileStore& store, const MapHeader& header, const std::optional<MapBox>& box,
+                        const std::function<void(std::span<const MapPoint>)>& visit) {
   MapExport done;
   std::vector<std::byte> bytes;
   std::vector<MapPoint> points;
@@ -39,13 +39,23 @@ MapExport export_map(FileTileStore& store, const MapHeader& header, const std::o
       continue;
     }
     ++done.tiles;
+    done.points += points.size();
+    visit(points);
+  }
+  return done;
+}
+
+MapExport export_map(FileTileStore& store, const MapHeader& header, const std::optional<MapBox>& box,
+                     PointFile& file) {
+  std::uint64_t written = 0;
+  MapExport done = for_each_tile(store, header, box, [&](std::span<const MapPoint> points) {
     for (const MapPoint& point : points) {
       if (box && !box->contains(point.p_map)) continue;
-      const Eigen::Vector3f p_map = point.p_map.cast<float>();
-      ply.add(p_map.x(), p_map.y(), p_map.z(), point.intensity);
-      ++done.points;
+      file.add(point);
+      ++written;
     }
-  }
+  });
+  done.points = written;
   return done;
 }
 

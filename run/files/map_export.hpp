@@ -4,10 +4,12 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 
-#include "run/files/ply_writer.hpp"
+#include "run/files/point_file.hpp"
 #include "run/tile_store/file_tile_store.hpp"
 #include "run/tile_store/map_folder.hpp"
 
@@ -31,16 +33,21 @@ struct MapBox {
 
 struct MapExport {
   std::uint64_t tiles = 0;       ///< read
-  std::uint64_t points = 0;      ///< written
+  std::uint64_t points = 0;      ///< written, or visited
   std::uint64_t unreadable = 0;  ///< damaged tiles, and tiles that this program cannot decode
   std::string first_unreadable;  ///< tile_name()
 };
 
-/// Writes the points of all tiles to `ply`, in the order of the tiles' keys: one tile in memory at a time,
-/// and equal maps give equal files. Unreadable tiles are counted and left out.
+/// Calls `visit` with the points of each tile that may have points in the box, in the order of the tiles' keys: one
+/// tile in memory at a time. Unreadable tiles are counted and left out.
+/// @param box nothing: all tiles
+MapExport for_each_tile(FileTileStore& store, const MapHeader& header, const std::optional<MapBox>& box,
+                        const std::function<void(std::span<const MapPoint>)>& visit);
+
+/// Writes the points of all tiles to `file`, in the order of for_each_tile(): equal maps give equal files.
 /// @param box only points inside; nothing: all points
-/// @throws ServiceError when `ply` cannot be written
+/// @throws ServiceError when `file` cannot be written
 MapExport export_map(FileTileStore& store, const MapHeader& header, const std::optional<MapBox>& box,
-                     PlyWriter& ply);
+                     PointFile& file);
 
 }  // namespace isobar::files

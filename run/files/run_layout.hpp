@@ -13,7 +13,7 @@ inline constexpr const char* kCorrectedTrajectoryFile =
     "trajectory-corrected.tum";                           ///< the same, after the loops
 inline constexpr const char* kStatusFile = "status.csv";  ///< how each pose came about: kStatusColumns
 inline constexpr const char* kCovarianceFile = "covariance.csv";  ///< of each pose: kCovarianceColumns
-inline constexpr const char* kMapPointsFile = "map.ply";          ///< the map's points: x, y, z, intensity
+inline constexpr const char* kMapPointsFile = "map.ply";          ///< the map's points
 inline constexpr const char* kSettingsFile = "settings.toml";     ///< every setting of the run
 inline constexpr const char* kCountersFile = "counters.csv";      ///< name, count, first message
 inline constexpr const char* kMountsFile = "mounts.toml";         ///< mounts as found, for the configuration

@@ -56,9 +56,9 @@ void RunOutput::add_pose(const PoseEstimate& pose, const Prior& prior) {
 }
 
 MapExport RunOutput::write_map(FileTileStore& store, const MapHeader& header) {
-  PlyWriter ply(directory_ / name_of_session(kMapPointsFile, session_));
-  MapExport done = export_map(store, header, std::nullopt, ply);
-  ply.close();
+  const auto ply = open_point_file(directory_ / name_of_session(kMapPointsFile, session_));
+  MapExport done = export_map(store, header, std::nullopt, *ply);
+  ply->close();
   map_points_ = done.points;
   return done;
 }

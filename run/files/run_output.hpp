@@ -10,7 +10,7 @@
 
 #include "core/estimates.hpp"
 #include "run/files/map_export.hpp"
-#include "run/files/ply_writer.hpp"
+#include "run/files/point_file.hpp"
 #include "run/files/pose_writer.hpp"
 #include "run/files/run_layout.hpp"
 

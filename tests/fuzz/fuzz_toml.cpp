@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fuzz target: configuration and manifest. An accepted configuration must print as one that is accepted.
+// Fuzz target: configuration, manifest and names of floors. An accepted configuration must print as one that is accepted.
 #include <cstdint>
 #include <cstdlib>
 #include <string>
@@ -8,6 +8,7 @@
 
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
+#include "run/floors/floor_names.hpp"
 #include "run/recording/manifest.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -26,7 +27,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::vector<std::string> warnings;
     isobar::recording::parse_manifest(text, "fuzz.toml", warnings);
   } catch (const isobar::DataError&) {
-    return 0;  // the specified refusal
+    // the specified refusal
+  }
+  try {
+    static_cast<void>(isobar::files::FloorNames::parse(std::string(text), "floors.toml"));
+  } catch (const isobar::DataError&) {
+    return 0;  // the same
   }
   return 0;
 }

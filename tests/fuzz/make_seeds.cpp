@@ -180,6 +180,7 @@ int main(int count, char** arguments) {
   recording_seeds();
   tile_store_seeds();
   save("fuzz_toml", "config", show_config(Config{}));
+  save("fuzz_toml", "floors", "[[floor]]\nheight_m = 3.05\nname = \"First\"\n");
   save("fuzz_toml", "short",
        "method = \"4dof\"\n[lidar]\nmodel = \"HDL-32E\"\nxyz_m = [0.1, 0, 0.45]\n[map]\ncell_m = 0.3\n");
   save("fuzz_pressure_log", "own", "t_ns,pressure_pa,temperature_c\n1586000000000000000,98712.5,21.5\n");

@@ -34,9 +34,9 @@ TEST_CASE("the map of a run is complete in its folder, and map.ply is its export
   CHECK(store->tile_count() >= 8);  // a room with stairs, tiles of 8.8 m
   CHECK(store->header() == map_header(Config{}));
   const std::filesystem::path exported = out / "again.ply";
-  files::PlyWriter ply(exported);
-  const files::MapExport done = files::export_map(*store, store->header(), std::nullopt, ply);
-  ply.close();
+  const auto ply = files::open_point_file(exported);
+  const files::MapExport done = files::export_map(*store, store->header(), std::nullopt, *ply);
+  ply->close();
   CHECK(done.points == summary.map_points);
   CHECK(done.unreadable == 0);
   CHECK(bytes_of(exported) == bytes_of(out / "map.ply"));

@@ -81,4 +81,38 @@ TEST_CASE("a folder without a map and a box with swapped corners are refused") {
   CHECK(map_command({}) == 64);
 }
 
+TEST_CASE("export takes the format from the ending and refuses another one before it writes") {
+  const Scratch scratch;
+  const std::string folder = scratch.path().string();
+  { put_tiles(*FileTileStore::create(scratch.path(), {}, {})); }
+  CHECK(map_command({"export", folder, "--out", folder + "/x.pcd"}) == 0);
+  CHECK(map_command({"export", folder, "--out", folder + "/x.las"}) == 0);
+  CHECK(content_of(folder + "/x.pcd").find("POINTS 0\n") != std::string::npos);
+  CHECK(content_of(folder + "/x.las").starts_with("LASF"));
+  CHECK(map_command({"export", folder, "--out", folder + "/x.laz"}) == 64);
+  CHECK_FALSE(std::filesystem::exists(folder + "/x.laz.part"));
+}
+
+TEST_CASE("floors and grid of a run take the path from its trajectory, and names from floors.toml") {
+  const Scratch scratch;
+  const std::string run = scratch.path().string();
+  { put_tiles(*FileTileStore::create(scratch.path() / "map", {}, {})); }
+  CHECK(map_command({"floors", run}) == 0);  // nothing says that there is a floor
+  CHECK(map_command({"grid", run, "--out", run + "/grids"}) == 65);
+  write_content(scratch.path() / "trajectory.tum", "1 2 3 4 0 0 0 1\n2 3 3 4 0 0 0 1\n");
+  CHECK(map_command({"floors", run, "--name", "0=Ground floor"}) == 0);
+  CHECK(content_of(run + "/map/floors.toml").find("height_m = 4.00\nname = \"Ground floor\"") !=
+        std::string::npos);
+  CHECK(map_command({"floors", run, "--json"}) == 0);
+  CHECK(map_command({"grid", run, "--floor", "Ground floor", "--out", run + "/grids"}) == 0);
+  CHECK(content_of(run + "/grids/floor_0.yaml").find("image: floor_0.pgm\n") != std::string::npos);
+  CHECK(
+      content_of(run + "/grids/floor_0.pgm").starts_with("P5\n# isobar: floor 0 at 4.00 m, Ground floor\n"));
+  CHECK(map_command({"grid", run, "--floor", "7", "--out", run + "/grids"}) == 64);
+  CHECK(map_command({"floors", run, "--name", "Cellar"}) == 64);
+  CHECK(map_command({"floors", run, "--name", "3=Cellar"}) == 64);
+  write_content(scratch.path() / "map/floors.toml", "[[floor]]\nname = \"A\"\n");
+  CHECK(map_command({"floors", run}) == 65);
+}
+
 }  // namespace isobar::test::test_map_command
