@@ -44,6 +44,15 @@ double yaw_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   return rotation_angle_rad(Eigen::Quaterniond(a.linear().transpose() * b.linear()));
 }
 
+bool usable(const SlabHeight& height) {
+  return std::abs(height.z_m) < 1e5 && height.sigma_m >= 0.0 && height.sigma_m < 1e3;
+}
+
+bool usable(const PlaceHint& hint) {
+  return std::abs(hint.x_m) < 1e7 && std::abs(hint.y_m) < 1e7 && std::abs(hint.yaw_rad) < 1e3 &&
+         (hint.sigma_m.array() > 0.0).all() && (hint.sigma_m.array() < 1e6).all() && hint.sigma_yaw_rad > 0.0;
+}
+
 SearchWindow window_of(const std::optional<PlaceHint>& hint) {
   SearchWindow window;
   if (!hint) return window;
@@ -66,7 +75,7 @@ ColdStart::ColdStart(const ColdStartConfig& config, const RegistrationConfig& re
 const ColdStartResult& ColdStart::locate(const ColdStartInput& input, const std::optional<PlaceHint>& hint) {
   result_ = {};
   judged_.clear();
-  if (input.query.can_judge()) {
+  if (input.query.can_judge() && usable(input.height) && (!hint || usable(*hint))) {
     // The lidar's place in the level frame decides which planes face it.
     matcher_ = ScanMatcher(registration_, input.query.p_level_lidar().cast<double>());
     for (const SlabHeight& height :
@@ -163,6 +172,7 @@ void ColdStart::judge(bool hinted) {
 }
 
 const ColdStartResult& ColdStart::follow(const ColdStartInput& input, const Eigen::Isometry3d& T_before_now) {
+  if (!usable(input.height) || !T_before_now.matrix().allFinite()) return result_;
   const std::vector<PlaceCandidate> before = std::exchange(result_.candidates, {});
   judged_.clear();
   matcher_ = ScanMatcher(registration_, input.query.p_level_lidar().cast<double>());

@@ -62,7 +62,7 @@ struct ColdStartConfig {
   /// Candidates that are kept.
   std::size_t most_candidates = 16;
   /// Least fit of a place that may be the right one.
-  double least_fit = 0.45;
+  double least_fit = 0.6;
   /// Weight of a candidate above which there is no doubt.
   double certain_weight = 0.97;
 };
@@ -82,7 +82,7 @@ class ColdStart {
  public:
   explicit ColdStart(const ColdStartConfig& config = {}, const RegistrationConfig& registration = {});
 
-  /// Searches all places, or those near `hint`.
+  /// Searches all places, or those near `hint`. A height or a hint that is not finite fits nowhere.
   const ColdStartResult& locate(const ColdStartInput& input, const std::optional<PlaceHint>& hint = {});
   /// After a motion by odometry since the last call: `T_before_now`, pose of the query's level frame in that of the
   /// query before, a rotation about z. Candidates that do not fit any more are dropped; the verdict is kUnknown when none is

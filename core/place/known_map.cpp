@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/place/known_map.hpp"
 
+#include <utility>
+
 #include "core/map/map_tile.hpp"
 #include "core/map/plane_hash.hpp"
 
 namespace isobar {
 
 KnownMap::KnownMap(float cell_m, std::uint32_t session) : cell_m_(cell_m), session_(session) {}
+
+KnownMap::KnownMap(std::span<const MapPoint> points, std::shared_ptr<const MapSnapshot> snapshot)
+    : cell_m_(snapshot->cell_m()), session_(snapshot->session()), snapshot_(std::move(snapshot)) {
+  structure_.set_points(points);
+}
 
 bool KnownMap::add_tile(const TileKey& key, std::span<const std::byte> bytes) {
   MapTile tile(key);

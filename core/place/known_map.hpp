@@ -22,6 +22,9 @@ class KnownMap {
   /// `cell_m`: edge of the map's cells. `session`: number of the map frame.
   explicit KnownMap(float cell_m, std::uint32_t session = 1);
 
+  /// Of points and snapshot of a map in memory, such as a LocalMap's. Finished.
+  KnownMap(std::span<const MapPoint> points, std::shared_ptr<const MapSnapshot> snapshot);
+
   /// Adds a tile as MapTile::store() wrote it. False, and no change, if the bytes are not those of this tile. O(points).
   bool add_tile(const TileKey& key, std::span<const std::byte> bytes);
   /// Makes the snapshot of all tiles so far.

@@ -94,7 +94,7 @@ KnownMap read_map(const fs::path& folder) {
 }
 
 struct Tally {
-  int right = 0, wrong = 0, wrong_floor = 0, unknown = 0, ambiguous = 0, ambiguous_with_truth = 0,
+  int right = 0, wrong = 0, wrong_floor = 0, unknown = 0, ambiguous = 0, ambiguous_with_truth = 0, twins = 0,
       incomplete = 0;
   std::vector<double> seconds;
 
@@ -105,10 +105,11 @@ struct Tally {
     };
     std::printf(
         "%zu places: right %d, wrong %d, of these on a wrong floor %d, unknown %d, ambiguous %d (%d with the "
-        "right "
-        "one); search cut short %d; CPU median %.3f s, p99 %.3f s, worst %.3f s\n",
-        seconds.size(), right, wrong, wrong_floor, unknown, ambiguous, ambiguous_with_truth, incomplete,
-        at(0.5), at(0.99), at(1.0));
+        "right one;"
+        " %d between places that an exact lidar does not tell apart); search cut short %d;"
+        " CPU median %.3f s, p99 %.3f s, worst %.3f s\n",
+        seconds.size(), right, wrong, wrong_floor, unknown, ambiguous, ambiguous_with_truth, twins,
+        incomplete, at(0.5), at(0.99), at(1.0));
   }
 };
 
@@ -139,23 +140,68 @@ void print_place(const ColdStartResult& result, const Eigen::Isometry3d& truth,
   std::printf("\n");
 }
 
-void count(const ColdStartResult& result, const Eigen::Isometry3d& truth, Tally& tally) {
+/// A robot that stands somewhere.
+struct Question {
+  SimulatedPlace place;
+  Eigen::Isometry3d T_map_base;  ///< the answer
+  LevelledScans scans;
+  double z_m;  ///< as the altimeter has it
+};
+
+Question draw_question(const Options& options, const simulation::Scenario& scenario,
+                       const std::vector<StampedPose>& way, int number) {
+  simulation::Random random(options.query_seed, "place", static_cast<std::uint64_t>(number));
+  const double spread_m = scenario.tracked ? 0.2 : 0.5;
+  const StampedPose& at = way[random.next() % way.size()];
+  const double time_s = 1e-9 * static_cast<double>(at.stamp_ns - start_ns(options.seed));
+  const simulation::MotionState state = scenario.trajectory.at(time_s);
+  Eigen::Isometry3d T_base_place = Eigen::Isometry3d::Identity();
+  T_base_place.linear() = rotation_about_z(random.uniform(-kPi, kPi));
+  T_base_place.translation() << random.normal(spread_m), random.normal(spread_m), 0.0;
+  Question question;
+  question.place.T_world_base = Eigen::Isometry3d::Identity();
+  question.place.T_world_base.linear() = state.q_world_base.toRotationMatrix();
+  question.place.T_world_base.translation() = state.p_world;
+  question.place.T_world_base = question.place.T_world_base * T_base_place;
+  question.place.time_s = random.uniform(0.0, scenario.trajectory.duration_s());
+  question.place.scans = options.scans;
+  question.T_map_base = at.T_map_base * T_base_place;
+  question.scans = scans_at(scenario, question.place, random);
+  question.z_m = question.T_map_base.translation().z() + random.normal(options.sigma_m);
+  return question;
+}
+
+/// Another candidate looks as the right place does.
+bool has_twin(const ColdStartResult& result, const Question& question, const simulation::Scenario& scenario) {
+  constexpr double kSameShare = 0.03;
+  return std::any_of(result.candidates.begin(), result.candidates.end(), [&](const PlaceCandidate& one) {
+    if (is_right(one.T_map_base, question.T_map_base)) return false;
+    const Eigen::Isometry3d T_world_other =
+        question.place.T_world_base * question.T_map_base.inverse() * one.T_map_base;
+    return different_share(scenario, question.place.T_world_base, T_world_other) < kSameShare;
+  });
+}
+
+void count(const ColdStartResult& result, const Question& question, const simulation::Scenario& scenario,
+           Tally& tally) {
   tally.incomplete += result.complete ? 0 : 1;
   if (result.candidates.empty()) {
     ++tally.unknown;
     return;
   }
-  const bool right = is_right(result.candidates.front().T_map_base, truth);
-  const double climb_m = result.candidates.front().T_map_base.translation().z() - truth.translation().z();
+  const Eigen::Isometry3d& truth = question.T_map_base;
+  const Eigen::Isometry3d& best = result.candidates.front().T_map_base;
   if (result.verdict == ColdStartVerdict::kAmbiguous) {
     ++tally.ambiguous;
+    tally.twins += has_twin(result, question, scenario) ? 1 : 0;
     tally.ambiguous_with_truth +=
         std::any_of(result.candidates.begin(), result.candidates.end(),
                     [&](const auto& one) { return is_right(one.T_map_base, truth); });
-  } else if (right) {
+  } else if (is_right(best, truth)) {
     ++tally.right;
   } else {
     ++tally.wrong;
+    const double climb_m = best.translation().z() - truth.translation().z();
     tally.wrong_floor += std::abs(climb_m) > kFloorM ? 1 : 0;
   }
 }
@@ -166,42 +212,25 @@ int run(const Options& options) {
   const simulation::Scenario scenario = simulation::find_scenario(options.scenario).make(options.seed, false);
   std::printf("map: %zu voxels of structure, %zu planes; %zu poses\n", map.structure().voxel_count(),
               map.snapshot()->plane_count(), way.size());
-  const double spread_m = scenario.tracked ? 0.2 : 0.5;
   ColdStart cold_start;
   PlaceQuery query;
   Tally tally;
   for (int i = 0; i < options.places; ++i) {
-    simulation::Random random(options.query_seed, "place", static_cast<std::uint64_t>(i));
-    const StampedPose& at = way[random.next() % way.size()];
-    const double time_s = 1e-9 * static_cast<double>(at.stamp_ns - start_ns(options.seed));
-    const simulation::MotionState state = scenario.trajectory.at(time_s);
-    Eigen::Isometry3d T_base_place = Eigen::Isometry3d::Identity();
-    T_base_place.linear() = rotation_about_z(random.uniform(-kPi, kPi));
-    T_base_place.translation() << random.normal(spread_m), random.normal(spread_m), 0.0;
-    SimulatedPlace place{Eigen::Isometry3d::Identity(), random.uniform(0.0, scenario.trajectory.duration_s()),
-                         options.scans};
-    place.T_world_base.linear() = state.q_world_base.toRotationMatrix();
-    place.T_world_base.translation() = state.p_world;
-    place.T_world_base = place.T_world_base * T_base_place;
-    const Eigen::Isometry3d truth = at.T_map_base * T_base_place;
-    const LevelledScans scans = scans_at(scenario, place, random);
-    const double z_m = truth.translation().z() + random.normal(options.sigma_m);
-
+    const Question question = draw_question(options, scenario, way, i);
     const double begin_s = thread_s();
     query.clear();
-    for (const auto& points : scans.p_level) query.add(points, scans.p_level_lidar);
+    for (const auto& points : question.scans.p_level) query.add(points, question.scans.p_level_lidar);
     query.finish();
-    const ColdStartInput input{map, query, scans.R_level_base, {z_m, options.sigma_m}};
+    const ColdStartInput input{map, query, question.scans.R_level_base, {question.z_m, options.sigma_m}};
     const ColdStartResult result = cold_start.locate(input);
     tally.seconds.push_back(thread_s() - begin_s);
-    count(result, truth, tally);
-    if (result.verdict == ColdStartVerdict::kFound && is_right(result.candidates.front().T_map_base, truth))
+    count(result, question, scenario, tally);
+    const Eigen::Isometry3d& truth = question.T_map_base;
+    if (result.verdict == ColdStartVerdict::kFound && is_right(result.candidates.front().T_map_base, truth)) {
       continue;
-    const PlaceHint hint{truth.translation().x(),
-                         truth.translation().y(),
-                         std::atan2(truth.linear()(1, 0), truth.linear()(0, 0)),
-                         {0.15, 0.15},
-                         0.03};
+    }
+    const double yaw_rad = std::atan2(truth.linear()(1, 0), truth.linear()(0, 0));
+    const PlaceHint hint{truth.translation().x(), truth.translation().y(), yaw_rad, {0.15, 0.15}, 0.03};
     print_place(result, truth, cold_start.locate(input, hint));
   }
   tally.print();

@@ -28,6 +28,11 @@ struct Lidar {
   double phase_rad = 0.0;
 };
 
+Eigen::Vector3d ray_of(double yaw, int laser) {
+  const double pitch = (2.0 * laser - 15.0) * kRadPerDeg;
+  return {std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw), std::sin(pitch)};
+}
+
 // p_lidar of one revolution.
 void revolve(const simulation::World& world, double time_s, const Lidar& lidar, simulation::Random& random,
              std::vector<Eigen::Vector3f>& points) {
@@ -36,10 +41,7 @@ void revolve(const simulation::World& world, double time_s, const Lidar& lidar, 
   world.look(time_s, eye, kReachM, moment);
   for (int azimuth = 0; azimuth < kAzimuths; ++azimuth) {
     for (int laser = 0; laser < kLasers; ++laser) {
-      const double yaw = lidar.phase_rad + 2.0 * kPi * azimuth / kAzimuths;
-      const double pitch = (2.0 * laser - 15.0) * kRadPerDeg;
-      const Eigen::Vector3d ray(std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw),
-                                std::sin(pitch));
+      const Eigen::Vector3d ray = ray_of(lidar.phase_rad + 2.0 * kPi * azimuth / kAzimuths, laser);
       const simulation::Hit hit = world.cast(moment, eye, lidar.T_world_lidar.linear() * ray, kReachM);
       if (!hit.found || hit.cos_incidence < kLeastCosine || hit.distance_m < 0.5F) continue;
       const double range_m = static_cast<double>(hit.distance_m) + random.normal(0.015) +
@@ -72,6 +74,29 @@ LevelledScans scans_at(const simulation::Scenario& scenario, const SimulatedPlac
     for (Eigen::Vector3f& p : points) p = out.p_level_lidar + R_level_lidar * p;
   }
   return out;
+}
+
+double different_share(const simulation::Scenario& scenario, const Eigen::Isometry3d& T_world_one,
+                       const Eigen::Isometry3d& T_world_other) {
+  constexpr int kRays = 360;
+  constexpr float kDifferentM = 0.1F;
+  const Eigen::Isometry3d T_base_lidar = scenario.mounts.lidar.T_base_sensor();
+  const simulation::RayCaster& world = scenario.world.standing();
+  const auto range_m = [&](const Eigen::Isometry3d& T_world_base, const Eigen::Vector3d& ray) {
+    const Eigen::Isometry3d T_world_lidar = T_world_base * T_base_lidar;
+    return world
+        .cast(T_world_lidar.translation().cast<float>(), (T_world_lidar.linear() * ray).cast<float>(),
+              static_cast<float>(kReachM))
+        .distance_m;
+  };
+  int different = 0;
+  for (int azimuth = 0; azimuth < kRays; ++azimuth) {
+    for (int laser = 0; laser < kLasers; ++laser) {
+      const Eigen::Vector3d ray = ray_of(2.0 * kPi * azimuth / kRays, laser);
+      different += std::abs(range_m(T_world_one, ray) - range_m(T_world_other, ray)) > kDifferentM ? 1 : 0;
+    }
+  }
+  return double(different) / (kRays * kLasers);
 }
 
 }  // namespace isobar

@@ -27,4 +27,10 @@ struct LevelledScans {
 [[nodiscard]] LevelledScans scans_at(const simulation::Scenario& scenario, const SimulatedPlace& place,
                                      simulation::Random& random);
 
+/// Share of the rays of an exact lidar in the empty world whose ranges at two poses differ by more than 10 cm, 0 … 1: that of
+/// places that no lidar tells apart is near 0.
+[[nodiscard]] double different_share(const simulation::Scenario& scenario,
+                                     const Eigen::Isometry3d& T_world_one,
+                                     const Eigen::Isometry3d& T_world_other);
+
 }  // namespace isobar
