@@ -24,8 +24,8 @@ int rounded_down(int value) { return static_cast<int>(std::floor(double(value) /
 }  // namespace
 
 // Voxels of the slab.
-struct SlabImage::Band {
-  explicit Band(const SlabHeight& height) {
+struct SlabImage::SlabBand {
+  explicit SlabBand(const SlabHeight& height) {
     const double error_m = 3.0 * height.sigma_m;
     base_m = height.z_m;
     ground_low = place_cell(height.z_m - kLargestBaseM - error_m);
@@ -54,7 +54,7 @@ struct SlabImage::Band {
 
 bool SlabImage::build(const StructureMap& map, const SlabHeight& height, const SlabWindow& window) {
   width_ = height_ = 0;
-  const Band band(height);
+  const SlabBand band(height);
   if (!set_extent(map, band, window)) {
     width_ = height_ = 0;
     return false;
@@ -70,7 +70,7 @@ bool SlabImage::build(const StructureMap& map, const SlabHeight& height, const S
 }
 
 // All ground on which the robot may stand, and the border around it.
-bool SlabImage::set_extent(const StructureMap& map, const Band& band, const SlabWindow& window) {
+bool SlabImage::set_extent(const StructureMap& map, const SlabBand& band, const SlabWindow& window) {
   Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9);
   Eigen::Vector2d high = -low;
   for (const auto& [key, tile] : map.tiles()) {
@@ -96,7 +96,7 @@ bool SlabImage::set_extent(const StructureMap& map, const Band& band, const Slab
   return true;
 }
 
-void SlabImage::draw(const StructureMap& map, const Band& band) {
+void SlabImage::draw(const StructureMap& map, const SlabBand& band) {
   const std::uint16_t compared = [] {
     unsigned bits = 0;
     for (float z = kWallLowM; z < kWallHighM; z += kHeightLevelM / 2) bits |= height_bit(z);

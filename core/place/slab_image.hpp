@@ -64,9 +64,9 @@ class SlabImage {
   }
 
  private:
-  struct Band;
-  bool set_extent(const StructureMap& map, const Band& band, const SlabWindow& window);
-  void draw(const StructureMap& map, const Band& band);
+  struct SlabBand;
+  bool set_extent(const StructureMap& map, const SlabBand& band, const SlabWindow& window);
+  void draw(const StructureMap& map, const SlabBand& band);
   void draw_scores();
   void mark_standing(int column, int row);
   [[nodiscard]] std::size_t index(int column, int row) const {
