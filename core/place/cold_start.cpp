@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/place/cold_start.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/place/slab_heights.hpp"
+#include "core/so3.hpp"
+#include "core/squared.hpp"
+
+namespace isobar {
+
+namespace {
+
+// Error of a hypothesis of the search in x and y, of its heading, and of a candidate after a motion by odometry, 1 sigma.
+constexpr double kHypothesisM = 0.15;
+constexpr double kHypothesisRad = 0.03;
+constexpr double kLeastFollowedM = 0.1;
+constexpr double kFollowedShare = 0.05;
+// Error of height between map and altimeter besides the altimeter's own.
+constexpr double kHeightErrorM = 0.15;
+// Poses nearer to each other are one candidate.
+constexpr double kSameM = 0.5;
+constexpr double kSameRad = 0.15;
+// Candidates of less weight are dropped.
+constexpr double kLeastWeight = 1e-3;
+
+Prediction prediction_at(const Eigen::Isometry3d& T_map_level, double error_m, double height_sigma_m) {
+  Prediction prediction;
+  prediction.T_map_base = T_map_level;
+  prediction.deviation << 1e-3, 1e-3, kHypothesisRad, error_m, error_m, std::clamp(height_sigma_m, 0.05, 0.5);
+  return prediction;
+}
+
+Eigen::Isometry3d level_pose(double x_m, double y_m, double z_m, double yaw_rad) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = rotation_about_z(yaw_rad);
+  T.translation() << x_m, y_m, z_m;
+  return T;
+}
+
+double yaw_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  return rotation_angle_rad(Eigen::Quaterniond(a.linear().transpose() * b.linear()));
+}
+
+bool usable(const SlabHeight& height) {
+  return std::abs(height.z_m) < 1e5 && height.sigma_m >= 0.0 && height.sigma_m < 1e3;
+}
+
+bool usable(const PlaceHint& hint) {
+  return std::abs(hint.x_m) < 1e7 && std::abs(hint.y_m) < 1e7 && std::abs(hint.yaw_rad) < 1e3 &&
+         (hint.sigma_m.array() > 0.0).all() && (hint.sigma_m.array() < 1e6).all() && hint.sigma_yaw_rad > 0.0;
+}
+
+SearchWindow window_of(const std::optional<PlaceHint>& hint) {
+  SearchWindow window;
+  if (!hint) return window;
+  const Eigen::Vector2d p(hint->x_m, hint->y_m);
+  window.box.low = p - 3.0 * hint->sigma_m;
+  window.box.high = p + 3.0 * hint->sigma_m;
+  window.yaw_rad = hint->yaw_rad;
+  window.half_yaw_rad = std::min(3.0 * hint->sigma_yaw_rad, std::numbers::pi);
+  return window;
+}
+
+}  // namespace
+
+ColdStart::ColdStart(const ColdStartConfig& config, const RegistrationConfig& registration)
+    : config_(config),
+      registration_(registration),
+      traits_(traits_of(Method::k4Dof, HeightSource::kDifferential)),
+      matcher_(registration, Eigen::Vector3d::Zero()) {}
+
+const ColdStartResult& ColdStart::locate(const ColdStartInput& input, const std::optional<PlaceHint>& hint) {
+  result_ = {};
+  judged_.clear();
+  if (input.query.can_judge() && usable(input.height) && (!hint || usable(*hint))) {
+    // The lidar's place in the level frame decides which planes face it.
+    matcher_ = ScanMatcher(registration_, input.query.p_level_lidar().cast<double>());
+    for (const SlabHeight& height :
+         slab_heights(input.map.structure(), input.height, -input.query.ground_z_m())) {
+      search_slab(input, height, hint);
+      refine(input, height);
+    }
+  }
+  judge(hint.has_value());
+  return result_;
+}
+
+void ColdStart::search_slab(const ColdStartInput& input, const SlabHeight& height,
+                            const std::optional<PlaceHint>& hint) {
+  hypotheses_.clear();
+  const SearchWindow window = window_of(hint);
+  if (!image_.build(input.map.structure(), height, window.box)) return;
+  pyramid_.build(image_);
+  const std::vector<SlabPose>& poses =
+      search_.find(image_, pyramid_, input.query.columns(), window, config_.search);
+  result_.complete = result_.complete && search_.complete();
+  result_.tried += poses.size();
+  for (const SlabPose& pose : poses) {
+    hypotheses_.push_back({pose, height.z_m, coarse_fit(image_, input.query, pose).score()});
+  }
+  std::stable_sort(hypotheses_.begin(), hypotheses_.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.fit > b.fit; });
+  if (hypotheses_.size() > config_.refined) hypotheses_.resize(config_.refined);
+}
+
+void ColdStart::refine(const ColdStartInput& input, const SlabHeight& height) {
+  for (const Hypothesis& hypothesis : hypotheses_) {
+    const SlabPose& pose = hypothesis.pose;
+    const Eigen::Isometry3d T_map_level = level_pose(pose.x_m, pose.y_m, hypothesis.z_m, pose.yaw_rad);
+    if (auto judged = refined(input, height, T_map_level, kHypothesisM)) add_candidate(std::move(*judged));
+  }
+}
+
+std::optional<ColdStart::Judged> ColdStart::refined(const ColdStartInput& input, const SlabHeight& height,
+                                                    const Eigen::Isometry3d& T_map_level, double error_m) {
+  const Prediction prediction = prediction_at(T_map_level, error_m, height.sigma_m);
+  const MatchResult match = matcher_.match(
+      {*input.map.snapshot(), input.query.sample(), traits_, prediction, squared(height.sigma_m)});
+  if (!match.solved) return std::nullopt;
+  Judged judged;
+  PlaceCandidate& candidate = judged.candidate;
+  candidate.fit =
+      fine_fit(*input.map.snapshot(), image_, input.query, match.T_map_base, matches_, judged.evidence);
+  const double climb_m = match.T_map_base.translation().z() - input.height.z_m;
+  const double relative = climb_m / std::hypot(input.height.sigma_m, kHeightErrorM);
+  if (candidate.fit.score() < config_.least_fit || std::abs(relative) > 3.0) return std::nullopt;
+  candidate.weight = -0.5 * squared(relative);
+  candidate.T_map_level = candidate.T_map_base = match.T_map_base;
+  candidate.T_map_base.linear() = match.T_map_base.linear() * input.R_level_base;
+  return judged;
+}
+
+// Of two hypotheses that the ICP leads to one place, the better one is kept.
+void ColdStart::add_candidate(Judged judged) {
+  const Eigen::Isometry3d& T = judged.candidate.T_map_base;
+  for (Judged& known : judged_) {
+    const Eigen::Isometry3d& T_known = known.candidate.T_map_base;
+    if ((T_known.translation() - T.translation()).norm() > kSameM || yaw_between(T_known, T) > kSameRad)
+      continue;
+    if (judged.score() > known.score()) known = std::move(judged);
+    return;
+  }
+  judged_.push_back(std::move(judged));
+}
+
+// A candidate that fits worse than the best one by n standard deviations is exp(-n^2 / 2) times as likely.
+void ColdStart::judge(bool hinted) {
+  result_.candidates.clear();
+  if (judged_.empty()) {
+    result_.verdict = hinted ? ColdStartVerdict::kHintRefused : ColdStartVerdict::kUnknown;
+    return;
+  }
+  std::stable_sort(judged_.begin(), judged_.end(),
+                   [](const Judged& a, const Judged& b) { return a.score() > b.score(); });
+  if (judged_.size() > config_.most_candidates) judged_.resize(config_.most_candidates);
+  const Judged& best = judged_.front();
+  double sum = 0.0;
+  for (const Judged& one : judged_) {
+    const double lead = std::max(PlaceEvidence::lead(best.evidence, one.evidence), 0.0);
+    result_.candidates.push_back(one.candidate);
+    double& weight = result_.candidates.back().weight;
+    weight = std::exp(std::min(weight - best.candidate.weight, 0.0) - 0.5 * squared(lead));
+    sum += weight;
+  }
+  for (PlaceCandidate& one : result_.candidates) one.weight /= sum;
+  std::erase_if(result_.candidates, [](const PlaceCandidate& one) { return one.weight < kLeastWeight; });
+  const bool certain = result_.candidates.front().weight >= config_.certain_weight;
+  result_.verdict = certain ? ColdStartVerdict::kFound : ColdStartVerdict::kAmbiguous;
+}
+
+const ColdStartResult& ColdStart::follow(const ColdStartInput& input, const Eigen::Isometry3d& T_before_now) {
+  if (!usable(input.height) || !T_before_now.matrix().allFinite()) return result_;
+  const std::vector<PlaceCandidate> before = std::exchange(result_.candidates, {});
+  judged_.clear();
+  matcher_ = ScanMatcher(registration_, input.query.p_level_lidar().cast<double>());
+  const double driven_m = T_before_now.translation().head<2>().norm();
+  for (const PlaceCandidate& old : before) {
+    Eigen::Isometry3d T_map_level = old.T_map_level * T_before_now;
+    T_map_level.translation().z() = input.height.z_m;
+    const Eigen::Vector2d p = T_map_level.translation().head<2>();
+    if (!image_.build(input.map.structure(), input.height, {p.array() - 1.0, p.array() + 1.0})) continue;
+    auto judged = refined(input, input.height, T_map_level, kLeastFollowedM + kFollowedShare * driven_m);
+    if (!judged) continue;
+    judged->candidate.weight += std::log(std::max(old.weight, kLeastWeight));
+    add_candidate(std::move(*judged));
+  }
+  judge(false);
+  return result_;
+}
+
+}  // namespace isobar
