@@ -10,16 +10,17 @@ namespace isobar {
 namespace {
 
 bool is_sound(const OccupancyGrid& grid) {
-  const std::uint64_t cells = std::uint64_t{grid.width} * grid.height;
-  return cells > 0 && cells == grid.cells.size() && cells <= FloorGridPublisher::kMaxCells &&
-         grid.width <= ipc::FloorGrid::kMaxCells && std::isfinite(grid.origin_x_m) &&
-         std::isfinite(grid.origin_y_m) && std::isfinite(grid.z_m) && std::isfinite(grid.resolution_m) &&
-         grid.resolution_m > 0.0;
+  if (grid.width <= 0 || grid.height <= 0) return false;
+  const auto width = static_cast<std::uint64_t>(grid.width);
+  const std::uint64_t cells = width * static_cast<std::uint64_t>(grid.height);
+  return cells == grid.cells.size() && cells <= FloorGridPublisher::kMaxCells &&
+         width <= ipc::FloorGrid::kMaxCells && grid.origin_m.allFinite() && std::isfinite(grid.height_m) &&
+         std::isfinite(grid.resolution_m) && grid.resolution_m > 0.0;
 }
 
 bool are_equal(const OccupancyGrid& a, const OccupancyGrid& b) {
-  return a.resolution_m == b.resolution_m && a.origin_x_m == b.origin_x_m && a.origin_y_m == b.origin_y_m &&
-         a.width == b.width && a.height == b.height && a.z_m == b.z_m && a.cells == b.cells;
+  return a.resolution_m == b.resolution_m && a.origin_m == b.origin_m && a.width == b.width &&
+         a.height == b.height && a.height_m == b.height_m && a.cells == b.cells;
 }
 
 }  // namespace
@@ -71,16 +72,16 @@ void FloorGridPublisher::send_piece() noexcept {
   piece->session = origin_.session;
   piece->floor = origin_.floor;
   std::copy(name_.begin(), name_.end(), piece->floor_name);
-  piece->z_m = grid_.z_m;
+  piece->z_m = grid_.height_m;
   piece->resolution_m = grid_.resolution_m;
-  piece->origin_x_m = grid_.origin_x_m;
-  piece->origin_y_m = grid_.origin_y_m;
-  piece->width = grid_.width;
-  piece->height = grid_.height;
+  piece->origin_x_m = grid_.origin_m.x();
+  piece->origin_y_m = grid_.origin_m.y();
+  piece->width = static_cast<std::uint32_t>(grid_.width);
+  piece->height = static_cast<std::uint32_t>(grid_.height);
   piece->first_row = next_row_;
-  piece->row_count = std::min(ipc::FloorGrid::kMaxCells / grid_.width, grid_.height - next_row_);
-  std::copy_n(grid_.cells.begin() + static_cast<std::ptrdiff_t>(std::size_t{next_row_} * grid_.width),
-              std::size_t{piece->row_count} * grid_.width, piece->cells);
+  piece->row_count = std::min(ipc::FloorGrid::kMaxCells / piece->width, piece->height - next_row_);
+  std::copy_n(grid_.cells.begin() + static_cast<std::ptrdiff_t>(std::size_t{next_row_} * piece->width),
+              std::size_t{piece->row_count} * piece->width, piece->cells);
   next_row_ += piece->row_count;
   grids_.publish(piece);
 }

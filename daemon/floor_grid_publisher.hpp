@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "core/map/occupancy_grid.hpp"
+#include "core/floors/occupancy_grid.hpp"
 #include "ipc/shared_memory.hpp"
 
 namespace isobar {

@@ -14,8 +14,6 @@ namespace isobar::files {
 
 namespace {
 
-constexpr const char* kCorrectedFile = "trajectory-corrected.tum";
-
 /// True if a line is no comment: a run that has just begun has none.
 bool has_pose(const std::string& text) {
   std::istringstream lines(text);
@@ -38,12 +36,9 @@ std::filesystem::path trajectory_of_map(const std::filesystem::path& map_directo
   const std::string name = folder.filename().string();
   if (!name.starts_with(kMapDirectory)) return {};
   const std::string number = name.substr(std::string_view(kMapDirectory).size());  // "", "_2" …
-  for (const char* file : {kCorrectedFile, kTrajectoryFile}) {
-    const std::filesystem::path of_frame = std::filesystem::path(file).stem().string() + number + ".tum";
-    if (std::filesystem::exists(folder.parent_path() / of_frame, error))
-      return folder.parent_path() / of_frame;
-  }
-  return {};
+  const std::filesystem::path file =
+      folder.parent_path() / (std::filesystem::path(kTrajectoryFile).stem().string() + number + ".tum");
+  return std::filesystem::exists(file, error) ? file : std::filesystem::path{};
 }
 
 std::vector<Eigen::Vector3d> path_of(const std::filesystem::path& trajectory) {

@@ -13,8 +13,8 @@
 
 namespace isobar::files {
 
-/// The trajectory of the run that made a map, beside the map's folder: trajectory-corrected.tum, else trajectory.tum
-/// (of the map frame of the folder's number). Empty where there is none.
+/// The trajectory of the run that made a map, beside the map's folder (of the map frame of the folder's number): as
+/// estimated live, since the tiles stand where it laid them. Empty where there is none.
 [[nodiscard]] std::filesystem::path trajectory_of_map(const std::filesystem::path& map_directory);
 
 /// Positions of a trajectory [m]; none without a file, or as long as it holds no pose.

@@ -22,14 +22,13 @@ using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace)
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 
 /// Cells that differ from row to row, and by `seed`.
-OccupancyGrid grid_of(std::uint32_t width, std::uint32_t height, std::uint32_t seed) {
+OccupancyGrid grid_of(int width, int height, int seed) {
   OccupancyGrid grid;
-  grid.origin_x_m = -3.0;
-  grid.origin_y_m = 4.0;
-  grid.z_m = 3.5;
+  grid.origin_m = {-3.0, 4.0};
+  grid.height_m = 3.5;
   grid.width = width;
   grid.height = height;
-  for (std::uint32_t i = 0; i < width * height; ++i) {
+  for (int i = 0; i < width * height; ++i) {
     grid.cells.push_back(static_cast<std::int8_t>((i / 7 + seed) % 102) - 1);
   }
   return grid;
@@ -114,7 +113,7 @@ TEST_CASE("malformed grids are refused and counted, and lose nothing that was go
   std::vector<OccupancyGrid> bad(5, good);
   bad[0].width = 101;
   bad[1].cells.pop_back();
-  bad[2].origin_x_m = std::numeric_limits<double>::quiet_NaN();
+  bad[2].origin_m.x() = std::numeric_limits<double>::quiet_NaN();
   bad[3].resolution_m = 0.0;
   bad[4] = {};
   for (const OccupancyGrid& grid : bad) CHECK_FALSE(bench.publisher.offer(grid, {}, bench.now_ns));

@@ -70,8 +70,7 @@ TEST_CASE("floors and grid come from the tiles of a stored map, also while it is
   CHECK(grid.at({5.3, 1.0}) == kCellUnknown);
 }
 
-TEST_CASE(
-    "the trajectory of a map is that of its frame, the corrected one first; a comment alone is no path") {
+TEST_CASE("the trajectory of a map is that of its frame, as estimated live; a comment alone is no path") {
   const TemporaryFolder folder;
   const auto run = folder.path();
   std::filesystem::create_directories(run / "map_2");
@@ -85,7 +84,7 @@ TEST_CASE(
   REQUIRE(files::path_of(run / "trajectory.tum").size() == 1);
   CHECK(files::path_of(run / "trajectory.tum")[0].isApprox(Eigen::Vector3d(2.0, 3.0, 4.0)));
   files::write_text_file(run / "trajectory-corrected.tum", "1 2 3 5 0 0 0 1\n");
-  CHECK(files::trajectory_of_map(run / "map").filename() == "trajectory-corrected.tum");
+  CHECK(files::trajectory_of_map(run / "map").filename() == "trajectory.tum");
 }
 
 }  // namespace isobar::test::test_stored_floors
