@@ -40,7 +40,7 @@ class FloorGridPublisher {
   [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
 
  private:
-  [[nodiscard]] bool is_sending() const noexcept { return next_row_ < grid_.height; }
+  [[nodiscard]] bool is_sending() const noexcept { return static_cast<int>(next_row_) < grid_.height; }
   [[nodiscard]] bool is_other_floor(const GridOrigin& origin) const noexcept;
   void send_piece() noexcept;
 
