@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <dds/dds.h>
-
 #include <cstdint>
 #include <string>
 

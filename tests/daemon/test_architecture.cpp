@@ -85,6 +85,9 @@ const std::map<std::string, Names> kMayIncludeInCore{
     {"core/prior", {"core/altitude"}},
     {"core/mounts", {"core/prior"}},
     {"core/registration", {"core/altitude", "core/map", "core/mounts", "core/prior"}},
+    {"core/floors", {"core/map"}},
+    {"core/place", {"core/map", "core/registration"}},
+    {"core/loops", {"core/graph", "core/map", "core/registration"}},
 };
 
 /// Libraries and the places that may include them. A library that is not listed may be included anywhere.
