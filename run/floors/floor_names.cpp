@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <system_error>
 
 #include "core/errors.hpp"
 #include "core/toml_text.hpp"
