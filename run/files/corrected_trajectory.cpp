@@ -3,11 +3,10 @@
 
 #include <optional>
 #include <string>
-#include <system_error>
 
 #include "core/errors.hpp"
+#include "run/files/part_file.hpp"
 #include "run/files/run_layout.hpp"
-#include "run/files/text_file.hpp"
 #include "run/text/text_lines.hpp"
 #include "run/text/tum_row.hpp"
 
@@ -29,9 +28,7 @@ std::optional<text::TumRow> next_pose(text::TextLines& lines) {
 std::uint64_t write_corrected_trajectory(const std::filesystem::path& directory, std::uint32_t session,
                                          const PoseCorrection& correction) {
   text::TextLines lines(directory / name_of_session(kTrajectoryFile, session));
-  const std::filesystem::path file = directory / name_of_session(kCorrectedTrajectoryFile, session);
-  const std::filesystem::path draft = file.string() + ".new";
-  OutputFile output(draft);
+  PartFile output(directory / name_of_session(kCorrectedTrajectoryFile, session));
   output.write("# t x y z qx qy qz qw, T_map_base corrected by loops\n");
   std::uint64_t poses = 0;
   std::string line;
@@ -45,11 +42,7 @@ std::uint64_t write_corrected_trajectory(const std::filesystem::path& directory,
     output.write(line);
     ++poses;
   }
-  output.sync();
   output.close();
-  std::error_code error;
-  std::filesystem::rename(draft, file, error);
-  if (error) throw ServiceError(file.string() + ": cannot be written: " + error.message());
   return poses;
 }
 
