@@ -38,6 +38,7 @@ void NormalSystem::restructure(std::vector<NodeFreedom> nodes, std::span<const N
 void NormalSystem::order(std::span<const NodePair> ties) {
   const auto count = static_cast<Eigen::Index>(freedom_.size());
   std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(freedom_.size() + 2 * ties.size());
   for (int node = 0; node < count; ++node) entries.emplace_back(node, node, 1.0);
   for (const auto& [a, b] : ties) {
     entries.emplace_back(a, b, 1.0);
@@ -147,8 +148,9 @@ int NormalSystem::put_rows(NodeTerm<6> term) {
   const NodeFreedom& rows = freedom(term.node);
   if (rows.count == 0) return static_cast<int>(gradient_.size());
   const int first = first_[static_cast<std::size_t>(term.node)];
-  for (int i = 0; i < rows.count; ++i) {
-    work_[static_cast<std::size_t>(first + i)] += term.by_step.col(rows.columns[static_cast<std::size_t>(i)]);
+  const auto row = static_cast<std::size_t>(first);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(rows.count); ++i) {
+    work_[row + i] += term.by_step.col(rows.columns[i]);
   }
   return first;
 }

@@ -102,13 +102,13 @@ TEST_CASE("a wrong hint to a robot that searches changes nothing: its own search
 
 TEST_CASE("a wrong hint to a robot that knows its place moves nothing, to the last bit") {
   for (const Method method : {Method::k3Dof, Method::kAdaptive}) {
-    for (const auto& [x_m, y_m, yaw_deg] : {std::tuple{50.0, 0.0, 0.0}, {2.2, -1.8, 80.0}}) {
-      CAPTURE(x_m);
+    for (const Eigen::Vector3d& hint : {Eigen::Vector3d(50.0, 0.0, 0.0), Eigen::Vector3d(2.2, -1.8, 80.0)}) {
+      CAPTURE(hint.x());
       RegistrationRun hinted(furnished_room(), circle, drifting(circle), method);
       RegistrationRun other(furnished_room(), circle, drifting(circle), method);
       hinted.steps(kMapSteps);
       other.steps(kMapSteps);
-      hinted.registration().hint(hint_at(hinted.pose().T_map_base, x_m, y_m, yaw_deg));
+      hinted.registration().hint(hint_at(hinted.pose().T_map_base, hint.x(), hint.y(), hint.z()));
       for (int i = 0; i < kMostTrialSteps; ++i) {
         hinted.step();
         other.step();
