@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <tuple>
 
 #include "core/geometry.hpp"
 #include "core/so3.hpp"
