@@ -16,7 +16,7 @@ class Scene {
  public:
   static constexpr double kSpacingM = 0.09;  // a third of a map's cell
 
-  explicit Scene(double noise_m = 0.0) : noise_(0.0, noise_m) {}
+  explicit Scene(double noise_m = 0.0) : noise_m_(noise_m) {}
 
   /// A parallelogram; it faces u x v.
   void add(const Eigen::Vector3d& corner, const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
@@ -58,10 +58,11 @@ class Scene {
   std::vector<Eigen::Vector3d> path;
 
  private:
-  double noise() { return noise_.stddev() > 0.0 ? noise_(generator_) : 0.0; }
+  double noise() { return noise_m_ > 0.0 ? noise_m_ * normal_(generator_) : 0.0; }
 
   std::mt19937 generator_{7};
-  std::normal_distribution<double> noise_;
+  double noise_m_;
+  std::normal_distribution<double> normal_;
 };
 
 }  // namespace isobar::test
