@@ -83,7 +83,7 @@ template <class Fits>
 std::optional<Answer> wait_for_answer(ipc::Subscriber<ipc::HealthReport>& reports, Clock::time_point end,
                                       const Fits& fits) {
   for (;;) {
-    const auto answer = answer_in(reports);
+    auto answer = answer_in(reports);
     if (answer && fits(*answer)) return answer;
     if (Clock::now() >= end) return std::nullopt;
     std::this_thread::sleep_for(milliseconds(50));
