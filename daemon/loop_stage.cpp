@@ -17,6 +17,7 @@ void LoopStage::add_scan(const RegisteredScan& scan) {
     ended_ = corrections();
     ended_counts_ = counts();
     session_ = scan.pose.session;
+    prior_ = Prior{};  // a new map frame may begin because the clock of the inputs has started over
     building_ = std::make_unique<Building>(config_, map_, registration_, T_base_lidar_);
   }
   building_->add(scan, air());

@@ -27,8 +27,10 @@ class LoopStage {
  public:
   explicit LoopStage(const StageSettings& settings);
 
-  /// The newest prior, whose height of the air belongs to the next scan.
+  /// Takes a prior; in order of time. The last one before a scan has the height of the air at it.
   void add_prior(const Prior& prior) { prior_ = prior; }
+  /// Stamp of the last prior; 0: none yet.
+  [[nodiscard]] std::int64_t prior_ns() const { return prior_.stamp_ns; }
   void add_scan(const RegisteredScan& scan);
 
   /// Of every map frame so far.

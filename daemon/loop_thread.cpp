@@ -20,7 +20,12 @@ void LoopThread::loop() noexcept {
 
 void LoopThread::drain() noexcept {
   while (const auto scan = scans_.take()) {
-    while (const auto prior = priors_.take()) stage_.add_prior(*prior);
+    // The prior of the scan's end, not the newest: this thread may be late by seconds.
+    while (stage_.prior_ns() < scan->pose.stamp_ns) {
+      const auto prior = priors_.take();
+      if (!prior) break;
+      stage_.add_prior(*prior);
+    }
     stage_.add_scan(*scan);
   }
 }

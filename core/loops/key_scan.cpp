@@ -9,6 +9,7 @@ namespace isobar {
 
 bool KeyScanChoice::wants(const PoseEstimate& pose) const {
   if (pose.mode == PoseMode::kPriorOnly || !pose.for_map || place_unknown(pose)) return false;
+  if (!pose.T_map_base.matrix().allFinite()) return false;
   if (!any_) return true;
   if (seconds_between(last_ns_, pose.stamp_ns) < kLeastS) return false;
   const Eigen::Isometry3d step = T_map_last_.inverse() * pose.T_map_base;

@@ -45,12 +45,12 @@ Prediction prediction_of(const LoopGuess& guess) {
 }  // namespace
 
 LoopMatcher::LoopMatcher(const LoopCriteria& criteria, const RegistrationConfig& registration,
-                         std::size_t sample_points, float map_voxel_m, const Eigen::Isometry3d& T_base_lidar)
+                         std::size_t sample_points, float spacing_m, const Eigen::Isometry3d& T_base_lidar)
     : criteria_(criteria),
       T_lidar_base_(T_base_lidar.inverse()),
       traits_(traits_of(Method::k4Dof, HeightSource::kNone)),
       matcher_(of_loops(registration, sample_points), T_base_lidar.translation()),
-      free_space_(map_voxel_m) {}
+      free_space_(spacing_m) {}
 
 std::optional<Loop> LoopMatcher::match(const Submap& submap, const KeyScan& key, const LoopGuess& guess) {
   const MatchResult result = best_match(submap, key, guess);

@@ -35,8 +35,9 @@ struct LoopGuess {
 /// Matches key scans to submaps. One thread.
 class LoopMatcher {
  public:
+  /// `spacing_m`: largest distance between neighbouring points of scans, see FreeSpace.
   LoopMatcher(const LoopCriteria& criteria, const RegistrationConfig& registration, std::size_t sample_points,
-              float map_voxel_m, const Eigen::Isometry3d& T_base_lidar);
+              float spacing_m, const Eigen::Isometry3d& T_base_lidar);
 
   /// The scan of the key scan, for its free space. Before match().
   void set_scan(const RegisteredScan& scan) { free_space_.set_scan(scan, T_lidar_base_); }

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -71,6 +72,23 @@ TEST_CASE("where nothing confirms the live motion, the link says so") {
     return sum;
   };
   CHECK(variance(carried) > 5.0 * variance(known));
+}
+
+TEST_CASE("a pose that is no number, none in the map or dead reckoning alone is no key scan") {
+  KeyScanChoice choice;
+  PoseEstimate good;
+  good.mode = PoseMode::kRegistered;
+  good.covariance.setIdentity();
+  CHECK(choice.wants(good));
+  PoseEstimate bad = good;
+  bad.T_map_base.translation().x() = std::numeric_limits<double>::quiet_NaN();
+  CHECK_FALSE(choice.wants(bad));
+  bad = good;
+  bad.mode = PoseMode::kPriorOnly;
+  CHECK_FALSE(choice.wants(bad));
+  bad = good;
+  bad.for_map = false;
+  CHECK_FALSE(choice.wants(bad));
 }
 
 TEST_CASE("the oldest submaps are forgotten beyond the memory, and no others") {
