@@ -13,9 +13,9 @@ namespace isobar {
 
 /// Floor and time of a grid.
 struct GridOrigin {
-  std::int64_t stamp_ns = 0;      ///< of the newest scan in it, robot clock
-  std::uint32_t session = 1;      ///< number of the map frame
-  std::int32_t floor = 0;         ///< number of the floor
+  std::int64_t stamp_ns = 0;         ///< of the newest scan in it, robot clock
+  std::uint32_t session = 1;         ///< number of the map frame
+  std::int32_t floor = 0;            ///< number of the floor
   std::string_view floor_name = "";  ///< cut to ipc::kFloorNameBytes
 };
 
