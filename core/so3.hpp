@@ -50,6 +50,9 @@ inline double yaw_of(const Eigen::Quaterniond& q) {
   return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
 }
 
+/// Yaw of a rotation matrix [rad], -pi … pi, z-y-x convention: heading of its x axis.
+inline double yaw_of(const Eigen::Matrix3d& R) { return std::atan2(R(1, 0), R(0, 0)); }
+
 /// Rotation about z by `yaw_rad`, as a matrix.
 inline Eigen::Matrix3d rotation_about_z(double yaw_rad) {
   return Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/so3.hpp"
 #include "core/stamp.hpp"
 
 namespace isobar {
@@ -26,7 +27,7 @@ Motion motion_between(const PoseEstimate& before, const PoseEstimate& pose) {
   if (pose.session != before.session || step_s <= 0.0 || step_s >= kMaxStepS) return motion;
   motion.v_map_m_s = (pose.T_map_base.translation() - before.T_map_base.translation()) / step_s;
   const Eigen::Matrix3d R = pose.T_map_base.linear() * before.T_map_base.linear().transpose();
-  motion.yaw_rate_rad_s = std::atan2(R(1, 0), R(0, 0)) / step_s;
+  motion.yaw_rate_rad_s = yaw_of(R) / step_s;
   if (motion.v_map_m_s.norm() > kMaxSpeedMS || std::abs(motion.yaw_rate_rad_s) > kMaxRateRadS) return {};
   return motion;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/geometry.hpp"
+#include "core/so3.hpp"
 #include "core/squared.hpp"
 
 namespace isobar {
@@ -20,8 +21,6 @@ constexpr double kLeastAirSigmaM = 0.05;
 constexpr double kPairLevelM = 0.05;
 constexpr double kPairHeightM = 0.03;
 constexpr double kPairYawRad = 0.3 * kRadPerDeg;
-
-double yaw_of(const Eigen::Matrix3d& R) { return std::atan2(R(1, 0), R(0, 0)); }
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/place/place_grid.hpp"
+#include "core/so3.hpp"
 
 namespace isobar {
 
@@ -148,9 +149,8 @@ PlaceFit fine_fit(const MapSnapshot& map, const SlabImage& image, const PlaceQue
   };
   fit.walls = share_of(query.wall_points(), true);
   fit.others = share_of(query.other_points(), false);
-  const Eigen::Matrix3d R = T_map_level.linear();
   const SlabPose pose{T_map_level.translation().x(), T_map_level.translation().y(),
-                      std::atan2(R(1, 0), R(0, 0)), 0.0};
+                      yaw_of(T_map_level.linear()), 0.0};
   fit.passed = passed_share(image, query, pose, 1, &evidence);
   return fit;
 }

@@ -68,7 +68,7 @@ double gravity_sigma_rad(double known_rad, double offset_sigma_rad) {
 void MotionModel::start(const Prior& prior, const Eigen::Vector3d& offset_rad) {
   const Eigen::Matrix3d R = prior.T_odom_base.linear() * exp_so3(-offset_rad).toRotationMatrix();
   T_map_base_.setIdentity();
-  T_map_base_.linear() = rotation_about_z(-std::atan2(R(1, 0), R(0, 0))) * R;
+  T_map_base_.linear() = rotation_about_z(-yaw_of(R)) * R;
   T_map_base_.translation().z() = prior.height_source == HeightSource::kNone ? 0.0 : prior.height_m;
   started_ = true;
   last_ = prior;
@@ -82,7 +82,7 @@ void MotionModel::start(const Prior& prior, const Eigen::Vector3d& offset_rad) {
 void MotionModel::start_at(const Prior& prior, const Eigen::Isometry3d& T_map_base) {
   start(prior);
   const Eigen::Matrix3d& R = T_map_base.linear();
-  T_map_base_.linear() = rotation_about_z(std::atan2(R(1, 0), R(0, 0))) * T_map_base_.linear();
+  T_map_base_.linear() = rotation_about_z(yaw_of(R)) * T_map_base_.linear();
   T_map_base_.translation() = T_map_base.translation();
 }
 

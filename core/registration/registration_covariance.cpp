@@ -10,6 +10,7 @@
 
 #include "core/registration/halt.hpp"
 #include "core/registration/registration.hpp"
+#include "core/so3.hpp"
 #include "core/squared.hpp"
 #include "core/stamp.hpp"
 
@@ -145,7 +146,7 @@ void Registration::lay_scan(const MethodTraits& traits, const Matrix6d& scan_cov
 void Registration::watch_halt(const Prior& end, const PoseEstimate& pose) {
   const Eigen::Matrix3d R = pose.T_map_odom.linear();
   if (halts(end)) {
-    state_.halt.stand(pose.stamp_ns, std::atan2(R(1, 0), R(0, 0)));
+    state_.halt.stand(pose.stamp_ns, yaw_of(R));
   } else if (state_.halt.standing()) {
     Matrix6d turned = Matrix6d::Zero();
     turned(5, 5) = state_.halt.variance_rad2();

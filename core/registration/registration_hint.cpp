@@ -33,8 +33,6 @@ constexpr double kHeightSigmas = 3.0;
 // Difference of heights from which the altimeter begins anew at the place found.
 constexpr double kOtherHeightM = 0.3;
 
-double yaw_of(const Eigen::Matrix3d& R) { return std::atan2(R(1, 0), R(0, 0)); }
-
 bool are_same(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   const Vector6d between = twist_between(a, b);
   return between.tail<3>().norm() < kSameM && between.head<3>().norm() < kSameRad;

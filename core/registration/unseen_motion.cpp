@@ -18,8 +18,6 @@ constexpr double kMostUnseenRad = 1.6;
 // Longest step between two priors: over a longer one the IMU was silent.
 constexpr double kLongestStepS = 0.5;
 
-double yaw_of(const Eigen::Matrix3d& R) { return std::atan2(R(1, 0), R(0, 0)); }
-
 /// First prior with wheels; null without one.
 const Prior* first_on_wheels(const PriorHistory& priors) {
   for (std::size_t i = 0; i < priors.size(); ++i) {

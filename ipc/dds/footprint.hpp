@@ -3,7 +3,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
+
+#include "core/so3.hpp"
 
 namespace isobar::dds {
 
@@ -14,8 +15,7 @@ namespace isobar::dds {
   constexpr double kSteepest = 0.5;  // cosine: a robot on its side has no ground under it
   const Eigen::Matrix3d R = T_odom_base.linear();
   Eigen::Isometry3d T_odom_footprint = Eigen::Isometry3d::Identity();
-  T_odom_footprint.linear() =
-      Eigen::AngleAxisd(std::atan2(R(1, 0), R(0, 0)), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  T_odom_footprint.linear() = rotation_about_z(yaw_of(R));
   T_odom_footprint.translation() = T_odom_base.translation();
   T_odom_footprint.translation().z() -= depth_m / std::max(R(2, 2), kSteepest);
   return T_odom_footprint;
