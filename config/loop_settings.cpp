@@ -10,8 +10,7 @@ void add_loop_settings(LoopConfig& loops, std::vector<Setting>& settings) {
          "trajectory-corrected.tum. The poses of the run stay as they are.");
   s.number("memory_mb", &loops.memory_mb, "MB", 1.0, 100'000.0,
            "Memory for what places are known by; beyond it the oldest ones are forgotten. 160: 15 km of "
-           "corridors, "
-           "2 km of streets.");
+           "corridors, 2 km of streets.");
 }
 
 }  // namespace isobar

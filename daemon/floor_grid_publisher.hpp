@@ -13,10 +13,10 @@ namespace isobar {
 
 /// Floor and time of a grid.
 struct GridOrigin {
-  std::int64_t stamp_ns = 0;         ///< of the newest scan in it, robot clock
-  std::uint32_t session = 1;         ///< number of the map frame
-  std::int32_t floor = 0;            ///< number of the floor
-  std::string_view floor_name = "";  ///< cut to ipc::kFloorNameBytes
+  std::int64_t stamp_ns = 0;      ///< of the newest scan in it, robot clock
+  std::uint32_t session = 1;      ///< number of the map frame
+  std::int32_t floor = 0;         ///< number of the floor
+  std::string_view floor_name{};  ///< cut to ipc::kFloorNameBytes
 };
 
 /// Publishes grids in pieces of a megabyte, one a step, so that a large one fills neither the shared memory nor the time of

@@ -16,7 +16,7 @@ inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 /// Copies a text into a null-terminated field; a longer text is truncated.
 inline void copy_text(std::string_view from, char* to, std::size_t capacity) noexcept {
   const std::size_t length = from.size() < capacity - 1 ? from.size() : capacity - 1;
-  std::memcpy(to, from.data(), length);
+  from.copy(to, length);  // also of a text without data, which memcpy must not get
   std::memset(to + length, 0, capacity - length);
 }
 

@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <thread>
 
 #include "core/errors.hpp"
 #include "core/geometry.hpp"
@@ -20,6 +19,7 @@
 #include "tools/commands.hpp"
 #include "tools/status/hang_limit.hpp"
 #include "tools/subcommand.hpp"
+#include "tools/wait_until.hpp"
 
 namespace isobar::tools {
 
@@ -82,12 +82,12 @@ ipc::PoseHint hint_of(const HintOptions& options) {
 template <class Fits>
 std::optional<Answer> wait_for_answer(ipc::Subscriber<ipc::HealthReport>& reports, Clock::time_point end,
                                       const Fits& fits) {
-  for (;;) {
-    auto answer = answer_in(reports);
-    if (answer && fits(*answer)) return answer;
-    if (Clock::now() >= end) return std::nullopt;
-    std::this_thread::sleep_for(milliseconds(50));
-  }
+  std::optional<Answer> answer;
+  const bool found = wait_until(end, [&] {
+    answer = answer_in(reports);
+    return answer && fits(*answer);
+  });
+  return found ? answer : std::nullopt;
 }
 
 void run_initial_pose(const HintOptions& options) {

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <optional>
 #include <string_view>
-#include <thread>
 
 #include "core/errors.hpp"
 #include "ipc/broker.hpp"
@@ -14,6 +13,7 @@
 #include "tools/commands.hpp"
 #include "tools/status/hang_limit.hpp"
 #include "tools/subcommand.hpp"
+#include "tools/wait_until.hpp"
 
 namespace isobar::tools {
 
@@ -38,16 +38,6 @@ std::optional<std::uint32_t> session_in(ipc::Subscriber<ipc::HealthReport>& repo
     }
   }
   return std::nullopt;
-}
-
-/// Polls `ready` until it holds or the time is over.
-template <class Ready>
-bool wait_until(std::chrono::steady_clock::time_point end, const Ready& ready) {
-  while (!ready()) {
-    if (std::chrono::steady_clock::now() >= end) return false;
-    std::this_thread::sleep_for(milliseconds(50));
-  }
-  return true;
 }
 
 void run_reset(const ResetOptions& options) {

@@ -101,15 +101,14 @@ ChainStep SubmapChain::add(const RegisteredScan& scan, const std::optional<AirHe
 }
 
 void SubmapChain::forget_beyond(std::size_t planes) {
-  std::size_t sum = 0;
-  for (std::size_t i = complete_; i > forgotten_; --i) {
-    sum += submaps_[i - 1].planes->plane_count();
-    if (sum <= planes) continue;
-    while (forgotten_ < i) {
-      Submap& submap = submaps_[forgotten_++];
-      submap.planes.reset();
-      for (KeyScan& key : submap.keys) key.p_base = {};
-    }
+  std::size_t first_kept = complete_;
+  for (std::size_t sum = 0; first_kept > forgotten_; --first_kept) {
+    sum += submaps_[first_kept - 1].planes->plane_count();
+    if (sum > planes) break;
+  }
+  for (; forgotten_ < first_kept; ++forgotten_) {
+    submaps_[forgotten_].planes.reset();
+    for (KeyScan& key : submaps_[forgotten_].keys) key.p_base = {};
   }
 }
 

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "core/errors.hpp"
+#include "run/files/part_file.hpp"
 
 namespace isobar::files {
 
@@ -50,14 +51,9 @@ void write_text_file(const std::filesystem::path& file, std::string_view text) {
 }
 
 void replace_file(const std::filesystem::path& file, std::string_view content) {
-  const std::filesystem::path part = file.string() + ".part";
-  OutputFile out(part);
+  PartFile out(file);
   out.write(content);
-  out.sync();
   out.close();
-  std::error_code error;
-  std::filesystem::rename(part, file, error);
-  if (error) throw ServiceError(file.string() + ": cannot be replaced: " + error.message());
 }
 
 OutputFile::OutputFile(std::filesystem::path file) : path_(std::move(file)) {
