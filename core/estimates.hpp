@@ -140,6 +140,8 @@ struct PoseEstimate {
   std::int64_t stamp_ns = 0;
   std::uint32_t sequence = 0;  ///< of the scan; between scans, of the last one
   std::uint32_t session = 1;   ///< number of the map frame, 1 …; poses of two frames cannot be compared
+  std::uint32_t map_moves =
+      0;  ///< corrections of the map frame so far, see MapMove: the pose jumps with each
   PoseMode mode = PoseMode::kInitializing;
   Method method = Method::k3Dof;            ///< configured method
   Method effective_method = Method::k3Dof;  ///< method that ran: 3-DOF without any height runs as 4-DOF
@@ -163,6 +165,8 @@ struct PoseEstimate {
       localisability;  ///< how well the scan holds each free direction, and who holds the weak ones
   AltimeterState altimeter;
   MountState mount;
+  /// The robot is where it has been before: the pose takes up the drift of the way between.
+  bool on_known_ground = false;
   bool for_map = true;  ///< the map may take the scan; false on moving ground and where the pose is doubtful
   /// Not kNone: the pose is dead reckoning from before the contradiction, in mode kPriorOnly, with a covariance that
   /// grows, and the map does not take the scan. Registered poses again where the place has been found again.

@@ -55,6 +55,11 @@ void LocalMap::configure(const MapConfig& config) {
   seen_through_ = SeenThrough(config_, T_base_lidar_);
 }
 
+void LocalMap::set_move(const MapMove& move) {
+  move_ = move;
+  publish();
+}
+
 bool LocalMap::wants(const PoseEstimate& pose) const {
   if (!started_) {
     return true;
@@ -69,7 +74,8 @@ bool LocalMap::wants(const PoseEstimate& pose) const {
 bool LocalMap::update(const RegisteredScan& scan) {
   constexpr double kMaxCoordinateM = 1e8;  // a cell index must fit into 32 bits; no robot drives that far
   const auto& pose = scan.pose.T_map_base.matrix();
-  if (scan.point_count == 0 || !scan.pose.for_map || scan.pose.session != session_ || !pose.allFinite() ||
+  if (scan.point_count == 0 || !scan.pose.for_map || scan.pose.session != session_ ||
+      scan.pose.map_moves != move_.number || !pose.allFinite() ||
       pose.cwiseAbs().maxCoeff() > kMaxCoordinateM || !wants(scan.pose)) {
     return false;
   }
@@ -209,11 +215,14 @@ void LocalMap::publish() {
       planes.push_back(tile->cells.planes());
     }
   }
+  std::shared_ptr<MapSnapshot> next;
   if (wants_trees) {
-    snapshot_ = std::make_shared<const NearestPlane>(std::move(trees), cell_m_, session_);
+    next = std::make_shared<NearestPlane>(std::move(trees), cell_m_, session_);
   } else {
-    snapshot_ = std::make_shared<const PlaneHash>(std::move(planes), cell_m_, session_);
+    next = std::make_shared<PlaneHash>(std::move(planes), cell_m_, session_);
   }
+  next->set_move(move_);
+  snapshot_ = std::move(next);
 }
 
 void LocalMap::append_points(std::vector<MapPoint>& points) const {

@@ -65,6 +65,10 @@ class LocalMap {
   void load_around(const Eigen::Vector3d& p_map_base);
 
   [[nodiscard]] std::uint32_t session() const { return session_; }
+  /// How the map frame has been corrected; scans whose pose is of another correction are left out.
+  [[nodiscard]] const MapMove& move() const { return move_; }
+  /// The map has been laid anew at corrected poses: snapshot() says so.
+  void set_move(const MapMove& move);
   [[nodiscard]] std::size_t cell_count() const;
   [[nodiscard]] std::size_t tile_count() const { return tiles_.size(); }
   /// True if the tile is in memory.
@@ -118,6 +122,7 @@ class LocalMap {
   Eigen::Isometry3d T_base_lidar_;
   TileStorage* storage_;
   std::uint32_t session_;
+  MapMove move_;
   PlaneFitter fitter_;
   std::unordered_map<TileKey, std::unique_ptr<Tile>, TileKey::Hash> tiles_;
   std::shared_ptr<const MapSnapshot> snapshot_;

@@ -8,6 +8,8 @@
 #include <span>
 
 #include "core/map/grid.hpp"
+#include "core/map/map_move.hpp"
+
 namespace isobar {
 
 /// Parameters of a match, common to all points of a call.
@@ -56,6 +58,10 @@ class MapSnapshot {
   [[nodiscard]] float cell_m() const { return cell_m_; }
   /// Number of the map frame, as in PoseEstimate.
   [[nodiscard]] std::uint32_t session() const { return session_; }
+  /// How its map frame has been corrected so far.
+  [[nodiscard]] const MapMove& move() const { return move_; }
+  /// Before it is published.
+  void set_move(const MapMove& move) { move_ = move; }
 
  protected:
   MapSnapshot(float cell_m, std::size_t plane_count, std::uint32_t session = 1)
@@ -63,6 +69,7 @@ class MapSnapshot {
 
  private:
   std::uint32_t session_ = 1;
+  MapMove move_;
   float cell_m_ = 0.25F;
   std::size_t plane_count_ = 0;
 };

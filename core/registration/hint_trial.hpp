@@ -36,6 +36,8 @@ class HintTrial {
   [[nodiscard]] Eigen::Isometry3d expected(const Prior& now) const;
   /// A scan has shown that the place is at `T_map_base` at the time of `now`.
   void move_to(const Prior& now, const Eigen::Isometry3d& T_map_base);
+  /// The map has been moved.
+  void follow_map(const Eigen::Isometry3d& T_now_before) { T_map_base_ = T_now_before * T_map_base_; }
   [[nodiscard]] PlaceSearch& search() { return search_; }
 
   /// A registered scan: a sudden fall of its overlap may be the moment in which somebody carried the robot away. From the

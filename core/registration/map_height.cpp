@@ -75,6 +75,11 @@ void MapHeight::keep_airflow() {
   P_(kAirflow, kAirflow) = variance;
 }
 
+void MapHeight::follow_map(double up_m) {
+  x_[kBias] -= up_m;
+  floor_bias_m_ -= up_m;
+}
+
 void MapHeight::restart() {
   keep_airflow();
   P_(kBias, kBias) = squared(config_.start_bias_sigma_m);

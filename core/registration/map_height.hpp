@@ -82,6 +82,8 @@ class MapHeight {
 
   /// Begins at a pose in the map; the altimeter reads `z_m` there. The airflow is kept: it is the robot's.
   void restart();
+  /// The map has been moved up by `up_m` where the robot is: not by the altimeter, which departs from it by that much more.
+  void follow_map(double up_m);
   /// Forgets the priors, whose clock may have started over; restart() follows.
   void restart_clock();
 

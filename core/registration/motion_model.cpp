@@ -71,6 +71,7 @@ void MotionModel::start(const Prior& prior, const Eigen::Vector3d& offset_rad) {
   T_map_base_.linear() = rotation_about_z(-yaw_of(R)) * R;
   T_map_base_.translation().z() = prior.height_source == HeightSource::kNone ? 0.0 : prior.height_m;
   started_ = true;
+  lift_m_ = 0.0;
   last_ = prior;
   v_map_m_s_.setZero();
   w_base_rad_s_.setZero();
@@ -99,6 +100,12 @@ void MotionModel::relocate(const Prior& now, const Eigen::Isometry3d& T_map_base
   w_base_rad_s_.setZero();
   confirmed_ns_ = now.stamp_ns;
   unconfirmed_m_ = 0.0;
+}
+
+void MotionModel::follow_map(const Eigen::Isometry3d& T_now_before) {
+  T_map_base_ = T_now_before * T_map_base_;
+  lift_m_ += T_now_before.translation().z();
+  v_map_m_s_ = T_now_before.linear() * v_map_m_s_;
 }
 
 double MotionModel::travel_s(const Prior& now) const {
@@ -142,7 +149,7 @@ Prediction MotionModel::predict(const Prior& now, const MethodTraits& method,
       Eigen::Quaterniond(R_map_odom * now.T_odom_base.linear()).normalized().toRotationMatrix();
   prediction.T_map_base.translation() = T_map_base_.translation() + step_map_m;
   if (method.follows_altimeter()) {
-    prediction.T_map_base.translation().z() = now.height_m;
+    prediction.T_map_base.translation().z() = now.height_m + lift_m_;
   }
   if (!turn_known(now)) turn_on(now, prediction);
   const double dt_s = std::max(travel_s(now), seconds_between(confirmed_ns_, now.stamp_ns));

@@ -49,6 +49,8 @@ class MotionModel {
   void start_at(const Prior& prior, const Eigen::Isometry3d& T_map_base);
   /// A search has found the robot at `T_map_base`, the pose at the time of `now`; the velocity is unknown.
   void relocate(const Prior& now, const Eigen::Isometry3d& T_map_base);
+  /// The map has been moved: the robot goes on in it with the same motion. `T`: about z.
+  void follow_map(const Eigen::Isometry3d& T_now_before);
   [[nodiscard]] bool started() const { return started_; }
   /// Pose of the last scan.
   [[nodiscard]] const Eigen::Isometry3d& T_map_base() const { return T_map_base_; }
@@ -102,6 +104,7 @@ class MotionModel {
   RegistrationConfig config_;
   bool started_ = false;
   Prior last_;                                                    // prior at the last scan
+  double lift_m_ = 0.0;                                           // of the map over the altimeter, by follow_map()
   Eigen::Isometry3d T_map_base_ = Eigen::Isometry3d::Identity();  // pose at the last scan
   Eigen::Vector3d v_map_m_s_ = Eigen::Vector3d::Zero();           // filtered, of the last registrations
   Eigen::Vector3d w_base_rad_s_ = Eigen::Vector3d::Zero();        // turn rate of the last step

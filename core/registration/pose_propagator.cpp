@@ -65,7 +65,7 @@ void PosePropagator::begin_session(const PoseEstimate& first) {
   height_count_ = 0;
 }
 
-// Found elsewhere, by a search or a hint: the robot has not driven there. Odom stays, at the time of the pose.
+// Found elsewhere, by a search or a hint, or taken along by its map: the robot has not driven there. Odom stays, at the time of the pose.
 void PosePropagator::follow_relocation(const PoseEstimate& pose) {
   Prior then = last_prior_;
   then.stamp_ns = pose.stamp_ns;
@@ -74,7 +74,8 @@ void PosePropagator::follow_relocation(const PoseEstimate& pose) {
   const Eigen::Isometry3d believed = best_pose(then);
   const double distance_m = (pose.T_map_base.translation() - believed.translation()).norm();
   const Eigen::Matrix3d turn = pose.T_map_base.linear() * believed.linear().transpose();
-  if (distance_m < kElsewhereM && Eigen::AngleAxisd(turn).angle() < kElsewhereRad) return;
+  const bool map_moved = pose.map_moves != anchor_.pose.map_moves;
+  if (!map_moved && distance_m < kElsewhereM && Eigen::AngleAxisd(turn).angle() < kElsewhereRad) return;
   T_odom_map_ = T_odom_map_ * believed * pose.T_map_base.inverse(Eigen::Isometry);
 }
 
@@ -147,6 +148,8 @@ bool PosePropagator::height_at(std::int64_t stamp_ns, double& height_m) const {
 }
 
 Eigen::Vector3d PosePropagator::registered_velocity(const PoseEstimate& pose) const {
+  // The step from the last pose is not a motion.
+  if (has_anchor_ && pose.map_moves != anchor_.pose.map_moves) return anchor_.v_map_m_s;
   const double gap_s = has_anchor_ ? seconds_between(anchor_.pose.stamp_ns, pose.stamp_ns) : 0.0;
   if (gap_s <= 0.0 || gap_s > kMaxScanGapS || pose.mode != PoseMode::kRegistered ||
       anchor_.pose.mode != PoseMode::kRegistered) {

@@ -46,8 +46,8 @@ struct Odometry {
 ///
 /// The odom frame of the result is not that of Prior::T_odom_base, which drifts without bound: the
 /// registration's corrections enter it, low-passed and rate-limited. It continues when a new map frame begins
-/// (PoseEstimate::session), and when the robot turns out to be elsewhere in the map (by kElsewhereM or kElsewhereRad): then
-/// only T_map_odom jumps. Allocates nothing. Not thread-safe.
+/// (PoseEstimate::session), when the map is corrected (PoseEstimate::map_moves), and when the robot turns out to be elsewhere
+/// in the map (by kElsewhereM or kElsewhereRad): then only T_map_odom jumps. Allocates nothing. Not thread-safe.
 class PosePropagator {
  public:
   /// A correction beyond one of these is no error of the last pose.

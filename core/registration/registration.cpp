@@ -71,6 +71,7 @@ PoseEstimate Registration::description_of(const Prior& prior, const MethodTraits
   pose.stamp_ns = prior.stamp_ns;
   pose.sequence = state_.last.sequence;
   pose.session = session();
+  pose.map_moves = state_.map_move.number;
   pose.method = asked_;
   pose.effective_method = traits.method;
   pose.height_source = prior.height_source;
@@ -122,6 +123,7 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
     pose = state_.last;
     return;
   }
+  follow_map(map);
   const Prior end = prior_at(scan.end_stamp_ns);
   pose = description_of(end, traits_for(end));
   pose.sequence = scan.sequence;

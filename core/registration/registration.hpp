@@ -84,6 +84,7 @@ struct RegistrationState {
   double scan_height_m = 0.0;        ///< Prior::height_m at the last scan
   double risen_variance_m2 = 0.0;    ///< of z, from moving ground
   std::optional<KnownPlace> place;
+  MapMove map_move;  ///< of the map of the last scan
   PoseEstimate last;
   std::int64_t first_prior_ns = 0;  ///< 0: none yet; the history forgets
   std::uint32_t scans_without_gravity = 0;
@@ -161,6 +162,7 @@ class Registration {
   [[nodiscard]] Eigen::Isometry3d dead_reckoned(const Prior& end) const;
   [[nodiscard]] bool plausible(const Prior& end, const Eigen::Isometry3d& T_map_base) const;
   // registration_place.cpp
+  void follow_map(const MapSnapshot& map);
   void next_frame();
   bool start_at_place(const Prior& prior);
   void search_place(const MapSnapshot& map, const Prior& end, const Prediction& expected,
@@ -201,7 +203,7 @@ class Registration {
   // registration_covariance.cpp
   void restart_drift(const Prior& prior);
   void own_covariance(const Prior& end, const MethodTraits& traits, bool registered, PoseEstimate& pose);
-  void lay_scan(const MethodTraits& traits, const Matrix6d& scan_covariance, const PoseEstimate& pose);
+  void lay_scan(const MethodTraits& traits, const Matrix6d& scan_covariance, PoseEstimate& pose);
   void watch_halt(const Prior& end, const PoseEstimate& pose);
   [[nodiscard]] UnseenStep step_to(const Prior& end, const Eigen::Isometry3d& T_map_base) const;
   [[nodiscard]] double height_variance() const;

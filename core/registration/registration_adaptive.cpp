@@ -102,7 +102,7 @@ void Registration::learn_mount(const Prior& end, const MethodTraits& traits, con
   ScanMotionEvidence evidence;
   evidence.stamp_ns = pose.stamp_ns;
   // A hint that was taken is no motion.
-  evidence.session = pose.session + (state_.hint.relocations() << 16U);
+  evidence.session = pose.session + ((state_.hint.relocations() + pose.map_moves) << 16U);
   evidence.T_map_base = pose.T_map_base;
   evidence.q_base_lidar = state_.q_base_lidar;
   if (end.velocity_valid) evidence.wheel_turn_rad = end.wheel_turn_rad - state_.wheel_turn_rad;

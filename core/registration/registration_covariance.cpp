@@ -124,7 +124,7 @@ double Registration::height_variance() const {
 }
 
 void Registration::lay_scan(const MethodTraits& traits, const Matrix6d& scan_covariance,
-                            const PoseEstimate& pose) {
+                            PoseEstimate& pose) {
   if (state_.unseen.way_m() > kLaidWayM || state_.unseen.time_s() > kLaidS) {
     state_.drift.add_unseen(state_.unseen.covariance());
   }
@@ -137,6 +137,7 @@ void Registration::lay_scan(const MethodTraits& traits, const Matrix6d& scan_cov
   laid.on_wheels = held_by_wheels(pose.localisability);
   laid.height_variance_m2 = state_.height.variance_m2();
   state_.drift.lay(laid);
+  pose.on_known_ground = state_.drift.on_known_ground();
   const double dt_s = seconds_between(state_.last.stamp_ns, pose.stamp_ns);
   const bool moves = state_.posed && dt_s > 0.0 && dt_s < kLongestGapS;
   const Eigen::Vector3d step_m = pose.T_map_base.translation() - state_.last.T_map_base.translation();

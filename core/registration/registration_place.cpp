@@ -63,6 +63,23 @@ void Registration::resume(const KnownPlace& place) {
   state_.last.covariance = unknown_covariance();
 }
 
+// A map that was moved takes the robot along: what is known of its pose and of the altimeter goes on in it.
+void Registration::follow_map(const MapSnapshot& map) {
+  if (map.session() != session() || map.move().number == state_.map_move.number) return;
+  const Eigen::Isometry3d T = map.move().since(state_.map_move);
+  state_.map_move = map.move();
+  state_.last.map_moves = map.move().number;
+  state_.last.T_map_base = T * state_.last.T_map_base;
+  state_.last.T_map_odom = T * state_.last.T_map_odom;
+  if (state_.motion.started()) state_.motion.follow_map(T);
+  state_.height.follow_map(T.translation().z());
+  if (state_.place) state_.place->T_map_base = T * state_.place->T_map_base;
+  state_.lost.T_map_base = T * state_.lost.T_map_base;
+  state_.hint.follow_map(T);
+  state_.halt.leave();
+  state_.lost_detector.restart();
+}
+
 void Registration::begin_new_frame() {
   next_frame();
   state_.history.clear();
@@ -77,6 +94,7 @@ void Registration::next_frame() {
   blank.session = session() + 1;
   blank.method = asked_;
   state_.last = blank;
+  state_.map_move = {};
   state_.motion = MotionModel(config_);
   state_.search.stop();
   if (state_.hint.active()) state_.hint.finish(HintOutcome::kOtherFrame, blank.stamp_ns);

@@ -62,6 +62,9 @@ class RegistrationRun {
     map_ = std::make_unique<LocalMap>(MapConfig{}, run_lidar_mount(), nullptr, registration_->session());
     index_ = 0;
   }
+  /// Another map, laid from the same scans, takes the place of this one.
+  void exchange_map(std::unique_ptr<LocalMap> map) { map_ = std::move(map); }
+  [[nodiscard]] const RegisteredScan& registered_scan() const { return *out_; }
   /// A new registration continues at `place` with the same map.
   void restart_at(const KnownPlace& place);
   Scan& scan() { return *scan_; }
