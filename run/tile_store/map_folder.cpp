@@ -178,11 +178,19 @@ fs::path numbered_file(const fs::path& directory, std::uint32_t number, const ch
 
 void remove_map(const fs::path& directory) {
   std::vector<fs::path> files{directory / "map.toml"};
-  for (const auto& entry : fs::directory_iterator(directory)) {
-    const auto extension = entry.path().extension();
-    const bool is_ours =
-        extension == kTilesExtension || extension == ".index" || extension == kScansExtension;
-    if (is_ours && number_of(entry.path()) >= 0) files.push_back(entry.path());
+  const fs::path building = directory / kBuildingFolder;
+  for (const fs::path& folder : {directory, building}) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+      const auto extension = entry.path().extension();
+      const bool is_ours =
+          extension == kTilesExtension || extension == ".index" || extension == kScansExtension;
+      if (is_ours && number_of(entry.path()) >= 0) files.push_back(entry.path());
+    }
+  }
+  std::error_code missing;
+  if (fs::exists(building, missing)) {
+    files.insert(files.end(), {building / "building.log", building / "lock", building});
   }
   for (const fs::path& file : files) {
     std::error_code error;

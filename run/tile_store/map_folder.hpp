@@ -47,6 +47,9 @@ void sync_folder(const std::filesystem::path& directory) noexcept;
 inline constexpr const char* kTilesExtension = ".tiles";  ///< segments of tiles (tile_segment.hpp)
 inline constexpr const char* kScansExtension = ".scans";  ///< parts of the journal (scan_journal.hpp)
 
+/// Folder in that of a map: its building (run/building).
+inline constexpr const char* kBuildingFolder = "building";
+
 /// Numbers of the files NNNNNNNN.EXTENSION in the folder, ascending.
 /// @throws ServiceError when the folder cannot be read
 std::vector<std::uint32_t> file_numbers(const std::filesystem::path& directory, const char* extension);

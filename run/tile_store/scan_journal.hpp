@@ -4,7 +4,7 @@
 // Tiles are large and change with every scan, so they are written every few seconds; a scan is small and is
 // written at once. A start after a crash reads the tiles and inserts the scans again.
 //
-//   NNNNNNNN.scans  part: consecutive records, each a ScanHead and its points (JournalPoint)
+//   NNNNNNNN.scans  part: consecutive records, each a scan (scan_record.hpp)
 #pragma once
 
 #include <cstddef>
@@ -26,8 +26,6 @@ class ScanJournal {
   /// has just seen for the first time are there, far enough that a robot that stands writes nothing.
   static constexpr double kStepM = 0.5;
   static constexpr double kStepRad = 0.26;
-  /// Points of a scan at most: every n-th of more.
-  static constexpr std::uint32_t kMaxPoints = 10'000;
   /// Size of all parts at which the oldest is removed, whatever the tiles do [bytes].
   static constexpr std::uint64_t kMaxBytes = 32U << 20;
 
