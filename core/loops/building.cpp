@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "core/geometry.hpp"
 #include "core/so3.hpp"
@@ -21,39 +23,105 @@ constexpr double kLeastAirSigmaM = 0.05;
 constexpr double kPairLevelM = 0.05;
 constexpr double kPairHeightM = 0.03;
 constexpr double kPairYawRad = 0.3 * kRadPerDeg;
+// Place of a continued run in the building of the earlier one.
+constexpr double kContinuedM = 0.2;
+constexpr double kContinuedTiltRad = 0.1 * kRadPerDeg;
+constexpr double kContinuedYawRad = 1.0 * kRadPerDeg;
 
 }  // namespace
 
 Building::Building(const LoopConfig& config, const MapConfig& map, const RegistrationConfig& registration,
-                   const Eigen::Isometry3d& T_base_lidar)
+                   const Eigen::Isometry3d& T_base_lidar, BuildingStorage* storage)
     : most_planes_(static_cast<std::size_t>(config.memory_mb * 1e6 / kBytesPerPlane)),
+      storage_(storage),
       chain_({}, map, registration, T_base_lidar),
       matcher_({}, registration, SubmapConfig{}.sample_points, static_cast<float>(map.cell_m), T_base_lidar) {
 }
 
+void Building::continue_from(StoredBuilding stored) {
+  moved_ns_ = std::move(stored.moved_ns);
+  moves_before_ = moved_ns_.size();
+  // The first loops tell the place in the submaps where the earlier run has ended.
+  chain_.continue_from(std::move(stored.submaps), search_.min_way_m);
+  counts_.submaps = chain_.submaps().size();
+  for (const Submap& submap : chain_.submaps()) {
+    counts_.key_scans += submap.keys.size();
+    add_node(submap.number);
+  }
+  for (const Loop& loop : stored.loops) add_edge(loop);
+  continued_ = counts_.submaps > 0;
+  counts_.taken = static_cast<std::uint64_t>(graph_.optimise().loops_taken);
+}
+
 bool Building::add(const RegisteredScan& scan, const std::optional<AirHeight>& air) {
+  follow_map(scan.pose);
+  if (continued_) chain_.set_place(place_of(scan));
   const ChainStep step = chain_.add(scan, air);
   if (!step.key) return false;
+  chain_.last_key().map_moves = static_cast<std::uint32_t>(moved_ns_.size());
+  continued_ = false;
   ++counts_.key_scans;
   counts_.submaps = chain_.submaps().size();
+  if (step.begins) add_node(chain_.submaps().size() - 1);
+  store(scan, step.begins);
   if (step.begins) {
-    add_node(air);
     chain_.forget_beyond(most_planes_);
     if (counts_.submaps % kOptimiseEvery == 0) static_cast<void>(graph_.optimise());
   }
   return !chain_.last_key().p_base.empty() && look_for_loops(scan);
 }
 
-void Building::add_node(const std::optional<AirHeight>& air) {
-  const std::size_t number = chain_.submaps().size() - 1;
+void Building::follow_map(const PoseEstimate& pose) {
+  if (!expected_move_ || moves_before_ + pose.map_moves <= moved_ns_.size()) return;
+  chain_.follow_map(*expected_move_);
+  expected_move_.reset();
+  moved_ns_.push_back(pose.stamp_ns);
+  if (storage_ != nullptr) storage_->add_move(pose.stamp_ns);
+}
+
+void Building::store(const RegisteredScan& scan, bool begins) {
+  if (storage_ == nullptr) return;
+  if (begins) storage_->add_submap(chain_.submaps().back());
+  storage_->add_key(chain_.holder(), chain_.last_key(), scan);
+}
+
+// Where the robot goes on in the building of an earlier run: beside the key scan that is nearest in the live map, as the
+// loops have moved it. Live map and building agree to decimetres; loops find the rest.
+ChainLink Building::place_of(const RegisteredScan& scan) const {
+  const Eigen::Isometry3d& T_map_base = scan.pose.T_map_base;
+  double nearest_m = std::numeric_limits<double>::max();
+  Eigen::Isometry3d T_map_corrected = T_map_base;
+  for (const Submap& submap : chain_.submaps()) {
+    for (const KeyScan& key : submap.keys) {
+      const double distance_m = (key.T_map_base.translation() - T_map_base.translation()).norm();
+      if (distance_m >= nearest_m) continue;
+      nearest_m = distance_m;
+      T_map_corrected =
+          T_map_submap(submap.number) * key.T_submap_base * key.T_map_base.inverse() * T_map_base;
+    }
+  }
+  ChainLink place;
+  place.T_before_submap = upright(T_map_submap(chain_.submaps().size() - 1).inverse() * T_map_corrected);
+  Vector6d sigma;
+  sigma << kContinuedM, kContinuedM, kContinuedM, kContinuedTiltRad, kContinuedTiltRad, kContinuedYawRad;
+  place.covariance = sigma.cwiseAbs2().asDiagonal();
+  return place;
+}
+
+void Building::add_node(std::size_t number) {
+  const Submap& submap = chain_.submaps()[number];
+  const std::optional<AirHeight>& air = submap.air;
   GraphNode node;
-  node.stamp_ns = chain_.last_key().stamp_ns;
-  node.T_map_submap = number == 0 ? upright(chain_.last_key().T_map_base)
-                                  : T_map_submap(number - 1) * chain_.link(number).T_before_submap;
+  node.stamp_ns = submap.stamp_ns;
+  if (number > 0) {
+    node.T_map_submap = T_map_submap(number - 1) * submap.link.T_before_submap;
+  } else if (!submap.keys.empty()) {
+    node.T_map_submap = upright(submap.keys.front().T_map_base);
+  }
   const auto id = graph_.add_node(node);
   if (!id) return;
   if (number > 0) {
-    const ChainLink& link = chain_.link(number);
+    const ChainLink& link = submap.link;
     static_cast<void>(
         graph_.add_edge({*id - 1, *id, link.T_before_submap, link.covariance, EdgeKind::kOdometry}));
   }
@@ -73,7 +141,7 @@ bool Building::look_for_loops(const RegisteredScan& scan) {
   bool scan_is_set = false;
   for (const Candidate& candidate : candidates(key)) {
     const auto expected = guess(candidate.submap, key);
-    if (!expected) continue;
+    if (!expected || !chain_.planes_of(candidate.submap, storage_)) continue;
     if (!scan_is_set) matcher_.set_scan(scan);
     scan_is_set = true;
     ++counts_.tried;
@@ -93,7 +161,8 @@ std::vector<Building::Candidate> Building::candidates(const KeyScan& key) {
   const Eigen::Vector3d p_map = (T_map_submap(chain_.holder()) * key.T_submap_base).translation();
   for (std::size_t number = 0; number < chain_.complete(); ++number) {
     const Submap& submap = chain_.submaps()[number];
-    if (!submap.planes || key.way_m - submap.last_way_m < search_.min_way_m) continue;
+    if ((!submap.planes && storage_ == nullptr) || key.way_m - submap.last_way_m < search_.min_way_m)
+      continue;
     const Eigen::Vector3d p_submap = T_map_submap(number).inverse() * p_map;
     double nearest_m = search_.max_distance_m + 1.0;
     for (const KeyScan& other : submap.keys) {
@@ -138,15 +207,22 @@ LoopEvidence Building::evidence_of(const Loop& loop, const LoopGuess& guess) con
   return evidence;
 }
 
+bool Building::add_edge(const Loop& loop) {
+  if (!graph_.add_edge({static_cast<NodeId>(loop.submap), static_cast<NodeId>(loop.holder),
+                        loop.T_submap_holder(), loop.holder_covariance(), EdgeKind::kLoop})) {
+    return false;
+  }
+  ++counts_.accepted;
+  loops_.push_back(loop);
+  return true;
+}
+
 bool Building::accept(const std::vector<Loop>& loops) {
   bool any = false;
   for (const Loop& loop : loops) {
-    const bool added = graph_.add_edge({static_cast<NodeId>(loop.submap), static_cast<NodeId>(loop.holder),
-                                        loop.T_submap_holder(), loop.holder_covariance(), EdgeKind::kLoop});
-    if (!added) continue;
+    if (!add_edge(loop)) continue;
     any = true;
-    ++counts_.accepted;
-    loops_.push_back(loop);
+    if (storage_ != nullptr) storage_->add_loop(loop);
   }
   if (!any) return false;
   const GraphResult result = graph_.optimise();
@@ -160,7 +236,8 @@ std::vector<CorrectedKey> Building::corrections() const {
   if (counts_.taken == 0) return corrections;
   for (const Submap& submap : chain_.submaps()) {
     for (const KeyScan& key : submap.keys) {
-      corrections.push_back({key.stamp_ns, key.T_map_base, T_map_submap(submap.number) * key.T_submap_base});
+      corrections.push_back(
+          {key.stamp_ns, key.T_map_base, T_map_submap(submap.number) * key.T_submap_base, key.map_moves});
     }
   }
   return corrections;

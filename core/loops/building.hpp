@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/graph/pose_graph.hpp"
+#include "core/loops/building_storage.hpp"
 #include "core/loops/loop.hpp"
 #include "core/loops/loop_config.hpp"
 #include "core/loops/loop_evidence.hpp"
@@ -39,8 +40,12 @@ struct BuildingCounts {
 /// Finds the places that the robot sees again, and corrects the poses by them. One thread, not on the way of a scan.
 class Building {
  public:
+  /// `storage`: keeps the building; may be null. Outlives it.
   Building(const LoopConfig& config, const MapConfig& map, const RegistrationConfig& registration,
-           const Eigen::Isometry3d& T_base_lidar);
+           const Eigen::Isometry3d& T_base_lidar, BuildingStorage* storage = nullptr);
+
+  /// Goes on with a building of an earlier run, before the first scan.
+  void continue_from(StoredBuilding stored);
 
   /// Takes a registered scan with the height of the air at it.
   /// @return true when loops have changed corrections()
@@ -48,8 +53,19 @@ class Building {
 
   /// Poses of all key scans, live and corrected; none without a loop, since then nothing corrects the live poses.
   [[nodiscard]] std::vector<CorrectedKey> corrections() const;
+  /// Stamps of the first live poses in a map that had been moved, ascending: PoseCorrections needs them.
+  [[nodiscard]] const std::vector<std::int64_t>& moved_ns() const { return moved_ns_; }
+  /// The map is going to be moved: scans whose pose counts one more PoseEstimate::map_moves are in the moved one.
+  /// `T_now_before`: about z.
+  [[nodiscard]] bool expects_move() const { return expected_move_.has_value(); }
+  void expect_move(const Eigen::Isometry3d& T_now_before) { expected_move_ = T_now_before; }
+  /// Pose of a submap, as the loops have it.
+  [[nodiscard]] Eigen::Isometry3d T_map_submap(std::size_t number) const;
   [[nodiscard]] const BuildingCounts& counts() const { return counts_; }
   [[nodiscard]] const std::vector<Submap>& submaps() const { return chain_.submaps(); }
+  /// The last key scan, and the submap that holds it. Precondition: there is one.
+  [[nodiscard]] const KeyScan& last_key() const { return chain_.last_key(); }
+  [[nodiscard]] std::size_t holder() const { return chain_.holder(); }
   [[nodiscard]] const std::vector<Loop>& loops() const { return loops_; }
   [[nodiscard]] const PoseGraph& graph() const { return graph_; }
 
@@ -59,16 +75,24 @@ class Building {
     double distance_m;
   };
 
-  void add_node(const std::optional<AirHeight>& air);
-  [[nodiscard]] Eigen::Isometry3d T_map_submap(std::size_t number) const;
+  void follow_map(const PoseEstimate& pose);
+  void add_node(std::size_t number);
+  void store(const RegisteredScan& scan, bool begins);
+  [[nodiscard]] ChainLink place_of(const RegisteredScan& scan) const;
   [[nodiscard]] std::vector<Candidate> candidates(const KeyScan& key);
   [[nodiscard]] std::optional<LoopGuess> guess(std::size_t submap, const KeyScan& key);
   bool look_for_loops(const RegisteredScan& scan);
   [[nodiscard]] LoopEvidence evidence_of(const Loop& loop, const LoopGuess& guess) const;
+  bool add_edge(const Loop& loop);
   bool accept(const std::vector<Loop>& loops);
 
   LoopSearchConfig search_;
   std::size_t most_planes_;
+  BuildingStorage* storage_;
+  bool continued_ = false;        // and no scan yet
+  std::size_t moves_before_ = 0;  // of the map, in earlier runs
+  std::vector<std::int64_t> moved_ns_;
+  std::optional<Eigen::Isometry3d> expected_move_;
   SubmapChain chain_;
   LoopMatcher matcher_;
   LoopPairs pairs_;

@@ -6,12 +6,23 @@
 
 namespace isobar {
 
+/// When the map is laid anew at the poses that the loops have corrected.
+struct MapMoveConfig {
+  double least_m = 0.1;  ///< a part of the map is off by this much: walls are doubled from there on; 0: never
+  double least_deg = 0.3;         ///< or turned by this
+  std::size_t keys_per_step = 8;  ///< key scans laid a scan: 80 a second, a share of one core
+};
+
 /// Whether places that are seen again correct the trajectory, and what that may cost.
 struct LoopConfig {
   bool enabled = true;
   /// Memory for the planes of submaps [MB]; beyond it the oldest ones are forgotten, and not found again. A submap of 10 m
   /// takes 0.1 MB in corridors and 0.7 MB in streets.
   double memory_mb = 160.0;
+  /// Disk space for the key scans of a map frame [GB]; beyond it the oldest are removed, and the map is moved no more. 0.1 MB
+  /// a metre in streets, half of that in corridors.
+  double max_disk_gb = 4.0;
+  MapMoveConfig move;
 };
 
 /// Size of submaps.

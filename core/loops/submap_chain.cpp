@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/geometry.hpp"
+#include "core/loops/submap_maker.hpp"
 
 namespace isobar {
 namespace {
@@ -76,39 +77,82 @@ ChainStep SubmapChain::add(const RegisteredScan& scan, const std::optional<AirHe
   choice_.take(scan.pose);
   take_sample(scan);
   if (growing_.empty()) {
+    begin_submap(scan, air);
     T_older_base_ = upright(scan.pose.T_map_base).inverse() * scan.pose.T_map_base;
-    begin_submap();
     step.begins = true;
   } else {
     const bool coherent = take_step(scan);
     step.begins =
         !coherent || choice_.way_m() - submaps_[growing_.back().number].first_way_m >= config_.spacing_m;
     if (step.begins && growing_.size() == 2) complete_oldest();
-    if (step.begins) begin_submap();
+    if (step.begins) begin_submap(scan, air);
     if (!coherent) complete_oldest();
   }
   T_map_live_ = scan.pose.T_map_base;
-  holder_ = growing_.front().number;
-  Submap& holder = submaps_[holder_];
-  holder.last_way_m = choice_.way_m();
-  holder.keys.push_back({scan.pose.stamp_ns, choice_.way_m(), scan.pose.T_map_base, T_older_base_, air, {}});
-  if (choice_.way_m() - sampled_way_m_ >= config_.loop_spacing_m) {
-    sampled_way_m_ = choice_.way_m();
-    holder.keys.back().p_base = sample_;
-  }
+  hold(scan, air);
   insert(scan);
   return step;
 }
 
-void SubmapChain::forget_beyond(std::size_t planes) {
-  std::size_t first_kept = complete_;
-  for (std::size_t sum = 0; first_kept > forgotten_; --first_kept) {
-    sum += submaps_[first_kept - 1].planes->plane_count();
-    if (sum > planes) break;
+// The older submap holds the key scan. The sample is needed for the loops of this scan only.
+void SubmapChain::hold(const RegisteredScan& scan, const std::optional<AirHeight>& air) {
+  if (!submaps_[holder_].keys.empty()) submaps_[holder_].keys.back().p_base = {};
+  holder_ = growing_.front().number;
+  Submap& holder = submaps_[holder_];
+  holder.last_way_m = choice_.way_m();
+  KeyScan key;
+  key.stamp_ns = scan.pose.stamp_ns;
+  key.way_m = choice_.way_m();
+  key.T_map_base = scan.pose.T_map_base;
+  key.T_submap_base = T_older_base_;
+  key.air = air;
+  if (choice_.way_m() - sampled_way_m_ >= config_.loop_spacing_m) {
+    sampled_way_m_ = choice_.way_m();
+    key.p_base = sample_;
   }
-  for (; forgotten_ < first_kept; ++forgotten_) {
-    submaps_[forgotten_].planes.reset();
-    for (KeyScan& key : submaps_[forgotten_].keys) key.p_base = {};
+  holder.keys.push_back(std::move(key));
+}
+
+void SubmapChain::continue_from(std::vector<Submap> submaps, double gap_m) {
+  submaps_ = std::move(submaps);
+  complete_ = submaps_.size();
+  used_.assign(submaps_.size(), 0);
+  if (submaps_.empty()) return;
+  holder_ = submaps_.size() - 1;
+  sampled_way_m_ = submaps_.back().last_way_m + gap_m;
+  choice_.begin_at(sampled_way_m_);
+}
+
+void SubmapChain::follow_map(const Eigen::Isometry3d& T_now_before) {
+  choice_.follow_map(T_now_before);
+  T_map_live_ = T_now_before * T_map_live_;
+}
+
+const std::shared_ptr<const MapSnapshot>& SubmapChain::planes_of(std::size_t number,
+                                                                 BuildingStorage* storage) {
+  used_[number] = ++uses_;
+  Submap& submap = submaps_[number];
+  if (!submap.planes && storage != nullptr) {
+    SubmapMaker maker(map_config_, T_base_lidar_, *storage);
+    submap.planes = maker.planes_of(submaps_, number);
+  }
+  return submap.planes;
+}
+
+void SubmapChain::forget_beyond(std::size_t planes) {
+  std::vector<std::size_t> kept;
+  std::size_t sum = 0;
+  for (std::size_t number = 0; number < complete_; ++number) {
+    if (!submaps_[number].planes) continue;
+    kept.push_back(number);
+    sum += submaps_[number].planes->plane_count();
+  }
+  std::sort(kept.begin(), kept.end(),
+            [&](std::size_t a, std::size_t b) { return std::pair(used_[a], a) < std::pair(used_[b], b); });
+  for (const std::size_t number : kept) {
+    if (sum <= planes) break;
+    sum -= submaps_[number].planes->plane_count();
+    submaps_[number].planes.reset();
   }
 }
 
@@ -117,6 +161,12 @@ Eigen::Isometry3d SubmapChain::predicted(const RegisteredScan& scan) const {
   const Eigen::Isometry3d T_upright = upright(T_map_live_);
   const Eigen::Isometry3d T_older_upright = upright(T_older_base_);
   return T_older_upright * (T_upright.inverse() * scan.pose.T_map_base);
+}
+
+// The live map is larger and has all scans: where it holds nothing of an earlier visit, no motion is better known.
+bool SubmapChain::on_new_ground(const RegisteredScan& scan) {
+  const bool was_known = std::exchange(known_ground_, scan.pose.on_known_ground);
+  return !was_known && !known_ground_ && scan.pose.mode == PoseMode::kRegistered;
 }
 
 // Registers the key scan to the older submap. What no registration confirms is as uncertain as the live motion; a submap
@@ -128,6 +178,7 @@ bool SubmapChain::take_step(const RegisteredScan& scan) {
   T_older_base_ = expected;
   const bool lost = std::exchange(lost_, false);
   if (lost) variance_ += lost_sigma().cwiseAbs2();
+  if (on_new_ground(scan)) return !lost;
   const LocalMap& older = *growing_.front().map;
   MatchResult result;
   if (!older.snapshot()->empty()) {
@@ -146,14 +197,19 @@ bool SubmapChain::take_step(const RegisteredScan& scan) {
   return !lost && moved_m.norm() < kLongestUnconfirmedM;
 }
 
-void SubmapChain::begin_submap() {
+void SubmapChain::begin_submap(const RegisteredScan& scan, const std::optional<AirHeight>& air) {
   Submap submap;
   submap.number = static_cast<std::uint32_t>(submaps_.size());
-  submap.first_way_m = choice_.way_m();
-  ChainLink link;
-  if (!submaps_.empty()) link = {upright(T_older_base_), variance_.asDiagonal()};
+  submap.stamp_ns = scan.pose.stamp_ns;
+  submap.air = air;
+  submap.first_way_m = submap.last_way_m = choice_.way_m();
+  if (growing_.empty() && !submaps_.empty()) {
+    submap.link = place_;
+  } else if (!submaps_.empty()) {
+    submap.link = {upright(T_older_base_), variance_.asDiagonal()};
+  }
   variance_.setZero();
-  links_.push_back(link);
+  used_.push_back(++uses_);
   growing_.push_back({submaps_.size(), std::make_unique<LocalMap>(map_config_, T_base_lidar_)});
   submaps_.push_back(std::move(submap));
 }
@@ -161,7 +217,7 @@ void SubmapChain::begin_submap() {
 // The pose of the last key scan goes over to the younger one.
 void SubmapChain::complete_oldest() {
   if (growing_.size() > 1) {
-    T_older_base_ = links_[growing_[1].number].T_before_submap.inverse() * T_older_base_;
+    T_older_base_ = submaps_[growing_[1].number].link.T_before_submap.inverse() * T_older_base_;
   }
   submaps_[growing_.front().number].planes = growing_.front().map->snapshot();
   growing_.erase(growing_.begin());
@@ -171,11 +227,12 @@ void SubmapChain::complete_oldest() {
 void SubmapChain::insert(const RegisteredScan& scan) {
   moved_->pose = scan.pose;
   moved_->pose.session = 1;
+  moved_->pose.map_moves = 0;
   moved_->point_count = scan.point_count;
   std::copy_n(scan.points, scan.point_count, moved_->points);
   for (std::size_t i = 0; i < growing_.size(); ++i) {
     const Eigen::Isometry3d T_submap_older =
-        i == 0 ? Eigen::Isometry3d::Identity() : links_[growing_[i].number].T_before_submap.inverse();
+        i == 0 ? Eigen::Isometry3d::Identity() : submaps_[growing_[i].number].link.T_before_submap.inverse();
     moved_->pose.T_map_base = T_submap_older * T_older_base_;
     growing_[i].map->update(*moved_);
   }

@@ -41,6 +41,22 @@ World ring_of_corridors() {
   return world;
 }
 
+double share_on_walls(std::span<const MapPoint> points) {
+  const World world = ring_of_corridors();
+  std::size_t on = 0;
+  for (const MapPoint& point : points) {
+    const Eigen::Vector3d& p = point.p_map;
+    bool near = false;
+    for (int axis = 0; axis < 3 && !near; ++axis) {
+      const Eigen::Vector3d step = Eigen::Vector3d::Unit(axis);
+      // From 5 cm before the point to 5 cm behind it.
+      near = world.range(p - 0.05 * step, step) <= 0.1;
+    }
+    on += near ? 1 : 0;
+  }
+  return static_cast<double>(on) / static_cast<double>(points.size());
+}
+
 // Position and heading of a robot whose middle cuts the corners by half a metre: it turns over the last and the first
 // half metre of each side.
 Eigen::Isometry3d ring_pose(double way_m) {
@@ -77,6 +93,7 @@ const RegisteredScan& RingRun::next() {
   out_->pose.overlap = 0.9;
   out_->pose.covariance.setIdentity();
   out_->pose.T_map_base = error_ ? error_(way_m_) * T_world_base : T_world_base;
+  out_->pose.on_known_ground = way_m_ >= known_from_m;
   out_->point_count = scan_->point_count;
   for (std::uint32_t i = 0; i < scan_->point_count; ++i) {
     ScanPoint point = scan_->points[i];

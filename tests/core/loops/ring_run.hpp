@@ -7,9 +7,11 @@
 #include <functional>
 #include <memory>
 #include <random>
+#include <span>
 #include <utility>
 
 #include "core/estimates.hpp"
+#include "core/map/map_point.hpp"
 #include "tests/core/registration/synthetic_world.hpp"
 
 namespace isobar::test {
@@ -17,6 +19,9 @@ namespace isobar::test {
 /// A ring of corridors, 12 m x 9 m along its middle line, with cupboards that make each place unlike the others.
 World ring_of_corridors();
 inline constexpr double kRingM = 42.0;
+
+/// Share of points [m] of a map that are within 5 cm of a surface of the ring.
+double share_on_walls(std::span<const MapPoint> points);
 
 /// True pose after `way_m` of the ring, anticlockwise from its south-west corner, at 0.6 m above the floor.
 Eigen::Isometry3d ring_pose(double way_m);
@@ -31,6 +36,8 @@ class RingRun {
 
   /// The next scan with its live pose, valid until the next call.
   const RegisteredScan& next();
+  /// The live pose counts as on known ground from here on [m]: from the start, so that the chain registers every key scan.
+  double known_from_m = 0.0;
   /// Way of the last scan.
   [[nodiscard]] double way_m() const { return way_m_ - kStepM; }
   /// The robot is carried on by `way_m`, without scans.

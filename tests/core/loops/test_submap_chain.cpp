@@ -48,6 +48,14 @@ TEST_CASE("submaps follow each other after their spacing, overlap by half and ho
   }
 }
 
+TEST_CASE("on new ground the chain is the live motion, to rounding") {
+  auto chain = test_submap_chain::chain();
+  RingRun run;
+  run.known_from_m = 100.0;
+  while (run.way_m() < 30.0) chain.add(run.next(), std::nullopt);
+  CHECK(error_m(chain, run) < 1e-9);
+}
+
 TEST_CASE("a live pose that is pulled onto an earlier visit does not enter the chain") {
   auto chain = test_submap_chain::chain();
   // 12 cm within two metres: the whole drift of a long way, taken up where the robot comes back.
