@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/lock_step.hpp"
 
+#include <utility>
+
 #include "run/tile_store/scan_journal.hpp"
 
 namespace isobar {
@@ -12,13 +14,15 @@ constexpr ScanQueueConfig kLockStepQueue{.reach_ns = 0, .wait_ns = 1, .admission
 
 }  // namespace
 
-LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileStorage* storage)
+LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileStorage* storage,
+                   std::unique_ptr<LoopFiles> loop_files, MapExchange exchange)
     : sender_(settings.lidar_sender),
       assembler_(make_lidar_decoder(settings.lidar), settings.lidar.time),
       prior_estimator_(settings.prior),
       registration_(settings.registration, settings.method, settings.T_base_lidar, sink),
-      map_(settings.map, settings.T_base_lidar, storage),
-      loops_(settings),
+      map_(std::make_unique<LocalMap>(settings.map, settings.T_base_lidar, storage)),
+      exchange_(std::move(exchange)),
+      loops_(settings, std::move(loop_files)),
       filling_(std::make_unique<Scan>()),
       queue_(kLockStepQueue),
       has_imu_(settings.prior.has_imu),
@@ -29,8 +33,8 @@ void LockStep::continue_from(const RunStart& start, const std::filesystem::path&
   prior_estimator_.resume(start.datum);
   registration_.begin_at(start.session, start.place);
   if (!start.place) return;
-  map_.load_around(start.place->T_map_base.translation());
-  ScanJournal::read(map_folder, [this](const RegisteredScan& scan) { map_.update(scan); });
+  map_->load_around(start.place->T_map_base.translation());
+  ScanJournal::read(map_folder, [this](const RegisteredScan& scan) { map_->update(scan); });
 }
 
 void LockStep::handle(const recording::Event& event) {
@@ -61,7 +65,8 @@ void LockStep::finish() {
   if (assembler_.flush(*filling_)) queue_scan();
   clock_ns_ += kLockStepQueue.wait_ns;
   register_admissible();
-  map_.store_all();
+  exchange_map(loops_.finish());
+  map_->store_all();
 }
 
 void LockStep::take_packet(const recording::Event& event) {
@@ -105,12 +110,18 @@ void LockStep::queue_scan() {
 
 void LockStep::register_admissible() {
   while (auto scan = queue_.take(clock_ns_, registration_.newest_prior_ns())) {
-    registration_.register_scan(*scan, *map_.snapshot(), registered_);
+    registration_.register_scan(*scan, *map_->snapshot(), registered_);
     spare_.push_back(std::move(scan));
     ++scans_;
-    map_.update(registered_);
-    loops_.add_scan(registered_);
+    map_->update(registered_);
+    exchange_map(loops_.add_scan(registered_));
   }
+}
+
+void LockStep::exchange_map(std::optional<MovedMap> moved) {
+  if (!moved) return;
+  map_ = std::move(moved->map);
+  map_->change_storage(exchange_());
 }
 
 }  // namespace isobar

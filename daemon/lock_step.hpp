@@ -9,7 +9,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/estimates.hpp"
@@ -30,9 +32,13 @@ namespace isobar {
 /// The pipeline in lock step, in the caller's thread.
 class LockStep {
  public:
+  /// Puts a map that was laid anew in the place of the map, and opens its tiles.
+  using MapExchange = std::function<TileStorage*()>;
   /// @param sink receives the poses
   /// @param storage takes the tiles that leave memory; null: they are discarded
-  LockStep(const StageSettings& settings, EstimateSink& sink, TileStorage* storage = nullptr);
+  /// @param loop_files keeps the building, whose loops then move the map; null: only the trajectory is corrected
+  LockStep(const StageSettings& settings, EstimateSink& sink, TileStorage* storage = nullptr,
+           std::unique_ptr<LoopFiles> loop_files = nullptr, MapExchange exchange = {});
 
   /// Continues an earlier run, before the first event, with the tiles of the storage around its place and the
   /// scans of the journal in the folder of its map.
@@ -44,8 +50,8 @@ class LockStep {
   [[nodiscard]] const ScanAssembler& assembler() const { return assembler_; }
   [[nodiscard]] const SenderStatus& lidar_sender() const { return sender_.status(); }
   [[nodiscard]] const PriorEstimator& prior_estimator() const { return prior_estimator_; }
-  [[nodiscard]] LocalMap& map() { return map_; }
-  [[nodiscard]] const LocalMap& map() const { return map_; }
+  [[nodiscard]] LocalMap& map() { return *map_; }
+  [[nodiscard]] const LocalMap& map() const { return *map_; }
   /// The last scan and its pose, as the map got them.
   [[nodiscard]] const RegisteredScan& registered_scan() const { return registered_; }
   [[nodiscard]] std::uint64_t scans() const { return scans_; }
@@ -59,12 +65,14 @@ class LockStep {
   void use_prior(const Prior& prior);
   void queue_scan();
   void register_admissible();
+  void exchange_map(std::optional<MovedMap> moved);
 
   LidarSender sender_;
   ScanAssembler assembler_;
   PriorEstimator prior_estimator_;
   RegistrationStage registration_;
-  LocalMap map_;
+  std::unique_ptr<LocalMap> map_;  ///< never null
+  MapExchange exchange_;
   LoopStage loops_;
 
   std::int64_t clock_ns_ = 0;  ///< stands still until finish(): scans wait for priors without a time limit

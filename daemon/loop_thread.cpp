@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/loop_thread.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <utility>
 
 #include "daemon/message_loop.hpp"
 
 namespace isobar {
 
-LoopThread::LoopThread(const StageSettings& settings, ThreadSettings scheduling)
-    : stage_(settings),
+LoopThread::LoopThread(const StageSettings& settings, std::unique_ptr<LoopFiles> files, MapThread& map,
+                       ThreadSettings scheduling)
+    : stage_(settings, std::move(files)),
+      map_(map),
       scans_(ipc::topics::kRegisteredScan),
       priors_(ipc::topics::kPrior),
       waiter_({&scans_.raw()}),
@@ -26,8 +30,16 @@ void LoopThread::drain() noexcept {
       if (!prior) break;
       stage_.add_prior(*prior);
     }
-    stage_.add_scan(*scan);
+    if (auto moved = stage_.add_scan(*scan)) map_.offer(std::make_unique<MovedMap>(std::move(*moved)));
   }
+  log_problem();
+}
+
+void LoopThread::log_problem() {
+  std::string problem = stage_.problem();
+  if (problem == logged_) return;
+  logged_ = std::move(problem);
+  spdlog::warn("loops: {}; poses and map go on", logged_);
 }
 
 }  // namespace isobar

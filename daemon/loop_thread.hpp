@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
+#include <string>
+
 #include "daemon/loop_stage.hpp"
+#include "daemon/map_thread.hpp"
 #include "daemon/worker.hpp"
 #include "ipc/shared_memory.hpp"
 
@@ -11,7 +15,9 @@ namespace isobar {
 /// is one key scan less.
 class LoopThread {
  public:
-  LoopThread(const StageSettings& settings, ThreadSettings scheduling);
+  /// `map`: gets the maps that were laid anew. Outlives this thread.
+  LoopThread(const StageSettings& settings, std::unique_ptr<LoopFiles> files, MapThread& map,
+             ThreadSettings scheduling);
 
   [[nodiscard]] Worker& worker() noexcept { return worker_; }
   /// Once the worker has stopped.
@@ -21,7 +27,11 @@ class LoopThread {
   void loop() noexcept;
   void drain() noexcept;
 
+  void log_problem();
+
   LoopStage stage_;
+  MapThread& map_;
+  std::string logged_;
   ipc::Subscriber<RegisteredScan> scans_;
   ipc::Subscriber<Prior> priors_;
   ipc::Waiter waiter_;

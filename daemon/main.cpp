@@ -83,7 +83,7 @@ class RobotGraph final : public Graph {
         check_({.imu = imu_mount(config), .lidar = config.lidar.mount}, config.imu.present(),
                scheduling_.check),
         loops_(config.loops.enabled && files_.output() != nullptr
-                   ? std::make_unique<LoopThread>(stages_, scheduling_.loops)
+                   ? std::make_unique<LoopThread>(stages_, files_.loop_files(config), map_, scheduling_.loops)
                    : nullptr),
         output_(files_.checkpoint_file().empty()
                     ? nullptr

@@ -8,6 +8,7 @@
 
 #include "core/errors.hpp"
 #include "daemon/stage_settings.hpp"
+#include "run/building/next_map.hpp"
 #include "run/files/run_output.hpp"
 
 namespace isobar {
@@ -43,6 +44,7 @@ FileTileStore* MapStores::open(std::uint32_t session) {
   session_ = session;
   store_.reset();
   journal_.reset();
+  settle_next_map(folder);
   std::error_code error;
   if (fs::exists(folder / "map.toml", error)) {
     store_ = FileTileStore::open_to_continue(folder, header_, limits_);

@@ -35,6 +35,11 @@ class MapStores {
   /// still be read.
   /// @throws ServiceError when the disk refuses
   FileTileStore* open_again();
+  /// Closes the present store, puts the map that was laid anew in its place, and opens that.
+  /// @throws DataError, ServiceError as open(), which goes on with the exchange
+  FileTileStore* exchange() { return open(session_); }
+  /// Folder of the map of a map frame.
+  [[nodiscard]] std::filesystem::path folder_of(std::uint32_t session) const;
   /// True if the disk of the maps has no room or is read-only.
   [[nodiscard]] bool disk_is_full() const;
   /// True while the folder of the present store is in its place.
@@ -56,8 +61,6 @@ class MapStores {
   void finish() noexcept;
 
  private:
-  [[nodiscard]] std::filesystem::path folder_of(std::uint32_t session) const;
-
   std::filesystem::path first_;
   bool beside_ = true;  ///< folders of later frames are beside the first one, not inside
   MapHeader header_;

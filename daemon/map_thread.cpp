@@ -60,6 +60,7 @@ void MapThread::drain() noexcept {
     cloud_.set_interval(change.cloud_interval_s);
     deadline_.set_limit(change.deadline_ms);
   });
+  moved_.take([this](MovedMap& moved) { exchange(moved); });
   auto newest = scans_.take();
   while (auto newer = scans_.take()) {
     newest = std::move(newer);
@@ -104,6 +105,25 @@ void MapThread::begin_session(std::uint32_t session) noexcept {
   cloud_.start_over();
   map_ = std::make_unique<LocalMap>(config_, T_base_lidar_, store, session);
   snapshots_.publish(map_->snapshot());
+}
+
+// The map laid anew takes over. Scans that were registered to the old one are left out by it (LocalMap::update()).
+void MapThread::exchange(MovedMap& moved) noexcept {
+  if (moved.map->session() != map_->session()) return;
+  try {
+    moved.map->change_storage(maps_.exchange());
+  } catch (const std::exception& error) {
+    spdlog::error("map: {}; it goes on as it was", error.what());
+    map_->change_storage(maps_.current());
+    return;
+  }
+  moved.map->configure(config_);
+  map_.swap(moved.map);
+  logged_ = {};
+  cloud_.start_over();
+  snapshots_.publish(map_->snapshot());
+  spdlog::info("map: laid anew after places were seen again; the robot moves by {:.2f} m in it",
+               moved.T_now_before.translation().norm());
 }
 
 // Once a second, so that a crash loses ten seconds of the map at most.

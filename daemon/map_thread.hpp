@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/loops/map_mover.hpp"
 #include "core/map/local_map.hpp"
 #include "core/map/snapshot_exchange.hpp"
 #include "daemon/deadline.hpp"
@@ -47,6 +48,9 @@ class MapThread {
     changes_.offer(std::make_unique<Change>(Change{config, cloud_interval_s, deadline_ms}));
   }
   void collect() { changes_.collect(); }
+  /// Gives the map a successor that was laid anew, and whose folder waits to be put in place. One thread, not necessarily
+  /// the main thread.
+  void offer(std::unique_ptr<MovedMap> moved) { moved_.offer(std::move(moved)); }
 
   [[nodiscard]] MapStatus status() const noexcept { return status_.get(); }
 
@@ -66,6 +70,7 @@ class MapThread {
   void drain() noexcept;
   void add(const RegisteredScan& scan) noexcept;
   void begin_session(std::uint32_t session) noexcept;
+  void exchange(MovedMap& moved) noexcept;
   void write_tiles() noexcept;
   void store_changed_tiles() noexcept;
   void store_all_tiles() noexcept;
@@ -86,6 +91,7 @@ class MapThread {
   std::uint64_t superseded_ = 0;  ///< scans dropped for a newer one
   Deadline deadline_;
   Handover<Change> changes_;
+  Handover<MovedMap> moved_;
   MapStatus draft_status_;
   SeqLock<MapStatus> status_;
   Worker worker_;

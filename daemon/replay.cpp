@@ -18,6 +18,7 @@
 #include "daemon/recording_check.hpp"
 #include "daemon/silent_lidar.hpp"
 #include "daemon/stage_settings.hpp"
+#include "run/building/next_map.hpp"
 #include "run/recording/recording_reader.hpp"
 
 namespace isobar {
@@ -208,13 +209,23 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   files::RunOutput output(out);
   output.write_settings(show_config(used));
   OutputSink sink(output);
-  const auto store =
-      FileTileStore::create(files::RunOutput::map_directory(out), map_header(used), map_limits(used));
-  LockStep pipeline(stage_settings(used), sink, store.get());
+  const std::filesystem::path map_folder = files::RunOutput::map_directory(out);
+  auto store = FileTileStore::create(map_folder, map_header(used), map_limits(used));
+  auto loop_files = std::make_unique<LoopFiles>([&](std::uint32_t /*session*/) { return map_folder; },
+                                                map_header(used), map_limits(used), used.loops.max_disk_gb);
+  LockStep pipeline(stage_settings(used), sink, store.get(), std::move(loop_files), [&] {
+    store.reset();
+    settle_next_map(map_folder);
+    store = FileTileStore::open_to_continue(map_folder, map_header(used), map_limits(used));
+    return store.get();
+  });
   summary.recorded_s = feed(reader, check.usable, pipeline, progress);
   output.flush();
   if (used.loops.enabled) write_corrected_trajectories(out, pipeline.loops());
   summary.loops = pipeline.loops().counts().taken;
+  if (const std::string problem = pipeline.loops().problem(); !problem.empty()) {
+    summary.warnings.push_back("loops: " + problem);
+  }
   const std::vector<files::RunCount> map_counts = counts_of_map(*store, output);
 
   summary.scans = pipeline.scans();
@@ -225,6 +236,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   summary.counts = collect_counts(reader, pipeline);
   run_counts::append(summary.counts, map_counts);
   run_counts::append(summary.counts, counts_of(pipeline.loops().counts()));
+  summary.counts.push_back({"maps laid anew", pipeline.loops().moves(), pipeline.loops().problem()});
   add_contradictions(contradictions, summary.counts);
   warn_of_scans_without(manifest, used.imu.present(), sink, summary);
   warn_of_two_lidars(pipeline, used.lidar.port, summary);

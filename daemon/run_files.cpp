@@ -73,6 +73,11 @@ std::filesystem::path RunFiles::checkpoint_file() const {
   return {};
 }
 
+std::unique_ptr<LoopFiles> RunFiles::loop_files(const Config& config) const {
+  return std::make_unique<LoopFiles>([this](std::uint32_t session) { return maps_.folder_of(session); },
+                                     map_header(config), map_limits(config), config.loops.max_disk_gb);
+}
+
 std::uint32_t RunFiles::newest_session() const {
   const std::uint32_t run = directory_.empty() ? 0 : files::newest_session(directory_);
   return std::max(run, maps_.newest_session());
@@ -152,6 +157,7 @@ void RunFiles::close(const StatusSnapshot& last, const LoopStage* loops) {
   if (loops != nullptr) {
     do_or_log([&] { write_corrected_trajectories(directory_, *loops); });
     run_counts::append(counts, counts_of(loops->counts()));
+    counts.push_back({"maps laid anew", loops->moves(), loops->problem()});
   }
   add_contradictions(counts, last.contradictions);
   counts.push_back({"poses not written", output_->dropped_lines(), ""});

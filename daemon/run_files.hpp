@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -32,6 +33,8 @@ class RunFiles {
     return output_ ? &*output_ : nullptr;
   }  ///< null: none configured
   [[nodiscard]] MapStores& maps() noexcept { return maps_; }
+  /// Files of the loops, in the folders of the maps.
+  [[nodiscard]] std::unique_ptr<LoopFiles> loop_files(const Config& config) const;
   /// File of the checkpoint; empty: nothing is configured that a later run could continue.
   [[nodiscard]] std::filesystem::path checkpoint_file() const;
 
