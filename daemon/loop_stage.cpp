@@ -22,10 +22,10 @@ std::optional<MovedMap> LoopStage::add_scan(const RegisteredScan& scan) {
   return step_move();
 }
 
-std::optional<MovedMap> LoopStage::finish() {
+std::optional<MovedMap> LoopStage::finish(const std::function<bool()>& may_go_on) {
   if (!building_) return std::nullopt;
   begin_move();
-  while (mover_ && mover_->active()) {
+  while (mover_ && mover_->active() && may_go_on()) {
     if (auto moved = step_move()) return moved;
   }
   return std::nullopt;

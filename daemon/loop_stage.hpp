@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,8 +38,8 @@ class LoopStage {
   [[nodiscard]] std::int64_t prior_ns() const { return prior_.stamp_ns; }
   /// @return the map, where it has been laid anew: its folder waits to be put in place (settle_next_map())
   std::optional<MovedMap> add_scan(const RegisteredScan& scan);
-  /// The end of a run: lays the map where that is due.
-  std::optional<MovedMap> finish();
+  /// The end of a run: lays the map where that is due, as long as `may_go_on`. What is not finished the next run does.
+  std::optional<MovedMap> finish(const std::function<bool()>& may_go_on);
 
   /// Of every map frame so far.
   [[nodiscard]] std::vector<SessionCorrections> corrections() const;

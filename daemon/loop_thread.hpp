@@ -21,7 +21,7 @@ class LoopThread {
 
   [[nodiscard]] Worker& worker() noexcept { return worker_; }
   /// Once the worker has stopped.
-  [[nodiscard]] const LoopStage& stage() const noexcept { return stage_; }
+  [[nodiscard]] LoopStage& stage() noexcept { return stage_; }
 
  private:
   void loop() noexcept;

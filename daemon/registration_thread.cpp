@@ -180,6 +180,7 @@ void RegistrationThread::report() noexcept {
 
 void RegistrationThread::on_pose(const PoseEstimate& pose, const Prior& /*prior*/) noexcept {
   draft_status_.mode = pose.mode;
+  draft_status_.map_moves = pose.map_moves;
   draft_status_.effective_method = pose.effective_method;
   draft_status_.overlap = pose.overlap;
   draft_status_.localisability = pose.localisability;

@@ -61,6 +61,7 @@ struct RegistrationStatus {
   std::uint64_t bridged = 0;                              ///< poses without a scan
   std::uint32_t session = 1;                              ///< number of the map frame
   NewFrameReason session_reason = NewFrameReason::kNone;  ///< why it was begun
+  std::uint32_t map_moves = 0;                            ///< of it, see PoseEstimate
   bool searching = false;                                 ///< a continued run has not found its place yet
   double overlap = 0.0;
   double registration_ms = 0.0;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
@@ -146,9 +147,16 @@ void RunFiles::begin_beside(std::uint32_t session, const std::string& why) {
   static_cast<void>(open_map(session));
 }
 
-void RunFiles::close(const StatusSnapshot& last, const LoopStage* loops) {
+// All threads have stopped: the map is on the disk, and its successor may take its place.
+void RunFiles::lay_map(LoopStage& loops) {
+  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(kMostLayingS);
+  if (loops.finish([&] { return std::chrono::steady_clock::now() < until; })) maps_.exchange();
+}
+
+void RunFiles::close(const StatusSnapshot& last, LoopStage* loops) {
   if (!output_) return;
   do_or_log([&] { output_->flush(); });
+  if (loops != nullptr) do_or_log([&] { lay_map(*loops); });
   std::vector<files::RunCount> counts = counts_of_threads(last);
   // A run folder implies a store, unless the disk has refused a new one.
   if (maps_.current() != nullptr) {

@@ -40,14 +40,16 @@ class RunFiles {
 
   /// Writes the last poses, map.ply, counters.csv, mounts.toml and the corrected trajectory. What the disk refuses is logged. Call once, after all
   /// threads have stopped.
-  /// @param loops what the run has found; may be null
-  void close(const StatusSnapshot& last, const LoopStage* loops);
+  /// @param loops what the run has found; may be null. It may lay the map anew for kMostLayingS.
+  void close(const StatusSnapshot& last, LoopStage* loops);
+  static constexpr double kMostLayingS = 3.0;  ///< systemd waits for 10 s
 
  private:
   [[nodiscard]] std::uint32_t newest_session() const;
   void choose_start();
   [[nodiscard]] bool begun(std::uint32_t session);
   [[nodiscard]] bool open_map(std::uint32_t session);
+  void lay_map(LoopStage& loops);
   void begin_beside(std::uint32_t session, const std::string& why);
 
   std::filesystem::path directory_;

@@ -27,6 +27,9 @@ void add_session(const StatusSnapshot& now, HealthReport& report) {
   if (registration.session_reason != NewFrameReason::kNone) {
     message += fmt::format(": begun because of: {}", kNewFrameReasonNames.name(registration.session_reason));
   }
+  if (registration.map_moves > 0) {
+    message += fmt::format("; laid anew {} times after places were seen again", registration.map_moves);
+  }
   const bool unknown = registration.session_reason == NewFrameReason::kPlaceUnknown;
   const std::int64_t last_ns = registration.punctuality.last_ns;
   const bool stale = last_ns == 0 || now.now_ns - last_ns > kStageSilenceNs;
