@@ -28,6 +28,7 @@ struct EvaluateArguments {
   std::string picture;
   std::string json;
   std::string alignment = "start";
+  bool corrected = false;
 };
 
 std::vector<evaluation::EstimateSource> sources_of(const EvaluateArguments& arguments) {
@@ -40,6 +41,7 @@ std::vector<evaluation::EstimateSource> sources_of(const EvaluateArguments& argu
   for (std::size_t i = 0; i < arguments.estimates.size(); ++i) {
     sources.push_back({names.empty() ? "" : names[i], arguments.estimates[i]});
   }
+  if (arguments.corrected) evaluation::add_corrected(sources);
   return sources;
 }
 
@@ -88,6 +90,8 @@ void add_evaluate_command(CLI::App& app) {
       ->check(CLI::IsMember({"start", "yaw", "rigid"}))
       ->capture_default_str()
       ->option_text("start|yaw|rigid");
+  command.add_flag("--corrected", options.corrected,
+                   "evaluate the trajectory of each run as its loops correct it as well");
   command.add_option("--title", options.title, "headline of the report");
   command.add_option("--report", options.report, "HTML file for the report; it opens without a network");
   command.add_option("--picture", options.picture, "SVG file for the overview picture");

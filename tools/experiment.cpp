@@ -39,6 +39,7 @@ struct ExperimentOptions {
   std::filesystem::path out;
   std::filesystem::path config;
   std::vector<std::string> methods;
+  bool corrected = false;
   std::size_t jobs = std::max(1U, std::thread::hardware_concurrency());
 };
 
@@ -128,6 +129,7 @@ void evaluate_all(const ExperimentOptions& options, const std::filesystem::path&
     const std::string name(kMethodNames.name(method));
     sources.push_back({name, options.out / name});
   }
+  if (options.corrected) evaluation::add_corrected(sources);
   report::ReportInput input;
   input.run = evaluation::evaluate_methods(evaluation::load_reference(recording), sources);
   input.title = title_of(options.request.name) + ", seed " + std::to_string(options.request.seed);
@@ -176,6 +178,8 @@ void add_experiment_command(CLI::App& app) {
       "folder for recording, runs and report (default: out/SCENARIO-SEED and the faults asked for)");
   command.add_option("--config", options.config, "TOML file with the estimator's settings");
   command.add_option("--methods", options.methods, method_names() + " (default: all)")->delimiter(',');
+  command.add_flag("--corrected", options.corrected,
+                   "evaluate the trajectory of each run as its loops correct it as well");
   command.add_option("--jobs", options.jobs, "replays at a time")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));

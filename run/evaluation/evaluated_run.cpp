@@ -9,6 +9,7 @@
 
 #include "core/errors.hpp"
 #include "core/names.hpp"
+#include "run/files/run_layout.hpp"
 #include "run/files/text_file.hpp"
 
 namespace isobar::evaluation {
@@ -172,6 +173,17 @@ const FloorHeight* floor_at(const EvaluatedMethod& method, double level_m, doubl
     if (std::abs(floor.reference_m - level_m) < floor_gap_m) return &floor;
   }
   return nullptr;
+}
+
+void add_corrected(std::vector<EstimateSource>& estimates) {
+  default_names(estimates);
+  std::vector<EstimateSource> corrected;
+  for (const EstimateSource& of_run : estimates) {
+    const std::filesystem::path file = of_run.path / files::kCorrectedTrajectoryFile;
+    std::error_code error;
+    if (std::filesystem::exists(file, error)) corrected.push_back({of_run.name + " corrected", file});
+  }
+  estimates.insert(estimates.end(), corrected.begin(), corrected.end());
 }
 
 std::string display_name(const std::string& method) {

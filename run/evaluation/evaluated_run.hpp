@@ -64,6 +64,9 @@ EvaluatedRun evaluate_methods(ReferenceData reference, std::vector<EstimateSourc
 /// names would be equal.
 void default_names(std::vector<EstimateSource>& estimates);
 
+/// Adds, behind them all, the corrected trajectory of each folder of a run that has one (files::kCorrectedTrajectoryFile).
+void add_corrected(std::vector<EstimateSource>& estimates);
+
 /// A method's name as the paper writes it: "3-DOF" for "3dof". Other names unchanged.
 std::string display_name(const std::string& method);
 

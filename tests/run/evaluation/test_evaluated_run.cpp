@@ -44,6 +44,18 @@ TEST_CASE("an estimate is named after its folder or file, or its whole path wher
   CHECK(sources[5].name == "mine");
 }
 
+TEST_CASE("the corrected trajectories of runs that have one follow the runs") {
+  const TemporaryFolder folder;
+  for (const char* run : {"a", "b"}) std::filesystem::create_directories(folder.path() / run);
+  files::write_text_file(folder.path() / "b" / files::kCorrectedTrajectoryFile, "1 0 0 0 0 0 0 1\n");
+  std::vector<EstimateSource> sources{{"", folder.path() / "a"}, {"", folder.path() / "b"}};
+  add_corrected(sources);
+  REQUIRE(sources.size() == 3);
+  CHECK(sources[1].name == "b");
+  CHECK(sources[2].name == "b corrected");
+  CHECK(sources[2].path == folder.path() / "b" / files::kCorrectedTrajectoryFile);
+}
+
 TEST_CASE("an estimate that shares no time with the reference is refused with its file name") {
   const TemporaryFolder folder;
   files::write_text_file(folder.path() / "r.tum", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
