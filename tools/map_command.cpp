@@ -11,6 +11,7 @@
 
 #include "core/errors.hpp"
 #include "core/map/map_tile.hpp"
+#include "run/building/building_store.hpp"
 #include "run/files/map_export.hpp"
 #include "run/files/run_layout.hpp"
 #include "run/tile_store/file_tile_store.hpp"
@@ -57,6 +58,21 @@ files::MapBox extent_of(const std::vector<TileKey>& keys, double tile_m) {
   return extent;
 }
 
+/// Submaps, key scans and loops, where the map has them.
+void print_building(const std::filesystem::path& directory) {
+  const auto store = BuildingStore::open_to_read(map_folder_of(directory));
+  if (!store) return;
+  const StoredBuilding& building = store->stored();
+  std::size_t keys = 0;
+  for (const Submap& submap : building.submaps) keys += submap.keys.size();
+  std::printf("building: %zu submaps, %zu key scans, %zu loops; the map was laid anew %zu times\n",
+              building.submaps.size(), keys, building.loops.size(), building.moved_ns.size());
+  if (store->counters().removed_bytes > 0) {
+    std::printf("building: the last %llu bytes of its log are unfinished or damaged\n",
+                Count{store->counters().removed_bytes});
+  }
+}
+
 struct MapOptions {
   std::filesystem::path directory;
   std::filesystem::path out;
@@ -77,6 +93,7 @@ void run_info(const MapOptions& options) {
     std::printf("extent: x %g … %g, y %g … %g, z %g … %g m\n", extent.lowest.x(), extent.highest.x(),
                 extent.lowest.y(), extent.highest.y(), extent.lowest.z(), extent.highest.z());
   }
+  print_building(options.directory);
   std::printf("opened in %.1f ms\n", opened.count());
   print_faults(store->counters());
 }
