@@ -5,6 +5,7 @@
 
 #include "core/errors.hpp"
 #include "run/building/next_map.hpp"
+#include "run/tile_store/disk_flusher.hpp"
 
 namespace isobar {
 
@@ -40,8 +41,11 @@ TileStorage* LoopFiles::begin_next_map() {
 bool LoopFiles::complete_next_map() {
   const bool whole = next_map_ != nullptr && next_map_->counters().refused == 0;
   if (next_map_ && !whole) problem_ = next_map_->counters().first_refusal;
+  // A power cut after the exchange must find the tiles.
+  const bool on_disk = whole && DiskFlusher::wait_for(next_map_->newest_file());
+  if (whole && !on_disk) problem_ = folder_.string() + ": the disk refuses the map that was laid anew";
   next_map_.reset();
-  if (!whole) return false;
+  if (!on_disk) return false;
   try {
     isobar::complete_next_map(folder_);
   } catch (const Error& error) {

@@ -210,6 +210,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   output.write_settings(show_config(used));
   OutputSink sink(output);
   const std::filesystem::path map_folder = files::RunOutput::map_directory(out);
+  remove_next_map(map_folder);
   auto store = FileTileStore::create(map_folder, map_header(used), map_limits(used));
   auto loop_files = std::make_unique<LoopFiles>([&](std::uint32_t /*session*/) { return map_folder; },
                                                 map_header(used), map_limits(used), used.loops.max_disk_gb);

@@ -48,10 +48,13 @@ void take_over_files(const fs::path& from, const fs::path& to) {
 
 std::unique_ptr<FileTileStore> create_next_map(const fs::path& map_folder, const MapHeader& header,
                                                const TileStoreLimits& limits) {
-  const fs::path next = beside(map_folder, ".next");
+  remove_next_map(map_folder);
+  return FileTileStore::create(beside(map_folder, ".next"), header, limits);
+}
+
+void remove_next_map(const fs::path& map_folder) {
   std::error_code error;
-  fs::remove_all(next, error);
-  return FileTileStore::create(next, header, limits);
+  fs::remove_all(beside(map_folder, ".next"), error);
 }
 
 void complete_next_map(const fs::path& map_folder) {

@@ -18,6 +18,8 @@ namespace isobar {
 [[nodiscard]] std::unique_ptr<FileTileStore> create_next_map(const std::filesystem::path& map_folder,
                                                              const MapHeader& header,
                                                              const TileStoreLimits& limits);
+/// Removes a next map, complete or not: the map is going to be another one.
+void remove_next_map(const std::filesystem::path& map_folder);
 /// All tiles are written, and the store is closed: the next map may take the place of the map.
 /// @throws ServiceError when the disk refuses
 void complete_next_map(const std::filesystem::path& map_folder);

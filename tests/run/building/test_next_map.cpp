@@ -76,6 +76,14 @@ TEST_CASE("an exchange that was interrupted after any step is carried out by the
   }
 }
 
+TEST_CASE("a next map that was removed takes nobody's place") {
+  const TemporaryFolder folder;
+  const fs::path map = two_maps(folder.path());
+  remove_next_map(map);
+  CHECK(!settle_next_map(map));
+  CHECK(!is_next(map));
+}
+
 TEST_CASE("a next map that is not complete is removed, and the map stays") {
   const TemporaryFolder folder;
   const fs::path map = two_maps(folder.path());
