@@ -17,8 +17,11 @@ LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileStorag
       assembler_(make_lidar_decoder(settings.lidar), settings.lidar.time),
       prior_estimator_(settings.prior),
       registration_(settings.registration, settings.method, settings.T_base_lidar, sink),
-      map_(settings.map, settings.T_base_lidar, storage),
+      map_config_(settings.map),
+      T_base_lidar_(settings.T_base_lidar),
+      map_(std::make_unique<LocalMap>(settings.map, settings.T_base_lidar, storage)),
       loops_(settings),
+      place_(settings, [this] { return read_map(); }),
       filling_(std::make_unique<Scan>()),
       queue_(kLockStepQueue),
       has_imu_(settings.prior.has_imu),
@@ -28,9 +31,27 @@ LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileStorag
 void LockStep::continue_from(const RunStart& start, const std::filesystem::path& map_folder) {
   prior_estimator_.resume(start.datum);
   registration_.begin_at(start.session, start.place);
+  registration_.wait_for_place(static_cast<bool>(maps_.read));
   if (!start.place) return;
-  map_.load_around(start.place->T_map_base.translation());
-  ScanJournal::read(map_folder, [this](const RegisteredScan& scan) { map_.update(scan); });
+  place_.begin_at(start, false);
+  map_->load_around(start.place->T_map_base.translation());
+  ScanJournal::read(map_folder, [this](const RegisteredScan& scan) { map_->update(scan); });
+}
+
+void LockStep::localise_in(const RunStart& start) {
+  localises_ = true;
+  prior_estimator_.resume(start.datum);
+  registration_.begin_at(start.session, start.place);
+  registration_.wait_for_place(true);
+  registration_.stay_in(*start.place);
+  place_.begin_at(start, true);
+  map_->load_around(start.place->T_map_base.translation());
+}
+
+std::shared_ptr<const KnownMap> LockStep::read_map() {
+  if (!maps_.read) return nullptr;
+  if (!localises_) map_->store_all();
+  return maps_.read();
 }
 
 void LockStep::handle(const recording::Event& event) {
@@ -61,7 +82,7 @@ void LockStep::finish() {
   if (assembler_.flush(*filling_)) queue_scan();
   clock_ns_ += kLockStepQueue.wait_ns;
   register_admissible();
-  map_.store_all();
+  if (!localises_) map_->store_all();
 }
 
 void LockStep::take_packet(const recording::Event& event) {
@@ -89,6 +110,7 @@ void LockStep::advance(std::int64_t now_ns) {
 void LockStep::use_prior(const Prior& prior) {
   registration_.add_prior(prior);
   loops_.add_prior(prior);
+  place_.add_prior(prior);
   register_admissible();
   registration_.bridge_silence();
 }
@@ -105,12 +127,36 @@ void LockStep::queue_scan() {
 
 void LockStep::register_admissible() {
   while (auto scan = queue_.take(clock_ns_, registration_.newest_prior_ns())) {
-    registration_.register_scan(*scan, *map_.snapshot(), registered_);
+    registration_.register_scan(*scan, *map_->snapshot(), registered_);
     spare_.push_back(std::move(scan));
     ++scans_;
-    map_.update(registered_);
+    insert_scan();
     loops_.add_scan(registered_);
+    find_place();
   }
+}
+
+void LockStep::insert_scan() {
+  const std::uint32_t session = registered_.pose.session;
+  if (session != map_->session()) {
+    map_->store_all();
+    map_ = std::make_unique<LocalMap>(map_config_, T_base_lidar_, maps_.open ? maps_.open(session) : nullptr,
+                                      session);
+  }
+  if (localises_) {
+    map_->follow(registered_.pose);
+  } else {
+    map_->update(registered_);
+  }
+}
+
+void LockStep::find_place() {
+  const PlaceOrder order = place_.add_scan(registered_);
+  if (order.give_up) registration_.give_up_place();
+  if (!order.T_map_odom) return;
+  const PlaceHint hint = order.hint_at(registered_.pose);
+  map_->load_around({hint.p_map_m.x(), hint.p_map_m.y(), hint.z_m});
+  registration_.hint(hint);
 }
 
 }  // namespace isobar

@@ -9,7 +9,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/estimates.hpp"
@@ -18,6 +20,7 @@
 #include "core/prior/prior_pace.hpp"
 #include "daemon/lidar_sender.hpp"
 #include "daemon/loop_stage.hpp"
+#include "daemon/place_stage.hpp"
 #include "daemon/registration_stage.hpp"
 #include "daemon/run_start.hpp"
 #include "daemon/scan_queue.hpp"
@@ -34,6 +37,18 @@ class LockStep {
   /// @param storage takes the tiles that leave memory; null: they are discarded
   LockStep(const StageSettings& settings, EstimateSink& sink, TileStorage* storage = nullptr);
 
+  /// What the pipeline needs of the folders of its maps, if a robot shall be found in the whole map.
+  struct Maps {
+    /// Storage of a further map frame; null: its tiles are discarded.
+    std::function<TileStorage*(std::uint32_t session)> open;
+    /// The whole map of the present frame, as far as it is in the storage.
+    MapReader read;
+  };
+  /// Before continue_from() and localise_in().
+  void use_maps(Maps maps) { maps_ = std::move(maps); }
+  /// Continues in a stored map that stays as it is: no scan is inserted, and no new map frame begins.
+  void localise_in(const RunStart& start);
+
   /// Continues an earlier run, before the first event, with the tiles of the storage around its place and the
   /// scans of the journal in the folder of its map.
   void continue_from(const RunStart& start, const std::filesystem::path& map_folder);
@@ -44,13 +59,15 @@ class LockStep {
   [[nodiscard]] const ScanAssembler& assembler() const { return assembler_; }
   [[nodiscard]] const SenderStatus& lidar_sender() const { return sender_.status(); }
   [[nodiscard]] const PriorEstimator& prior_estimator() const { return prior_estimator_; }
-  [[nodiscard]] LocalMap& map() { return map_; }
-  [[nodiscard]] const LocalMap& map() const { return map_; }
+  [[nodiscard]] LocalMap& map() { return *map_; }
+  [[nodiscard]] const LocalMap& map() const { return *map_; }
   /// The last scan and its pose, as the map got them.
   [[nodiscard]] const RegisteredScan& registered_scan() const { return registered_; }
   [[nodiscard]] std::uint64_t scans() const { return scans_; }
   /// Places that were seen again, and what they correct.
   [[nodiscard]] const LoopStage& loops() const { return loops_; }
+  /// The search of the place in the whole map.
+  [[nodiscard]] const PlaceStatus& place() const { return place_.status(); }
 
  private:
   void take_packet(const recording::Event& event);
@@ -59,13 +76,21 @@ class LockStep {
   void use_prior(const Prior& prior);
   void queue_scan();
   void register_admissible();
+  void insert_scan();
+  void find_place();
+  [[nodiscard]] std::shared_ptr<const KnownMap> read_map();
 
   LidarSender sender_;
   ScanAssembler assembler_;
   PriorEstimator prior_estimator_;
   RegistrationStage registration_;
-  LocalMap map_;
+  MapConfig map_config_;
+  Eigen::Isometry3d T_base_lidar_;
+  std::unique_ptr<LocalMap> map_;  ///< never null
+  Maps maps_;
+  bool localises_ = false;  ///< the map is only used
   LoopStage loops_;
+  PlaceStage place_;
 
   std::int64_t clock_ns_ = 0;  ///< stands still until finish(): scans wait for priors without a time limit
   std::unique_ptr<Scan> filling_;

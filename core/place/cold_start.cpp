@@ -44,6 +44,12 @@ double yaw_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   return rotation_angle_rad(Eigen::Quaterniond(a.linear().transpose() * b.linear()));
 }
 
+// The altimeter's, unless it does not tell the floor: then that of the candidate, which odometry has carried.
+SlabHeight followed_height(const SlabHeight& height, double carried_z_m) {
+  constexpr double kLargestSigmaM = 0.34;  // 3 sigma are a metre: less than a storey
+  return height.sigma_m <= kLargestSigmaM ? height : SlabHeight{carried_z_m, kLargestSigmaM};
+}
+
 bool usable(const SlabHeight& height) {
   return std::abs(height.z_m) < 1e5 && height.sigma_m >= 0.0 && height.sigma_m < 1e3;
 }
@@ -179,10 +185,11 @@ const ColdStartResult& ColdStart::follow(const ColdStartInput& input, const Eige
   const double driven_m = T_before_now.translation().head<2>().norm();
   for (const PlaceCandidate& old : before) {
     Eigen::Isometry3d T_map_level = old.T_map_level * T_before_now;
-    T_map_level.translation().z() = input.height.z_m;
+    const SlabHeight height = followed_height(input.height, T_map_level.translation().z());
+    T_map_level.translation().z() = height.z_m;
     const Eigen::Vector2d p = T_map_level.translation().head<2>();
-    if (!image_.build(input.map.structure(), input.height, {p.array() - 1.0, p.array() + 1.0})) continue;
-    auto judged = refined(input, input.height, T_map_level, kLeastFollowedM + kFollowedShare * driven_m);
+    if (!image_.build(input.map.structure(), height, {p.array() - 1.0, p.array() + 1.0})) continue;
+    auto judged = refined(input, height, T_map_level, kLeastFollowedM + kFollowedShare * driven_m);
     if (!judged) continue;
     judged->candidate.weight += std::log(std::max(old.weight, kLeastWeight));
     add_candidate(std::move(*judged));
