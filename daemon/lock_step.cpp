@@ -21,7 +21,7 @@ LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileStorag
       T_base_lidar_(settings.T_base_lidar),
       map_(std::make_unique<LocalMap>(settings.map, settings.T_base_lidar, storage)),
       loops_(settings),
-      place_(settings, [this] { return read_map(); }),
+      place_(settings, [this](std::uint32_t session) { return read_map(session); }),
       filling_(std::make_unique<Scan>()),
       queue_(kLockStepQueue),
       has_imu_(settings.prior.has_imu),
@@ -48,10 +48,10 @@ void LockStep::localise_in(const RunStart& start) {
   map_->load_around(start.place->T_map_base.translation());
 }
 
-std::shared_ptr<const KnownMap> LockStep::read_map() {
+std::shared_ptr<const KnownMap> LockStep::read_map(std::uint32_t session) {
   if (!maps_.read) return nullptr;
   if (!localises_) map_->store_all();
-  return maps_.read();
+  return maps_.read(session);
 }
 
 void LockStep::handle(const recording::Event& event) {
@@ -156,7 +156,7 @@ void LockStep::find_place() {
   if (!order.T_map_odom) return;
   const PlaceHint hint = order.hint_at(registered_.pose);
   map_->load_around({hint.p_map_m.x(), hint.p_map_m.y(), hint.z_m});
-  registration_.hint(hint);
+  registration_.offer_place(hint);
 }
 
 }  // namespace isobar

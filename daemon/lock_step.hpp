@@ -41,7 +41,7 @@ class LockStep {
   struct Maps {
     /// Storage of a further map frame; null: its tiles are discarded.
     std::function<TileStorage*(std::uint32_t session)> open;
-    /// The whole map of the present frame, as far as it is in the storage.
+    /// The whole map of a frame, as far as it is in the storage.
     MapReader read;
   };
   /// Before continue_from() and localise_in().
@@ -78,7 +78,7 @@ class LockStep {
   void register_admissible();
   void insert_scan();
   void find_place();
-  [[nodiscard]] std::shared_ptr<const KnownMap> read_map();
+  [[nodiscard]] std::shared_ptr<const KnownMap> read_map(std::uint32_t session);
 
   LidarSender sender_;
   ScanAssembler assembler_;

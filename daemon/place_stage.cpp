@@ -27,8 +27,9 @@ constexpr double kAroundLostS = 5.0;
 constexpr double kNextViewM = 1.0;
 constexpr double kNextViewRad = 45.0 * kRadPerDeg;
 constexpr double kNextTimeS = 3.0;
-// A place that the registration has not confirmed by then is refused: nine hypotheses and three scans take 0.4 s at 10 Hz.
-constexpr double kConfirmedWithinS = 2.5;
+// A place that the registration has not confirmed by then is refused: the tiles around it are read within a
+// second, nine hypotheses and three scans take 0.4 s at 10 Hz.
+constexpr double kConfirmedWithinS = 4.0;
 // Bounds after which a robot whose place is ambiguous, or that sees too little, begins a new map frame, and the number of
 // searches without any place after which it does.
 constexpr double kLongestWayM = 40.0;
@@ -127,7 +128,7 @@ PlaceOrder PlaceStage::add_scan(const RegisteredScan& scan) {
     ++unknown_;
     status_.state = PlaceState::kUnknown;
   }
-  if (sees && is_due(pose.stamp_ns)) search(pose.stamp_ns);
+  if (sees && is_due(pose.stamp_ns)) search(pose);
   PlaceOrder order{std::exchange(found_, {}), false};
   if (!order.T_map_odom && told_ns_ == 0 && is_over()) {
     order.give_up = true;
@@ -182,13 +183,13 @@ bool PlaceStage::is_due(std::int64_t stamp_ns) const {
 bool PlaceStage::is_over() const {
   if (stays_ || status_.lost) return false;
   const bool blind = status_.state == PlaceState::kBlind || status_.state == PlaceState::kCollecting;
-  return unknown_ >= kUnknownSearches || status_.driven_m > kLongestWayM || status_.waited_s > kLongestSearchS ||
-         (blind && status_.waited_s > kLongestBlindS);
+  return unknown_ >= kUnknownSearches || status_.driven_m > kLongestWayM ||
+         status_.waited_s > kLongestSearchS || (blind && status_.waited_s > kLongestBlindS);
 }
 
-void PlaceStage::search(std::int64_t stamp_ns) {
+void PlaceStage::search(const PoseEstimate& pose) {
   const CpuTimer timer;
-  if (!map_) map_ = read_map_();
+  if (!map_) map_ = read_map_(pose.session);
   if (!map_) {
     unknown_ = kUnknownSearches;  // there is no map that could tell
     return;
@@ -203,8 +204,8 @@ void PlaceStage::search(std::int64_t stamp_ns) {
   const ColdStartResult& result =
       follows ? cold_start_.follow(input, T_before_now) : cold_start_.locate(input);
   T_odom_asked_ = T_odom_level;
-  asked_ns_ = stamp_ns;
-  take(result, stamp_ns);
+  asked_ns_ = pose.stamp_ns;
+  take(result, pose.stamp_ns);
   ++status_.searches;
   status_.search_s = 1e-3 * timer.elapsed_ms();
 }

@@ -17,8 +17,8 @@
 
 namespace isobar {
 
-/// Reads the whole map of the present frame. Null: there is none.
-using MapReader = std::function<std::shared_ptr<const KnownMap>()>;
+/// Reads the whole map of a map frame. Null: there is none.
+using MapReader = std::function<std::shared_ptr<const KnownMap>(std::uint32_t session)>;
 
 /// What the search asks of the registration.
 struct PlaceOrder {
@@ -60,7 +60,7 @@ class PlaceStage {
   void collect(const RegisteredScan& scan);
   [[nodiscard]] bool is_due(std::int64_t stamp_ns) const;
   [[nodiscard]] bool is_over() const;
-  void search(std::int64_t stamp_ns);
+  void search(const PoseEstimate& pose);
   void fill_query(const Eigen::Isometry3d& T_odom_level);
   [[nodiscard]] SlabHeight height();
   void take(const ColdStartResult& result, std::int64_t stamp_ns);

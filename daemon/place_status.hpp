@@ -31,7 +31,8 @@ struct PlaceStatus {
   static constexpr std::size_t kMostHypotheses = 16;
 
   PlaceState state = PlaceState::kIdle;
-  bool lost = false;  ///< searched because the robot is lost; else because it has just started
+  bool lost = false;     ///< searched because the robot is lost
+  bool carried = false;  ///< searched because it may have been carried away; neither: because it has just started
   bool height_is_known =
       false;  ///< by air pressure in the datum of the map; else every level of ground is searched
   std::uint64_t searches = 0;  ///< since the start

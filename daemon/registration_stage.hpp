@@ -46,6 +46,10 @@ class RegistrationStage {
   void give_up_place() { registration_->give_up_place(); }
   void stay_in(const KnownPlace& place) { registration_->stay_in(place); }
   void hint(const PlaceHint& hint) { registration_->hint(hint); }
+  /// A place found by the search of the whole map: the hint of a person goes first.
+  void offer_place(const PlaceHint& place) {
+    if (!registration_->has_hint()) registration_->hint(place);
+  }
   [[nodiscard]] const HintReport& hint_report() const { return registration_->hint_report(); }
   [[nodiscard]] std::uint32_t session() const { return registration_->session(); }
   [[nodiscard]] bool searching() const { return registration_->searching(); }

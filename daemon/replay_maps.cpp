@@ -38,9 +38,8 @@ TileStorage* ReplayMaps::create(std::uint32_t session) {
 }
 
 void ReplayMaps::begin(LockStep& pipeline, std::vector<std::string>& notes) {
-  pipeline.use_maps(
-      {.open = [this](std::uint32_t session) { return create(session); },
-       .read = [this, &pipeline] { return read_known_map(store(), pipeline.map().session()); }});
+  pipeline.use_maps({.open = [this](std::uint32_t session) { return create(session); },
+                     .read = [this](std::uint32_t session) { return read_known_map(store(), session); }});
   if (!stored_) return;
   if (!stored_->has_datum) {
     notes.push_back(stored_->folder.string() +

@@ -130,6 +130,8 @@ class Registration {
   /// Somebody says where the robot is. The next scans are tried there; the robot goes on from there only where they
   /// match, and otherwise nothing changes. Instead of an earlier hint. See hint_report().
   void hint(const PlaceHint& hint);
+  /// A hint waits, or is tried.
+  [[nodiscard]] bool has_hint() const { return state_.hint.active() || state_.hint.waiting() != nullptr; }
   [[nodiscard]] const HintReport& hint_report() const { return state_.hint.report(); }
 
   /// Appends a prior; priors come in order of time.
