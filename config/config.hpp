@@ -119,6 +119,8 @@ struct OutputSettings {
 struct MapFileSettings {
   std::string directory;     ///< for a live run's tiles; empty: map/ in output.directory, if that is set
   double max_disk_gb = 4.0;  ///< beyond it the oldest tile file is deleted
+  std::string stored;        ///< folder of a stored map, or of a run with one; empty: that of the run itself
+  MapUse use = MapUse::kExtend;
 };
 
 /// [black_box]

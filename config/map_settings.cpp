@@ -70,6 +70,15 @@ void add_files(MapFileSettings& files, SectionBuilder& s) {
   s.number("max_disk_gb", &files.max_disk_gb, "GB", 0.001, 1'000.0,
            "Largest size of the tile files; beyond it the tiles that left memory longest ago are deleted. 4: "
            "ten million points take about half of 1 GB.");
+  s.text("stored", files.stored, TextRule::kAny,
+         "Stored map in which the run begins, anywhere in it: the folder of a run or of a map. It is never "
+         "changed. Empty: "
+         "that of the run which output.directory or map.directory holds, at its last place.");
+  s.choice(
+      "use", &files.use, kMapUseNames.names(),
+      "extend: what the run sees is added to its map; of a map in stored a copy is made. localise: no map is "
+      "written, the robot is found in the stored one or stays lost. new: a new map frame begins and the "
+      "map that is there is kept.");
 }
 
 }  // namespace

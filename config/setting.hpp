@@ -55,7 +55,7 @@ struct Setting {
       std::variant<double*, int*, std::uint16_t*, std::uint32_t*, std::size_t*, bool*, std::string*,
                    Eigen::Vector3d*, std::vector<int>*, std::vector<double>*, Role*, Method*,
                    AirTemperatureMode*, CompensationModel*, Matcher*, LidarSource*, LidarTime*, ImuSource*,
-                   BarometerSource*, WheelSource*, encoder::Drive*, dds::Reliability*>;
+                   BarometerSource*, WheelSource*, MapUse*, encoder::Drive*, dds::Reliability*>;
 
   std::string key;  ///< with its section, "registration.max_range_m"
   Target target;

@@ -85,4 +85,14 @@ inline constexpr NameTable<WheelSource, 4> kWheelSourceNames{{{
     {WheelSource::kEncoder, "encoder"},
 }}};
 
+/// What a run does with a stored map.
+enum class MapUse : std::uint8_t {
+  kExtend,    ///< goes on in it and adds to it
+  kLocalise,  ///< goes on in it and never writes it
+  kNew,       ///< keeps it, and begins a new one beside it
+};
+
+inline constexpr NameTable<MapUse, 3> kMapUseNames{
+    {{{MapUse::kExtend, "extend"}, {MapUse::kLocalise, "localise"}, {MapUse::kNew, "new"}}}};
+
 }  // namespace isobar

@@ -8,7 +8,7 @@
 namespace isobar {
 
 /// One place for the newest object from the main thread to a worker, and one for the object that the worker no
-/// longer needs, which the main thread frees. Lock-free. Two threads: main and worker.
+/// longer needs, which the main thread frees. Lock-free. Two threads: main, or another one in its place, and worker.
 template <class T>
 class Handover {
  public:

@@ -13,6 +13,7 @@
 #include "daemon/map_thread.hpp"
 #include "daemon/mount_news.hpp"
 #include "daemon/output_status.hpp"
+#include "daemon/place_status.hpp"
 #include "daemon/prior_thread.hpp"
 #include "daemon/registration_thread.hpp"
 #include "daemon/sample_thread.hpp"
@@ -37,6 +38,7 @@ struct StatusSnapshot {
   std::string lidar_info_waits_for{};
   std::string samples_wait_for{};
   Findings contradictions{};
+  PlaceStatus place{};
 };
 
 class StageTimes;

@@ -20,9 +20,12 @@ LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileStorag
       assembler_(make_lidar_decoder(settings.lidar), settings.lidar.time),
       prior_estimator_(settings.prior),
       registration_(settings.registration, settings.method, settings.T_base_lidar, sink),
+      map_config_(settings.map),
+      T_base_lidar_(settings.T_base_lidar),
       map_(std::make_unique<LocalMap>(settings.map, settings.T_base_lidar, storage)),
       exchange_(std::move(exchange)),
       loops_(settings, std::move(loop_files)),
+      place_(settings, [this](std::uint32_t session) { return read_map(session); }),
       filling_(std::make_unique<Scan>()),
       queue_(kLockStepQueue),
       has_imu_(settings.prior.has_imu),
@@ -32,9 +35,27 @@ LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileStorag
 void LockStep::continue_from(const RunStart& start, const std::filesystem::path& map_folder) {
   prior_estimator_.resume(start.datum);
   registration_.begin_at(start.session, start.place);
+  registration_.wait_for_place(static_cast<bool>(maps_.read));
   if (!start.place) return;
+  place_.begin_at(start, false);
   map_->load_around(start.place->T_map_base.translation());
   ScanJournal::read(map_folder, [this](const RegisteredScan& scan) { map_->update(scan); });
+}
+
+void LockStep::localise_in(const RunStart& start) {
+  localises_ = true;
+  prior_estimator_.resume(start.datum);
+  registration_.begin_at(start.session, start.place);
+  registration_.wait_for_place(true);
+  registration_.stay_in(*start.place);
+  place_.begin_at(start, true);
+  map_->load_around(start.place->T_map_base.translation());
+}
+
+std::shared_ptr<const KnownMap> LockStep::read_map(std::uint32_t session) {
+  if (!maps_.read) return nullptr;
+  if (!localises_) map_->store_all();
+  return maps_.read(session);
 }
 
 void LockStep::handle(const recording::Event& event) {
@@ -65,6 +86,7 @@ void LockStep::finish() {
   if (assembler_.flush(*filling_)) queue_scan();
   clock_ns_ += kLockStepQueue.wait_ns;
   register_admissible();
+  if (localises_) return;
   exchange_map(loops_.finish([] { return true; }));
   map_->store_all();
 }
@@ -94,6 +116,7 @@ void LockStep::advance(std::int64_t now_ns) {
 void LockStep::use_prior(const Prior& prior) {
   registration_.add_prior(prior);
   loops_.add_prior(prior);
+  place_.add_prior(prior);
   register_admissible();
   registration_.bridge_silence();
 }
@@ -113,8 +136,9 @@ void LockStep::register_admissible() {
     registration_.register_scan(*scan, *map_->snapshot(), registered_);
     spare_.push_back(std::move(scan));
     ++scans_;
-    map_->update(registered_);
-    exchange_map(loops_.add_scan(registered_));
+    insert_scan();
+    if (!localises_) exchange_map(loops_.add_scan(registered_));
+    find_place();
   }
 }
 
@@ -122,6 +146,29 @@ void LockStep::exchange_map(std::optional<MovedMap> moved) {
   if (!moved) return;
   map_ = std::move(moved->map);
   map_->change_storage(exchange_());
+}
+
+void LockStep::insert_scan() {
+  const std::uint32_t session = registered_.pose.session;
+  if (session != map_->session()) {
+    map_->store_all();
+    map_ = std::make_unique<LocalMap>(map_config_, T_base_lidar_, maps_.open ? maps_.open(session) : nullptr,
+                                      session);
+  }
+  if (localises_) {
+    map_->follow(registered_.pose);
+  } else {
+    map_->update(registered_);
+  }
+}
+
+void LockStep::find_place() {
+  const PlaceOrder order = place_.add_scan(registered_);
+  if (order.give_up) registration_.give_up_place();
+  if (!order.T_map_odom) return;
+  const PlaceHint hint = order.hint_at(registered_.pose);
+  map_->load_around({hint.p_map_m.x(), hint.p_map_m.y(), hint.z_m});
+  registration_.offer_place(hint);
 }
 
 }  // namespace isobar

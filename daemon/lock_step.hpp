@@ -12,6 +12,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/estimates.hpp"
@@ -20,6 +21,7 @@
 #include "core/prior/prior_pace.hpp"
 #include "daemon/lidar_sender.hpp"
 #include "daemon/loop_stage.hpp"
+#include "daemon/place_stage.hpp"
 #include "daemon/registration_stage.hpp"
 #include "daemon/run_start.hpp"
 #include "daemon/scan_queue.hpp"
@@ -40,6 +42,18 @@ class LockStep {
   LockStep(const StageSettings& settings, EstimateSink& sink, TileStorage* storage = nullptr,
            std::unique_ptr<LoopFiles> loop_files = nullptr, MapExchange exchange = {});
 
+  /// What the pipeline needs of the folders of its maps, if a robot shall be found in the whole map.
+  struct Maps {
+    /// Storage of a further map frame; null: its tiles are discarded.
+    std::function<TileStorage*(std::uint32_t session)> open;
+    /// The whole map of a frame, as far as it is in the storage.
+    MapReader read;
+  };
+  /// Before continue_from() and localise_in().
+  void use_maps(Maps maps) { maps_ = std::move(maps); }
+  /// Continues in a stored map that stays as it is: no scan is inserted, and no new map frame begins.
+  void localise_in(const RunStart& start);
+
   /// Continues an earlier run, before the first event, with the tiles of the storage around its place and the
   /// scans of the journal in the folder of its map.
   void continue_from(const RunStart& start, const std::filesystem::path& map_folder);
@@ -57,6 +71,8 @@ class LockStep {
   [[nodiscard]] std::uint64_t scans() const { return scans_; }
   /// Places that were seen again, and what they correct.
   [[nodiscard]] const LoopStage& loops() const { return loops_; }
+  /// The search of the place in the whole map.
+  [[nodiscard]] const PlaceStatus& place() const { return place_.status(); }
 
  private:
   void take_packet(const recording::Event& event);
@@ -66,14 +82,22 @@ class LockStep {
   void queue_scan();
   void register_admissible();
   void exchange_map(std::optional<MovedMap> moved);
+  void insert_scan();
+  void find_place();
+  [[nodiscard]] std::shared_ptr<const KnownMap> read_map(std::uint32_t session);
 
   LidarSender sender_;
   ScanAssembler assembler_;
   PriorEstimator prior_estimator_;
   RegistrationStage registration_;
+  MapConfig map_config_;
+  Eigen::Isometry3d T_base_lidar_;
   std::unique_ptr<LocalMap> map_;  ///< never null
   MapExchange exchange_;
+  Maps maps_;
+  bool localises_ = false;  ///< the map is only used
   LoopStage loops_;
+  PlaceStage place_;
 
   std::int64_t clock_ns_ = 0;  ///< stands still until finish(): scans wait for priors without a time limit
   std::unique_ptr<Scan> filling_;

@@ -7,7 +7,8 @@
 //   wheel┤                               ▲                 └─▶ registered scans ─▶ map
 //   base ┘                               └────────────────────── snapshots ─────────┘
 //
-// Registered scans also go to loops, which corrects the trajectory by places that are seen again.
+// Registered scans also go to loops, which corrects the trajectory by places that are seen again, and to place, which
+// searches a robot that does not know its place in the whole map.
 //
 // Every arrow is a topic in shared memory (ipc/topics.hpp), except the snapshot, which stays inside the
 // process.
@@ -36,6 +37,7 @@
 #include "daemon/missing_sensors.hpp"
 #include "daemon/options.hpp"
 #include "daemon/output_thread.hpp"
+#include "daemon/place_thread.hpp"
 #include "daemon/prior_thread.hpp"
 #include "daemon/registration_thread.hpp"
 #include "daemon/run_description.hpp"
@@ -82,15 +84,18 @@ class RobotGraph final : public Graph {
                    : nullptr),
         check_({.imu = imu_mount(config), .lidar = config.lidar.mount}, config.imu.present(),
                scheduling_.check),
-        loops_(config.loops.enabled && files_.output() != nullptr
+        loops_(config.loops.enabled && files_.output() != nullptr && !files_.stays()
                    ? std::make_unique<LoopThread>(stages_, files_.loop_files(config), map_, scheduling_.loops)
                    : nullptr),
+        place_(stages_, files_, map_, registration_, scheduling_.place),
         output_(files_.checkpoint_file().empty()
                     ? nullptr
                     : std::make_unique<OutputThread>(
                           files_, [this] { return prior_.status().datum; }, scheduling_.output)),
         monitor_(config) {
     registration_.begin_at(files_.start());
+    registration_.wait_for_place();
+    if (files_.stays()) registration_.stay_in(*files_.start().place);
     prior_.resume(files_.start().datum);
     // Start order: consumers first. The output thread is not watched: it may wait for a disk, and poses
     // continue without it.
@@ -98,6 +103,7 @@ class RobotGraph final : public Graph {
     if (output_) workers_.add(output_->worker(), Watch::kNo);
     workers_.add(check_.worker(), Watch::kNo);
     if (loops_) workers_.add(loops_->worker(), Watch::kNo);
+    workers_.add(place_.worker(), Watch::kNo);
     workers_.add(map_.worker());
     workers_.add(registration_.worker());
     workers_.add(prior_.worker());
@@ -139,7 +145,8 @@ class RobotGraph final : public Graph {
             lidar_ ? lidar_->waiting_for() : std::string{},
             lidar_ ? lidar_->info_waiting_for() : std::string{},
             samples_.waiting_for(),
-            check_.findings()};
+            check_.findings(),
+            place_.status()};
   }
 
   [[nodiscard]] WorkerGroup& workers() override { return workers_; }
@@ -228,6 +235,7 @@ class RobotGraph final : public Graph {
   std::unique_ptr<LidarThread> lidar_;  ///< null: the scans come from isobar-dds
   CheckThread check_;
   std::unique_ptr<LoopThread> loops_;  ///< null: switched off, or no folder for what it finds
+  PlaceThread place_;
   std::unique_ptr<OutputThread> output_;
   HealthMonitor monitor_;
   WorkerGroup workers_;  ///< last: stops all threads before the stages are destroyed

@@ -26,6 +26,7 @@ MapStores::MapStores(const Config& config) : header_(map_header(config)), limits
 }
 
 fs::path MapStores::folder_of(std::uint32_t session) const {
+  if (read_only_) return read_only_folder_;
   if (session <= 1) return first_;
   const std::string name = files::name_of_session(files::kMapDirectory, session);
   return beside_ ? first_.parent_path() / name : first_ / name;
@@ -57,11 +58,19 @@ FileTileStore* MapStores::open(std::uint32_t session) {
   return store_.get();
 }
 
+void MapStores::open_read_only(const fs::path& folder) {
+  journal_.reset();
+  store_ = FileTileStore::open_to_read(folder);
+  read_only_folder_ = folder;
+  read_only_.emplace(*store_);
+}
+
 std::size_t MapStores::read_journal(const std::function<void(const RegisteredScan&)>& visit) {
   return journal_ ? ScanJournal::read(folder_of(session_), visit) : 0;
 }
 
 void MapStores::post_for_flush() noexcept {
+  if (read_only_) return;
   if (store_) tile_flusher_.post(store_->newest_file());
   if (journal_) {
     if (FileDescriptor scans = journal_->newest_file()) scan_flusher_.post(std::move(scans));
@@ -85,7 +94,7 @@ bool MapStores::disk_is_full() const {
   return ::statvfs(folder.c_str(), &disk) == 0 && (disk.f_bavail == 0 || (disk.f_flag & ST_RDONLY) != 0);
 }
 
-bool MapStores::in_place() const { return store_ == nullptr || store_->in_place(); }
+bool MapStores::in_place() const { return read_only_ || store_ == nullptr || store_->in_place(); }
 
 FileTileStore* MapStores::open_again() {
   const std::unique_ptr<FileTileStore> lost = std::move(store_);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "config/config.hpp"
+#include "daemon/stored_map.hpp"
 #include "run/tile_store/disk_flusher.hpp"
 #include "run/tile_store/file_tile_store.hpp"
 #include "run/tile_store/scan_journal.hpp"
@@ -31,6 +32,18 @@ class MapStores {
   /// @return nullptr when no folder is configured
   /// @throws DataError for a map with another grid; ServiceError when the disk refuses
   FileTileStore* open(std::uint32_t session);
+  /// Opens a map that is only read, whatever folder is configured for maps.
+  /// @throws DataError for a map with another grid; ServiceError when the disk refuses
+  void open_read_only(const std::filesystem::path& folder);
+  [[nodiscard]] bool read_only() const { return read_only_.has_value(); }
+  /// Storage for the tiles of the present map; null: none.
+  [[nodiscard]] TileStorage* storage() {
+    if (read_only_) return &*read_only_;
+    return store_.get();
+  }
+  /// Folder of the map of a frame. Any thread.
+  [[nodiscard]] std::filesystem::path folder_of(std::uint32_t session) const;
+  [[nodiscard]] const MapHeader& header() const { return header_; }
   /// Opens the present store anew, in a new folder, after its folder was deleted, with the tiles that can
   /// still be read.
   /// @throws ServiceError when the disk refuses
@@ -38,8 +51,6 @@ class MapStores {
   /// Closes the present store, puts the map that was laid anew in its place, and opens that.
   /// @throws DataError, ServiceError as open(), which goes on with the exchange
   FileTileStore* exchange() { return open(session_); }
-  /// Folder of the map of a map frame.
-  [[nodiscard]] std::filesystem::path folder_of(std::uint32_t session) const;
   /// True if the disk of the maps has no room or is read-only.
   [[nodiscard]] bool disk_is_full() const;
   /// True while the folder of the present store is in its place.
@@ -67,6 +78,8 @@ class MapStores {
   TileStoreLimits limits_;
   std::uint32_t session_ = 1;
   std::unique_ptr<FileTileStore> store_;
+  std::filesystem::path read_only_folder_;
+  std::optional<ReadOnlyTiles> read_only_;
   std::optional<ScanJournal> journal_;
   DiskFlusher tile_flusher_;
   DiskFlusher scan_flusher_;

@@ -20,7 +20,7 @@ constexpr std::chrono::seconds kWriteInterval(1);
 /// be in them.
 std::unique_ptr<LocalMap> loaded_map(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar,
                                      MapStores& maps, const RunStart& start) {
-  auto map = std::make_unique<LocalMap>(config, T_base_lidar, maps.current(), start.session);
+  auto map = std::make_unique<LocalMap>(config, T_base_lidar, maps.storage(), start.session);
   if (!start.place) return map;
   map->load_around(start.place->T_map_base.translation());
   const std::size_t scans = maps.read_journal([&](const RegisteredScan& scan) { map->update(scan); });
@@ -61,6 +61,11 @@ void MapThread::drain() noexcept {
     deadline_.set_limit(change.deadline_ms);
   });
   moved_.take([this](MovedMap& moved) { exchange(moved); });
+  places_.take([this](const Eigen::Vector3d& p_map) {
+    map_->load_around(p_map);
+    snapshots_.publish(map_->snapshot());
+    looked_.fetch_add(1, std::memory_order_release);
+  });
   auto newest = scans_.take();
   while (auto newer = scans_.take()) {
     newest = std::move(newer);
@@ -72,7 +77,7 @@ void MapThread::drain() noexcept {
   draft_status_.dropped_scans = scans_.dropped() + superseded_;
   draft_status_.punctuality = deadline_.status();
   draft_status_.cells = map_->cell_count();
-  if (const FileTileStore* store = maps_.current(); store != nullptr) {
+  if (const FileTileStore* store = maps_.current(); store != nullptr && !maps_.read_only()) {
     draft_status_.on_disk = true;
     draft_status_.tiles_on_disk = store->tile_count();
     draft_status_.disk_bytes = store->disk_bytes();
@@ -83,7 +88,7 @@ void MapThread::drain() noexcept {
 void MapThread::add(const RegisteredScan& scan) noexcept {
   const CpuTimer timer;
   if (scan.pose.session != map_->session()) begin_session(scan.pose.session);
-  if (map_->update(scan)) {
+  if (maps_.read_only() ? map_->follow(scan.pose) : map_->update(scan)) {
     if (ScanJournal* journal = maps_.journal()) journal->add(scan);
     snapshots_.publish(map_->snapshot());
     draft_status_.update_ms = timer.elapsed_ms();
@@ -129,7 +134,7 @@ void MapThread::exchange(MovedMap& moved) noexcept {
 // Once a second, so that a crash loses ten seconds of the map at most.
 void MapThread::write_tiles() noexcept {
   written_ns_ = RobotClock::now_ns();
-  if (!maps_.configured()) return;
+  if (!maps_.configured() || maps_.read_only()) return;
   try {
     // The disk was full at the start.
     if (maps_.current() == nullptr) map_->change_storage(maps_.open(map_->session()));
@@ -146,7 +151,7 @@ void MapThread::write_tiles() noexcept {
 
 // The end of a map frame. The journal is kept where a tile was refused.
 void MapThread::store_all_tiles() noexcept {
-  if (maps_.current() == nullptr) return;
+  if (maps_.current() == nullptr || maps_.read_only()) return;
   const std::uint64_t refused = maps_.current()->counters().refused;
   map_->store_all();
   if (maps_.current()->counters().refused == refused) maps_.finish();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 
@@ -42,6 +43,11 @@ class MapThread {
   /// Once stopped, the whole local map is in the store.
   [[nodiscard]] Worker& worker() noexcept { return worker_; }
   [[nodiscard]] SnapshotExchange<MapSnapshot>& snapshots() noexcept { return snapshots_; }
+  /// Reads the stored tiles around a place where the robot may be, soon; looked() grows then. The thread that searches the
+  /// place.
+  void look_at(const Eigen::Vector3d& p_map_m) { places_.offer(std::make_unique<Eigen::Vector3d>(p_map_m)); }
+  /// Number of places whose tiles were read. Any thread.
+  [[nodiscard]] std::uint64_t looked() const noexcept { return looked_.load(std::memory_order_acquire); }
   /// Changes the settings of the map (see LocalMap::configure()), the interval of its clouds and the deadline,
   /// from the next scan on. Main thread, as collect().
   void configure(const MapConfig& config, double cloud_interval_s, double deadline_ms) {
@@ -92,6 +98,8 @@ class MapThread {
   Deadline deadline_;
   Handover<Change> changes_;
   Handover<MovedMap> moved_;
+  Handover<Eigen::Vector3d> places_;
+  std::atomic<std::uint64_t> looked_{0};
   MapStatus draft_status_;
   SeqLock<MapStatus> status_;
   Worker worker_;

@@ -17,6 +17,8 @@ namespace {
 /// Interval of writes: a power cut loses this and the time of one write.
 constexpr std::int64_t kWriteIntervalNs = 500'000'000;
 constexpr std::chrono::milliseconds kPoll(100);
+/// The same of the checkpoint beside the tiles: the datum changes slowly.
+constexpr std::int64_t kMapIntervalNs = 10'000'000'000;
 
 }  // namespace
 
@@ -35,6 +37,7 @@ OutputThread::OutputThread(RunFiles& files, std::function<HeightDatum()> datum, 
 void OutputThread::loop() noexcept {
   drain_until_stopped(
       waiter_, worker_.heartbeat(), [this] { drain(); }, [] { return kPoll; });
+  stopping_ = true;
   write();
 }
 
@@ -77,8 +80,23 @@ void OutputThread::write() noexcept {
 
 void OutputThread::write_checkpoint() {
   if (!checkpoint_.due() || checkpoint_file_.empty()) return;
-  files::write_checkpoint(checkpoint_file_, checkpoint_.at(RobotClock::now_ns(), datum_()));
+  const files::Checkpoint checkpoint = checkpoint_.at(RobotClock::now_ns(), datum_());
+  files::write_checkpoint(checkpoint_file_, checkpoint);
   checkpoint_.written();
+  write_map_checkpoint(checkpoint);
+}
+
+// Beside the tiles, so that the folder of the map suffices for another run.
+void OutputThread::write_map_checkpoint(const files::Checkpoint& checkpoint) {
+  const MapStores& maps = files_.maps();
+  if (!maps.configured() || maps.read_only()) return;
+  const bool is_due = checkpoint.session != map_session_ || stopping_ ||
+                      checkpoint.clock_ns - map_written_ns_ >= kMapIntervalNs;
+  const auto file = maps.folder_of(checkpoint.session) / files::kCheckpointFile;
+  if (!is_due || file == checkpoint_file_ || !std::filesystem::exists(file.parent_path())) return;
+  files::write_checkpoint(file, checkpoint);
+  map_session_ = checkpoint.session;
+  map_written_ns_ = checkpoint.clock_ns;
 }
 
 void OutputThread::report(const std::string& failure) noexcept {

@@ -31,6 +31,7 @@ class OutputThread {
   void add_pose(const PoseEstimate& pose) noexcept;
   void write() noexcept;
   void write_checkpoint();
+  void write_map_checkpoint(const files::Checkpoint& checkpoint);
   void report(const std::string& failure) noexcept;
 
   RunFiles& files_;
@@ -41,8 +42,11 @@ class OutputThread {
   ipc::Waiter waiter_;
   Prior newest_prior_;
   CheckpointDraft checkpoint_;
-  std::int64_t written_ns_ = 0;  ///< robot clock
-  std::string add_failure_;      ///< since the last write()
+  std::int64_t written_ns_ = 0;      ///< robot clock
+  std::int64_t map_written_ns_ = 0;  ///< of the checkpoint beside the tiles
+  std::uint32_t map_session_ = 0;    ///< the same
+  bool stopping_ = false;
+  std::string add_failure_;  ///< since the last write()
   OutputStatus draft_status_;
   SeqLock<OutputStatus> status_;
   Worker worker_;

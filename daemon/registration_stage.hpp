@@ -42,7 +42,14 @@ class RegistrationStage {
   /// See Registration.
   void begin_at(std::uint32_t session, const std::optional<KnownPlace>& place);
   void begin_new_frame();
+  void wait_for_place(bool waits) { registration_->wait_for_place(waits); }
+  void give_up_place() { registration_->give_up_place(); }
+  void stay_in(const KnownPlace& place) { registration_->stay_in(place); }
   void hint(const PlaceHint& hint) { registration_->hint(hint); }
+  /// A place found by the search of the whole map: the hint of a person goes first.
+  void offer_place(const PlaceHint& place) {
+    if (!registration_->has_hint()) registration_->hint(place);
+  }
   [[nodiscard]] const HintReport& hint_report() const { return registration_->hint_report(); }
   [[nodiscard]] std::uint32_t session() const { return registration_->session(); }
   [[nodiscard]] bool searching() const { return registration_->searching(); }

@@ -116,6 +116,8 @@ void RegistrationThread::obey() noexcept {
 
 // Hints come through shared memory, of `isobar initial-pose` or isobar-dds. The newest counts.
 void RegistrationThread::take_hints() noexcept {
+  places_.take([this](const PlaceHint& hint) { stage_.offer_place(hint); });
+  if (place_given_up_.exchange(false, std::memory_order_relaxed)) stage_.give_up_place();
   while (const auto hint = hints_.take()) {
     if (ipc::implausibility(*hint) != nullptr) {
       ++draft_status_.bad_hints;

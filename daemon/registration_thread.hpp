@@ -89,6 +89,12 @@ class RegistrationThread final : private EstimateSink {
 
   /// Begins with a map frame, or continues in a known one. Before the start.
   void begin_at(const RunStart& start) { stage_.begin_at(start.session, start.place); }
+  /// See Registration. Before the start.
+  void wait_for_place() { stage_.wait_for_place(true); }
+  void stay_in(const KnownPlace& place) { stage_.stay_in(place); }
+  /// The search of the place has found it, or gives it up. The thread that searches.
+  void offer_place(const PlaceHint& hint) { places_.offer(std::make_unique<PlaceHint>(hint)); }
+  void give_up_place() noexcept { place_given_up_.store(true, std::memory_order_relaxed); }
   /// Begins a new map frame with the next scan; the old map and trajectory are kept. Any thread.
   void begin_new_frame(NewFrameReason reason) noexcept {
     new_frame_.store(reason, std::memory_order_relaxed);
@@ -141,6 +147,8 @@ class RegistrationThread final : private EstimateSink {
   std::unique_ptr<RegisteredScan> unpublished_;  ///< used while no chunk is free: the pose is still published
   Deadline deadline_;
   Handover<Change> changes_;
+  Handover<PlaceHint> places_;
+  std::atomic<bool> place_given_up_{false};
   std::atomic<NewFrameReason> new_frame_{NewFrameReason::kNone};  ///< asked for; kNone: not
   std::uint64_t warm_up_faults_ = 0;
   RegistrationStatus draft_status_;

@@ -11,14 +11,15 @@
 #include "core/mounts/mount_text.hpp"
 #include "core/names.hpp"
 #include "core/stamp.hpp"
+#include "daemon/checkpoint_draft.hpp"
 #include "daemon/counts.hpp"
 #include "daemon/lidar_clock.hpp"
 #include "daemon/lock_step.hpp"
 #include "daemon/missing_sensors.hpp"
 #include "daemon/recording_check.hpp"
+#include "daemon/replay_maps.hpp"
 #include "daemon/silent_lidar.hpp"
 #include "daemon/stage_settings.hpp"
-#include "run/building/next_map.hpp"
 #include "run/recording/recording_reader.hpp"
 
 namespace isobar {
@@ -36,6 +37,13 @@ class OutputSink : public EstimateSink {
  public:
   explicit OutputSink(files::RunOutput& output) : output_(output) {}
   void on_pose(const PoseEstimate& pose, const Prior& prior) override {
+    checkpoint_.note(pose);
+    // Of a robot that is not found in its map nobody knows the pose.
+    if (pose.covariance(0, 0) > 0.0 && place_unknown(pose)) {
+      ++unknown_;
+      last_ = pose;
+      return;
+    }
     output_.add_pose(pose, prior);
     if (pose.lost != LostReason::kNone) note_lost(pose);
     last_ = pose;
@@ -57,6 +65,9 @@ class OutputSink : public EstimateSink {
   /// Scans registered without a height from pressure, and without an IMU.
   [[nodiscard]] std::uint64_t without_height() const { return without_height_; }
   [[nodiscard]] std::uint64_t without_imu() const { return without_imu_; }
+  /// Scans of a robot that had not been found in its map.
+  [[nodiscard]] std::uint64_t unknown() const { return unknown_; }
+  [[nodiscard]] const CheckpointDraft& checkpoint() const { return checkpoint_; }
   /// The last pose.
   [[nodiscard]] const PoseEstimate& last() const { return last_; }
 
@@ -69,6 +80,8 @@ class OutputSink : public EstimateSink {
   }
 
   files::RunOutput& output_;
+  CheckpointDraft checkpoint_;
+  std::uint64_t unknown_ = 0;
   std::uint64_t lost_ = 0;
   std::uint64_t lost_poses_ = 0;
   std::int64_t lost_since_ns_ = 0;
@@ -169,6 +182,22 @@ void refuse_empty_run(const ReplaySummary& summary, const recording::RecordingRe
                   ": no lidar scan could be decoded: " + silent_lidar_text(reader, pipeline.assembler()));
 }
 
+/// Says what became of the search of the place in the stored map.
+void describe_place(const LockStep& pipeline, const OutputSink& sink, ReplaySummary& summary) {
+  const PlaceStatus& place = pipeline.place();
+  if (place.found > 0) {
+    summary.warnings.emplace_back(
+        "the place was found in the map by " + std::to_string(place.searches) +
+        (place.searches == 1 ? " search" : " searches") + " of all of it" +
+        (place.refused > 0 ? ", " + std::to_string(place.refused) + " not confirmed" : ""));
+  }
+  if (sink.unknown() > 0) {
+    summary.warnings.emplace_back("no pose for " + std::to_string(sink.unknown()) +
+                                  " scans: the place in the map was not known yet");
+  }
+  if (const std::string text = place_text(place); !text.empty()) summary.warnings.push_back(text);
+}
+
 /// Feeds all events to the pipeline.
 /// @return time from the first to the last event [s]
 double feed(recording::RecordingReader& reader, const UsableSensors& usable, LockStep& pipeline,
@@ -209,25 +238,19 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   files::RunOutput output(out);
   output.write_settings(show_config(used));
   OutputSink sink(output);
-  const std::filesystem::path map_folder = files::RunOutput::map_directory(out);
-  remove_next_map(map_folder);
-  auto store = FileTileStore::create(map_folder, map_header(used), map_limits(used));
-  auto loop_files = std::make_unique<LoopFiles>([&](std::uint32_t /*session*/) { return map_folder; },
-                                                map_header(used), map_limits(used), used.loops.max_disk_gb);
-  LockStep pipeline(stage_settings(used), sink, store.get(), std::move(loop_files), [&] {
-    store.reset();
-    settle_next_map(map_folder);
-    store = FileTileStore::open_to_continue(map_folder, map_header(used), map_limits(used));
-    return store.get();
-  });
+  ReplayMaps maps(used, out);
+  LockStep pipeline(stage_settings(used), sink, maps.storage(), maps.loop_files(used),
+                    [&] { return maps.exchange(); });
+  maps.begin(pipeline, summary.warnings);
   summary.recorded_s = feed(reader, check.usable, pipeline, progress);
   output.flush();
+  maps.write_checkpoint(sink.checkpoint(), pipeline.prior_estimator().height_datum());
   if (used.loops.enabled) write_corrected_trajectories(out, pipeline.loops());
   summary.loops = pipeline.loops().counts().taken;
   if (const std::string problem = pipeline.loops().problem(); !problem.empty()) {
     summary.warnings.push_back("loops: " + problem);
   }
-  const std::vector<files::RunCount> map_counts = counts_of_map(*store, output);
+  const std::vector<files::RunCount> map_counts = counts_of_map(maps.store(), output);
 
   summary.scans = pipeline.scans();
   summary.poses = output.poses();
@@ -240,6 +263,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   summary.counts.push_back({"maps laid anew", pipeline.loops().moves(), pipeline.loops().problem()});
   add_contradictions(contradictions, summary.counts);
   warn_of_scans_without(manifest, used.imu.present(), sink, summary);
+  describe_place(pipeline, sink, summary);
   warn_of_two_lidars(pipeline, used.lidar.port, summary);
   warn_of_unusable_sensors(manifest, used, pipeline, summary);
   output.write_counters(summary.counts);

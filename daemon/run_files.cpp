@@ -58,7 +58,7 @@ void do_or_log(const Part& part) {
 RunFiles::RunFiles(const Config& config)
     : directory_(config.output.directory), configured_rpy_deg_(config.lidar.mount.rpy_deg), maps_(config) {
   if (!directory_.empty()) files::refuse_foreign_folder(directory_, "", "output.directory");
-  choose_start();
+  choose_stored_start(config);
   if (directory_.empty()) return;
   output_.emplace(directory_, files::Start::kContinue, start_.session);
   do_or_log([&] { output_->write_settings(show_config(config)); });
@@ -82,6 +82,68 @@ std::unique_ptr<LoopFiles> RunFiles::loop_files(const Config& config) const {
 std::uint32_t RunFiles::newest_session() const {
   const std::uint32_t run = directory_.empty() ? 0 : files::newest_session(directory_);
   return std::max(run, maps_.newest_session());
+}
+
+// A run that is begun already goes on in its own map, which may be the copy of the stored one.
+void RunFiles::choose_stored_start(const Config& config) {
+  const MapFileSettings& map = config.map_files;
+  const std::uint32_t newest = newest_session();
+  if (map.use == MapUse::kLocalise) return localise_in(map.stored, map_header(config));
+  if (map.use == MapUse::kNew && newest > 0) return begin_beside(newest + 1, "map.use is new");
+  const bool begun = newest > 0 && !awaits_first_pose(newest);
+  if (map.use == MapUse::kNew || map.stored.empty() || !maps_.configured() || begun) return choose_start();
+  if (newest == 0) copy_map(find_stored_map(map.stored, map_header(config)).folder, maps_.folder_of(1));
+  const StoredMap copy = find_stored_map(maps_.folder_of(1), map_header(config));
+  static_cast<void>(open_map(1));
+  start_in(copy);
+}
+
+/// @param folder of the stored map; empty: that of the run itself
+void RunFiles::localise_in(const std::string& folder, const MapHeader& header) {
+  const std::uint32_t own = maps_.newest_session();
+  if (folder.empty() && own == 0) {
+    throw ConfigError("map.use: localise needs a map: map.stored, or a run with one in output.directory");
+  }
+  if (!folder.empty() && own > 0) {
+    throw ConfigError(
+        "output.directory: " + directory_.string() +
+        " holds a run with a map of its own; a run that localises in map.stored needs another folder");
+  }
+  StoredMap stored =
+      find_stored_map(folder.empty() ? maps_.folder_of(own) : std::filesystem::path(folder), header);
+  maps_.open_read_only(stored.folder);
+  stored.start.session = stored.start.place->session = std::max(own, 1U);
+  start_in(stored);
+  // After a restart the robot is where this run saw it last.
+  const auto checkpoint = directory_.empty() ? std::nullopt : read_own_checkpoint();
+  if (checkpoint && checkpoint->session == start_.session) start_ = continuation_of(*checkpoint);
+}
+
+std::optional<files::Checkpoint> RunFiles::read_own_checkpoint() const {
+  try {
+    return files::read_checkpoint(directory_ / files::kCheckpointFile);
+  } catch (const Error& error) {
+    spdlog::warn("{}", error.what());
+    return std::nullopt;
+  }
+}
+
+/// No pose of the run has been written: the copy of a stored map is as it was.
+bool RunFiles::awaits_first_pose(std::uint32_t newest) const {
+  if (newest != 1 || directory_.empty()) return false;
+  std::error_code error;
+  return files::has_no_pose(directory_, 1) &&
+         !std::filesystem::exists(directory_ / files::kCheckpointFile, error);
+}
+
+void RunFiles::start_in(const StoredMap& stored) {
+  start_ = stored.start;
+  spdlog::info("begins in the stored map {}{}; its place is searched in all of it", stored.folder.string(),
+               maps_.read_only() ? ", which is only read" : "");
+  if (!stored.has_datum) {
+    spdlog::warn("{}: no height datum is stored with the map: all of its floors are searched",
+                 stored.folder.string());
+  }
 }
 
 void RunFiles::choose_start() {

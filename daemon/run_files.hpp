@@ -35,6 +35,9 @@ class RunFiles {
   [[nodiscard]] MapStores& maps() noexcept { return maps_; }
   /// Files of the loops, in the folders of the maps.
   [[nodiscard]] std::unique_ptr<LoopFiles> loop_files(const Config& config) const;
+  [[nodiscard]] const MapStores& maps() const noexcept { return maps_; }
+  /// The run stays in the stored map, which is only read.
+  [[nodiscard]] bool stays() const noexcept { return maps_.read_only(); }
   /// File of the checkpoint; empty: nothing is configured that a later run could continue.
   [[nodiscard]] std::filesystem::path checkpoint_file() const;
 
@@ -47,6 +50,11 @@ class RunFiles {
  private:
   [[nodiscard]] std::uint32_t newest_session() const;
   void choose_start();
+  void choose_stored_start(const Config& config);
+  [[nodiscard]] bool awaits_first_pose(std::uint32_t newest) const;
+  void localise_in(const std::string& folder, const MapHeader& header);
+  [[nodiscard]] std::optional<files::Checkpoint> read_own_checkpoint() const;
+  void start_in(const StoredMap& stored);
   [[nodiscard]] bool begun(std::uint32_t session);
   [[nodiscard]] bool open_map(std::uint32_t session);
   void lay_map(LoopStage& loops);

@@ -63,6 +63,18 @@ void add_hint(const StatusSnapshot& now, HealthReport& report) {
             static_cast<double>(registration.hint.given));
 }
 
+/// The search of the place in the whole map: a warning while the place is not known.
+void add_place(const StatusSnapshot& now, HealthReport& report) {
+  const PlaceStatus& place = now.place;
+  if (place.state == PlaceState::kIdle && place.searches == 0) return;
+  const bool idle = place.state == PlaceState::kIdle;
+  const std::string message =
+      idle ? fmt::format("{} searches of the whole map, the last in {:.2f} s", place.searches, place.search_s)
+           : place_text(place);
+  add_entry(report, "place", idle ? HealthLevel::kOk : HealthLevel::kWarning, message,
+            static_cast<double>(place.hypothesis_count));
+}
+
 void add_disk(const StatusSnapshot& now, HealthReport& report) {
   if (!now.output.present) return;
   const bool failing = now.output.failing || now.map.disk_failing;
@@ -87,6 +99,7 @@ void log_hint(const StatusSnapshot& now, const StatusSnapshot& before) {
 void add_run_entries(const StatusSnapshot& now, HealthReport& report) {
   add_session(now, report);
   add_hint(now, report);
+  add_place(now, report);
   add_disk(now, report);
 }
 

@@ -18,6 +18,7 @@
 #include "simulation/lidar_recording.hpp"
 #include "simulation/scenario.hpp"
 #include "simulation/scenario_list.hpp"
+#include "simulation/session.hpp"
 #include "simulation/wheel_model.hpp"
 
 namespace isobar::simulation {
@@ -73,7 +74,7 @@ struct Run {
         lidar(true_lidar(of, in)),
         imu(true_imu(of, in)),
         duration_s(std::min(of.stop_after_s, in.trajectory.duration_s())) {
-    Random start(of.seed, "start");
+    Random start(of.session_seed != 0 ? of.session_seed : of.seed, "start");
     robot.start_ns = 1'700'000'000'000'000'000 + std::llround(start.uniform(0.0, 3e7) * 1e9);
   }
 
@@ -85,7 +86,13 @@ struct Run {
   double duration_s;
   Clock robot;
 
-  [[nodiscard]] Random random(std::string_view name) const { return Random(request.seed, name); }
+  /// Of this session.
+  [[nodiscard]] Random random(std::string_view name) const { return Random(session_seed(), name); }
+  /// Of a device, which is the same in all sessions.
+  [[nodiscard]] Random random_device(std::string_view name) const { return Random(request.seed, name); }
+  [[nodiscard]] std::uint64_t session_seed() const {
+    return request.session_seed != 0 ? request.session_seed : request.seed;
+  }
   [[nodiscard]] const Deviations& deviations() const { return request.deviations; }
   [[nodiscard]] bool is_recorded(double time_s) const { return time_s >= deviations().start_at_s; }
 };
@@ -165,9 +172,10 @@ void write_base_pressure(const Run& run, const Atmosphere& air, BarometerModel& 
 void write_pressure(const Run& run) {
   static_assert(Deviations::kFullBaseRateHz == BarometerModel::kRateHz);
   const Atmosphere air(run.scenario, AirErrors::draw(run.random("air errors")), run.random("air"));
-  BarometerModel robot(BarometerErrors::draw(run.random("barometer errors"), false),
+  BarometerModel robot(BarometerErrors::draw(run.random_device("barometer errors"), false),
                        run.random("barometer noise"));
-  BarometerModel base(BarometerErrors::draw(run.random("base errors"), true), run.random("base noise"));
+  BarometerModel base(BarometerErrors::draw(run.random_device("base errors"), true),
+                      run.random("base noise"));
   Random random = run.random("pressure stamps");
   // The base station has its own clock, at best set by NTP: an offset of milliseconds to a second, a drift of
   // tens of ppm.
@@ -202,7 +210,7 @@ void write_truth(const Run& run) {
 
 void write_lidar(const Run& run, const LidarPlan& plan, const std::function<void(double)>& progress) {
   const LidarModel lidar(plan, run.scenario.world, run.scenario.trajectory, run.lidar.T_base_sensor(),
-                         LidarErrors::draw(run.random("lidar errors"), plan), run.request.seed);
+                         LidarErrors::draw(run.random_device("lidar errors"), plan), run.session_seed());
   const LidarSpan span{run.deviations().start_at_s, run.duration_s};
   const auto stamp_ns = [&run](double time_s) { return run.robot.stamp_ns(time_s); };
   write_lidar_packets(plan, lidar, span, stamp_ns, run.writer, progress);
@@ -222,6 +230,7 @@ recording::Manifest make_manifest(const ScenarioRequest& request, const Scenario
   recording::Manifest manifest = recording::Manifest::with_all_sensors();
   manifest.description = request.name + (request.short_form ? " (short)" : "") + ", seed " +
                          std::to_string(request.seed) + ": " + scenario.description;
+  if (request.session_seed != 0) manifest.description += "; session " + std::to_string(request.session_seed);
   for (const std::string& option : deviations.options()) manifest.description += "; --" + option;
   manifest.description += "; true mounts: " + mount_text("lidar", true_lidar(request, scenario)) + ", " +
                           mount_text("imu", true_imu(request, scenario));
@@ -239,6 +248,7 @@ recording::Manifest make_manifest(const ScenarioRequest& request, const Scenario
 /// Scenario of a request, with the deviations of its air and its base station.
 Scenario make_scenario(const ScenarioRequest& request) {
   Scenario scenario = find_scenario(request.name).make(request.seed, request.short_form);
+  if (request.session_seed != 0) begin_another_session(scenario, request.session_seed);
   const Deviations& deviations = request.deviations;
   scenario.air.common_ramp = deviations.common_ramp;
   scenario.air.common_gust = deviations.common_gust;
@@ -264,8 +274,9 @@ Scenario make_scenario(const ScenarioRequest& request) {
 std::string recording_name(const ScenarioRequest& request) {
   std::string lidar = request.lidar == kUsualLidar ? "" : "-" + request.lidar;
   std::replace(lidar.begin(), lidar.end(), ' ', '-');
-  return request.name + "-" + std::to_string(request.seed) + (request.short_form ? "-short" : "") + lidar +
-         request.deviations.suffix();
+  return request.name + "-" + std::to_string(request.seed) +
+         (request.session_seed != 0 ? "-session-" + std::to_string(request.session_seed) : "") +
+         (request.short_form ? "-short" : "") + lidar + request.deviations.suffix();
 }
 
 void simulate(const ScenarioRequest& request, const std::filesystem::path& out_dir,

@@ -14,6 +14,13 @@ World::World(const Mesh& standing, std::vector<MovingBody> moving)
   for (const MovingBody& body : moving_) samples_ = std::max(samples_, body.first + body.x_m.size());
 }
 
+void World::add(std::vector<MovingBody> moving) {
+  for (MovingBody& body : moving) {
+    samples_ = std::max(samples_, body.first + body.x_m.size());
+    moving_.push_back(std::move(body));
+  }
+}
+
 void World::look(double time_s, const Vector3d& eye, double range_m, Moment& moment) const {
   moment.bodies.clear();
   if (moving_.empty()) return;

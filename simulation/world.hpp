@@ -26,6 +26,8 @@ class World {
   World() = default;
   World(const Mesh& standing, std::vector<MovingBody> moving);
 
+  /// Adds bodies on the time grid of the others.
+  void add(std::vector<MovingBody> moving);
   /// Everything that does not move.
   [[nodiscard]] const RayCaster& standing() const { return standing_; }
 

@@ -3,6 +3,7 @@
 #include "daemon/replay.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -25,6 +26,8 @@ struct ReplayOptions {
   std::string method;
   std::filesystem::path out;
   bool replace = false;
+  std::string map;
+  std::string map_use;
 };
 
 /// Counters of normal operation, which are not printed; the others are printed unless zero.
@@ -71,12 +74,29 @@ void prepare_folder(const ReplayOptions& options) {
   files::remove_run(options.out);
 }
 
+/// The stored map is not in the folder that the run replaces.
+/// @throws UsageError
+void refuse_own_map(const ReplayOptions& options) {
+  if (options.map.empty()) return;
+  const auto out = std::filesystem::weakly_canonical(options.out);
+  const auto map = std::filesystem::weakly_canonical(options.map);
+  if (std::mismatch(out.begin(), out.end(), map.begin(), map.end()).first != out.end()) return;
+  throw UsageError("--out: " + options.out.string() + " holds the stored map; name another folder");
+}
+
 void run_replay(const ReplayOptions& options) {
+  refuse_own_map(options);
   Config config = options.config.empty() ? Config{} : load_config(options.config);
   if (!options.method.empty()) {
     const auto method = kMethodNames.value(options.method);
     if (!method) throw UsageError("--method: \"" + options.method + "\" is none of " + method_names());
     config.method = *method;
+  }
+  if (!options.map.empty()) config.map_files.stored = options.map;
+  if (!options.map_use.empty()) {
+    const auto use = kMapUseNames.value(options.map_use);
+    if (!use) throw UsageError("--map-use: \"" + options.map_use + "\" is none of extend, localise, new");
+    config.map_files.use = *use;
   }
   prepare_folder(options);
   Progress progress("replaying");
@@ -98,6 +118,12 @@ void add_replay_command(CLI::App& app) {
   command
       .add_option("--out", options.out, "folder for trajectory.tum, map.ply, map/, status.csv, settings.toml")
       ->required();
+  command.add_option("--map", options.map,
+                     "stored map in which the robot is, the folder of a run or of a map; it stays as it is");
+  command.add_option(
+      "--map-use", options.map_use,
+      "extend (default): add to a copy of it in the folder of this run; localise: add nothing; new: do "
+      "not use it");
   command.add_flag("--replace", options.replace, "delete the run that is in the folder");
 }
 

@@ -48,6 +48,9 @@ void add_simulate_command(CLI::App& app) {
   command.add_option("--seed", options.request.seed, "random seed of world, path and sensor errors")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
+  command.add_option(
+      "--session-seed", options.request.session_seed,
+      "another session on the same site: other errors, weather and furniture; 0: the first one");
   command.add_option("--out", options.out_dir, "folder for the recording, created if missing");
   command.add_flag("--short", options.request.short_form, "30 to 60 s instead of the whole run");
   add_lidar_option(command, options.request);

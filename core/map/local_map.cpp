@@ -71,12 +71,15 @@ bool LocalMap::wants(const PoseEstimate& pose) const {
          elapsed_s >= config_.update_interval_s || elapsed_s < 0.0 || pose.overlap < config_.update_overlap;
 }
 
-bool LocalMap::update(const RegisteredScan& scan) {
+bool LocalMap::is_on_grid(const PoseEstimate& pose) {
   constexpr double kMaxCoordinateM = 1e8;  // a cell index must fit into 32 bits; no robot drives that far
-  const auto& pose = scan.pose.T_map_base.matrix();
+  const auto& T = pose.T_map_base.matrix();
+  return T.allFinite() && T.cwiseAbs().maxCoeff() <= kMaxCoordinateM;
+}
+
+bool LocalMap::update(const RegisteredScan& scan) {
   if (scan.point_count == 0 || !scan.pose.for_map || scan.pose.session != session_ ||
-      scan.pose.map_moves != move_.number || !pose.allFinite() ||
-      pose.cwiseAbs().maxCoeff() > kMaxCoordinateM || !wants(scan.pose)) {
+      scan.pose.map_moves != move_.number || !is_on_grid(scan.pose) || !wants(scan.pose)) {
     return false;
   }
   const Eigen::Vector3d p_map_base = scan.pose.T_map_base.translation();

@@ -64,6 +64,10 @@ class LocalMap {
   /// an earlier run. Tiles beyond a maximum follow with the next updates.
   void load_around(const Eigen::Vector3d& p_map_base);
 
+  /// Keeps the tiles around the robot in memory as update() does, and inserts nothing: for a map that is only used. Returns
+  /// true if snapshot() changed.
+  bool follow(const PoseEstimate& pose);
+
   [[nodiscard]] std::uint32_t session() const { return session_; }
   /// How the map frame has been corrected; scans whose pose is of another correction are left out.
   [[nodiscard]] const MapMove& move() const { return move_; }
@@ -101,6 +105,7 @@ class LocalMap {
     MapBlock::Observation observation;
   };
 
+  [[nodiscard]] static bool is_on_grid(const PoseEstimate& pose);
   [[nodiscard]] bool wants(const PoseEstimate& pose) const;
   void insert(const RegisteredScan& scan, double elapsed_s);
   void observe_pending(std::size_t count, PoseMode mode);

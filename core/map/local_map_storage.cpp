@@ -86,6 +86,23 @@ void LocalMap::load_around(const Eigen::Vector3d& p_map_base) {
   publish();
 }
 
+bool LocalMap::follow(const PoseEstimate& pose) {
+  if (pose.session != session_ || place_unknown(pose) || !is_on_grid(pose)) return false;
+  const Eigen::Vector3d p_map_base = pose.T_map_base.translation();
+  const bool new_tile = !started_ || LocalFrame(p_map_base, cell_m_).origin_cell !=
+                                         LocalFrame(last_pose_.T_map_base.translation(), cell_m_).origin_cell;
+  last_pose_ = pose;
+  started_ = true;
+  if (new_tile) {
+    evict(p_map_base);
+    look_for_stored(p_map_base);
+  }
+  if (!new_tile && stored_.empty()) return false;
+  bring_back_stored();
+  publish();
+  return true;
+}
+
 void LocalMap::store_all() {
   if (storage_ == nullptr) {
     return;

@@ -44,16 +44,22 @@ double yaw_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   return rotation_angle_rad(Eigen::Quaterniond(a.linear().transpose() * b.linear()));
 }
 
+// The altimeter's, unless it does not tell the floor: then that of the candidate, which odometry has carried.
+SlabHeight followed_height(const SlabHeight& height, double carried_z_m) {
+  constexpr double kLargestSigmaM = 0.34;  // 3 sigma are a metre: less than a storey
+  return height.sigma_m <= kLargestSigmaM ? height : SlabHeight{carried_z_m, kLargestSigmaM};
+}
+
 bool usable(const SlabHeight& height) {
   return std::abs(height.z_m) < 1e5 && height.sigma_m >= 0.0 && height.sigma_m < 1e3;
 }
 
-bool usable(const PlaceHint& hint) {
+bool usable(const SearchArea& hint) {
   return std::abs(hint.x_m) < 1e7 && std::abs(hint.y_m) < 1e7 && std::abs(hint.yaw_rad) < 1e3 &&
          (hint.sigma_m.array() > 0.0).all() && (hint.sigma_m.array() < 1e6).all() && hint.sigma_yaw_rad > 0.0;
 }
 
-SearchWindow window_of(const std::optional<PlaceHint>& hint) {
+SearchWindow window_of(const std::optional<SearchArea>& hint) {
   SearchWindow window;
   if (!hint) return window;
   const Eigen::Vector2d p(hint->x_m, hint->y_m);
@@ -72,7 +78,7 @@ ColdStart::ColdStart(const ColdStartConfig& config, const RegistrationConfig& re
       traits_(traits_of(Method::k4Dof, HeightSource::kDifferential)),
       matcher_(registration, Eigen::Vector3d::Zero()) {}
 
-const ColdStartResult& ColdStart::locate(const ColdStartInput& input, const std::optional<PlaceHint>& hint) {
+const ColdStartResult& ColdStart::locate(const ColdStartInput& input, const std::optional<SearchArea>& hint) {
   result_ = {};
   judged_.clear();
   if (input.query.can_judge() && usable(input.height) && (!hint || usable(*hint))) {
@@ -89,7 +95,7 @@ const ColdStartResult& ColdStart::locate(const ColdStartInput& input, const std:
 }
 
 void ColdStart::search_slab(const ColdStartInput& input, const SlabHeight& height,
-                            const std::optional<PlaceHint>& hint) {
+                            const std::optional<SearchArea>& hint) {
   hypotheses_.clear();
   const SearchWindow window = window_of(hint);
   if (!image_.build(input.map.structure(), height, window.box)) return;
@@ -179,10 +185,11 @@ const ColdStartResult& ColdStart::follow(const ColdStartInput& input, const Eige
   const double driven_m = T_before_now.translation().head<2>().norm();
   for (const PlaceCandidate& old : before) {
     Eigen::Isometry3d T_map_level = old.T_map_level * T_before_now;
-    T_map_level.translation().z() = input.height.z_m;
+    const SlabHeight height = followed_height(input.height, T_map_level.translation().z());
+    T_map_level.translation().z() = height.z_m;
     const Eigen::Vector2d p = T_map_level.translation().head<2>();
-    if (!image_.build(input.map.structure(), input.height, {p.array() - 1.0, p.array() + 1.0})) continue;
-    auto judged = refined(input, input.height, T_map_level, kLeastFollowedM + kFollowedShare * driven_m);
+    if (!image_.build(input.map.structure(), height, {p.array() - 1.0, p.array() + 1.0})) continue;
+    auto judged = refined(input, height, T_map_level, kLeastFollowedM + kFollowedShare * driven_m);
     if (!judged) continue;
     judged->candidate.weight += std::log(std::max(old.weight, kLeastWeight));
     add_candidate(std::move(*judged));

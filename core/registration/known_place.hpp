@@ -8,6 +8,8 @@ namespace isobar {
 
 /// Place in a known map where the robot was last: the start of a run that continues another one.
 struct KnownPlace {
+  /// Anywhere in the map: x, y and yaw say nothing, and nothing is searched around them. The rest holds.
+  bool anywhere = false;
   std::uint32_t session = 1;  ///< number of the map frame
   std::int64_t stamp_ns = 0;  ///< time of the pose, robot clock
   Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();

@@ -15,6 +15,7 @@ struct PlaceHint {
   bool has_z = false;
   double z_m = 0.0;        ///< of base_link, if has_z
   double z_sigma_m = 0.0;  ///< 1 sigma
+  bool z_is_sure = false;  ///< z is of a scan that matched there: it counts more than the altimeter
   double yaw_rad = 0.0;
   double sigma_m = 0.0;    ///< of x and y, 1 sigma; 0: not stated
   double sigma_rad = 0.0;  ///< of yaw, 1 sigma; 0: not stated

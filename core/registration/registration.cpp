@@ -138,7 +138,7 @@ void Registration::register_scan(const Scan& scan, const MapSnapshot& map, Regis
   Prediction prediction = predict(end, traits);
   rise_with_ground(end, traits, prediction);
   prepare_scan(scan, state_.history, state_.motion.scan_motion(end, prediction), deskewer_, sampler_, out);
-  if (state_.search.active()) {
+  if (state_.search.active() || state_.awaits_place) {
     lost() ? search_lost(map, end, prediction, out) : search_place(map, end, prediction, out);
     return;
   }

@@ -85,6 +85,10 @@ struct RegistrationState {
   double risen_variance_m2 = 0.0;    ///< of z, from moving ground
   std::optional<KnownPlace> place;
   MapMove map_move;  ///< of the map of the last scan
+  std::optional<KnownPlace> home;  ///< see Registration::stay_in()
+  bool waits_for_place = false;    ///< see Registration::wait_for_place()
+  bool awaits_place = false;       ///< no search around the last place has found it, or none was made
+  bool place_given_up = false;
   PoseEstimate last;
   std::int64_t first_prior_ns = 0;  ///< 0: none yet; the history forgets
   std::uint32_t scans_without_gravity = 0;
@@ -111,12 +115,24 @@ class Registration {
   [[nodiscard]] std::uint32_t session() const { return state_.last.session; }
   /// The place of resume() is not confirmed yet.
   [[nodiscard]] bool searching() const {
-    return state_.place.has_value() || (state_.search.active() && !lost());
+    return state_.place.has_value() || state_.awaits_place || (state_.search.active() && !lost());
   }
+
+  /// Somebody searches the whole map. Where no scan confirms the place of resume(), the robot then waits for a hint() or
+  /// for give_up_place(), instead of beginning a new map frame. Before the first scan.
+  void wait_for_place(bool waits) { state_.waits_for_place = waits; }
+  /// The place cannot be found: if it is still awaited and no hint is tried, a new map frame begins with the next scan.
+  /// No effect after stay_in().
+  void give_up_place() { state_.place_given_up = true; }
+  /// The map frame is that of a stored map for the whole run: begin_new_frame() searches the place in it anew, at `place`,
+  /// which is anywhere. Before the first scan.
+  void stay_in(const KnownPlace& place) { state_.home = place; }
 
   /// Somebody says where the robot is. The next scans are tried there; the robot goes on from there only where they
   /// match, and otherwise nothing changes. Instead of an earlier hint. See hint_report().
   void hint(const PlaceHint& hint);
+  /// A hint waits, or is tried.
+  [[nodiscard]] bool has_hint() const { return state_.hint.active() || state_.hint.waiting() != nullptr; }
   [[nodiscard]] const HintReport& hint_report() const { return state_.hint.report(); }
 
   /// Appends a prior; priors come in order of time.
@@ -167,6 +183,8 @@ class Registration {
   bool start_at_place(const Prior& prior);
   void search_place(const MapSnapshot& map, const Prior& end, const Prediction& expected,
                     RegisteredScan& out);
+  void await_place(const Prior& end, const Prediction& expected, PoseEstimate& pose);
+  void leave_unknown_place(PoseEstimate& pose);
   PlaceVerdict try_hypotheses(const MapSnapshot& map, const Prior& end, const Prediction& expected,
                               const MethodTraits& traits, std::size_t per_scan);
   PlaceVerdict confirm_place(const MapSnapshot& map, const Prior& end, const Prediction& expected,

@@ -58,7 +58,7 @@ void Registration::begin_hint(const MapSnapshot& map, const Prior& end, const Ei
     trial.finish(HintOutcome::kNoMap, end.stamp_ns);
     return;
   }
-  const bool has_altimeter = end.height_source != HeightSource::kNone;
+  const bool has_altimeter = end.height_source != HeightSource::kNone && !hint->z_is_sure;
   const double apart_m = hint->has_z ? std::abs(hint->z_m - p_believed.z()) : 0.0;
   if (has_altimeter && apart_m > kHeightAgreesM + kHeightSigmas * hint->z_sigma_m) {
     trial.finish(HintOutcome::kOtherHeight, end.stamp_ns);
@@ -145,6 +145,7 @@ void Registration::go_on_from(const Prior& end, const MatchResult& found, PoseEs
   state_.hint.finish(HintOutcome::kFound, end.stamp_ns);
   state_.motion.relocate(end, found.T_map_base);
   state_.speed.stop();
+  state_.awaits_place = state_.place_given_up = false;
   state_.bootstrapping = false;
   state_.lost_detector.restart();
   if (std::abs(climb_m) > kOtherHeightM) state_.height.restart();

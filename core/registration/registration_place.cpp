@@ -81,7 +81,12 @@ void Registration::follow_map(const MapSnapshot& map) {
 }
 
 void Registration::begin_new_frame() {
+  const std::uint32_t before = session();
   next_frame();
+  if (state_.home) {
+    resume(*state_.home);
+    state_.last.session = before;
+  }
   state_.history.clear();
   state_.height.restart_clock();
   state_.first_prior_ns = 0;
@@ -104,6 +109,7 @@ void Registration::next_frame() {
   state_.ground_since_ns = 0;
   state_.risen_variance_m2 = 0.0;
   state_.place.reset();
+  state_.awaits_place = state_.place_given_up = false;
   state_.scans_without_gravity = state_.bootstrap_scans = 0;
   state_.level_since_ns = 0;
   state_.bootstrapping = true;
@@ -127,22 +133,41 @@ bool Registration::start_at_place(const Prior& prior) {
   state_.tilt.restart();
   restart_drift(prior);
   state_.drift.restart_at(expected.T_map_base.translation());
-  state_.search.begin(place, seconds_between(place.stamp_ns, prior.stamp_ns), expected);
+  state_.awaits_place = place.anywhere;
+  if (!place.anywhere) state_.search.begin(place, seconds_between(place.stamp_ns, prior.stamp_ns), expected);
   state_.place.reset();
   return true;
 }
 
-// Searches the place with one scan. Its points stay out of the map.
+// The robot drives on by dead reckoning until somebody has found its place in the whole map, or has given it up.
+void Registration::await_place(const Prior& end, const Prediction& expected, PoseEstimate& pose) {
+  state_.motion.keep_prediction(end, expected);
+  if (state_.place_given_up && !state_.home) leave_unknown_place(pose);
+  pose.T_map_odom = pose.T_map_base * end.T_odom_base.inverse();
+  state_.last = pose;
+}
+
+void Registration::leave_unknown_place(PoseEstimate& pose) {
+  next_frame();
+  pose.session = session();
+  pose.T_map_base.setIdentity();
+}
+
+// Searches the place with one scan. Its points stay out of the map: they are for a search of the whole one.
 void Registration::search_place(const MapSnapshot& map, const Prior& end, const Prediction& expected,
                                 RegisteredScan& out) {
   const MethodTraits& traits = traits_of_search(end);
   PoseEstimate& pose = out.pose;
-  out.point_count = 0;
+  pose.for_map = false;
   pose.T_map_base = expected.T_map_base;
   pose.covariance = unknown_covariance();
   begin_hint(map, end, expected.T_map_base);
   if (state_.hint.active()) {
     search_hint(map, end, expected, out);
+    return;
+  }
+  if (state_.awaits_place) {
+    await_place(end, expected, pose);
     return;
   }
   // A dropped scan has no points.
@@ -155,10 +180,11 @@ void Registration::search_place(const MapSnapshot& map, const Prior& end, const 
   const PlaceVerdict verdict = state_.search.confirming()
                                    ? confirm_place(map, end, expected, traits, pose)
                                    : try_hypotheses(map, end, expected, traits, PlaceSearch::kPerScan);
-  if (verdict == PlaceVerdict::kUnknown) {
-    next_frame();
-    pose.session = session();
-    pose.T_map_base.setIdentity();
+  if (verdict == PlaceVerdict::kUnknown && state_.waits_for_place) {
+    state_.search.stop();
+    state_.awaits_place = true;
+  } else if (verdict == PlaceVerdict::kUnknown) {
+    leave_unknown_place(pose);
   }
   if (verdict == PlaceVerdict::kUnseen) {
     pose.mode = PoseMode::kPriorOnly;
@@ -168,6 +194,8 @@ void Registration::search_place(const MapSnapshot& map, const Prior& end, const 
     state_.search.stop();
     state_.bootstrapping = false;
     if (verdict == PlaceVerdict::kConfirmed) pose.mode = PoseMode::kRegistered;
+    out.point_count = 0;
+    pose.for_map = true;
   }
   pose.T_map_odom = pose.T_map_base * end.T_odom_base.inverse();
   state_.last = pose;

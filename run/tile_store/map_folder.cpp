@@ -177,7 +177,7 @@ fs::path numbered_file(const fs::path& directory, std::uint32_t number, const ch
 }
 
 void remove_map(const fs::path& directory) {
-  std::vector<fs::path> files{directory / "map.toml"};
+  std::vector<fs::path> files{directory / "map.toml", directory / "checkpoint"};
   const fs::path building = directory / kBuildingFolder;
   for (const fs::path& folder : {directory, building}) {
     std::error_code error;

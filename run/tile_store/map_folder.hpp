@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Folder of a map: `map.toml` (format and grid), `lock` (held by the process that writes), segments of tiles
-// with their indices (tile_record.hpp), and the journal of the newest scans (scan_journal.hpp).
+// with their indices (tile_record.hpp), the journal of the newest scans (scan_journal.hpp), and `checkpoint`, the height datum
+// of the map and the last place in it (run/files/checkpoint.hpp).
 #pragma once
 
 #include <cstdint>

@@ -89,7 +89,7 @@ std::vector<MapPoint> Building::points() const {
 
 KnownMap Building::map() const { return {points(), std::make_shared<const FaceMap>(faces_)}; }
 
-void Building::look(const Eigen::Isometry3d& T_map_level, PlaceQuery& query) const {
+std::vector<Eigen::Vector3f> Building::seen_from(const Eigen::Isometry3d& T_map_level) const {
   std::mt19937 random(5);
   std::normal_distribution<double> noise(0.0, kNoiseM);
   const Eigen::Vector3d p_level_lidar(0.0, 0.0, kLidarM);
@@ -105,8 +105,12 @@ void Building::look(const Eigen::Isometry3d& T_map_level, PlaceQuery& query) con
         points.emplace_back((p_level_lidar + (range_m + noise(random)) * ray).cast<float>());
     }
   }
+  return points;
+}
+
+void Building::look(const Eigen::Isometry3d& T_map_level, PlaceQuery& query) const {
   query.clear();
-  query.add(points, p_level_lidar.cast<float>());
+  query.add(seen_from(T_map_level), Eigen::Vector3f(0.0F, 0.0F, static_cast<float>(kLidarM)));
   query.finish();
 }
 

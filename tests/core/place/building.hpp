@@ -22,7 +22,9 @@ class Building {
   /// Points of all walls and floors, 0.1 m apart.
   [[nodiscard]] std::vector<MapPoint> points() const;
   [[nodiscard]] KnownMap map() const;
-  /// What a robot at `T_map_level` sees, whose lidar is 0.6 m above base_link, with a noise of 1 cm.
+  /// Points that a robot at `T_map_level` sees, in its level frame. Its lidar is 0.6 m above base_link, with a noise of 1 cm.
+  [[nodiscard]] std::vector<Eigen::Vector3f> seen_from(const Eigen::Isometry3d& T_map_level) const;
+  /// The same as a query.
   void look(const Eigen::Isometry3d& T_map_level, PlaceQuery& query) const;
 
   /// A face of a box: of the plane across `axis` the rectangle from `low` to `high`.
