@@ -7,7 +7,8 @@
 //   wheel┤                               ▲                 └─▶ registered scans ─▶ map
 //   base ┘                               └────────────────────── snapshots ─────────┘
 //
-// Registered scans also go to loops, which corrects the trajectory by places that are seen again.
+// Registered scans also go to loops, which corrects the trajectory by places that are seen again; poses and points of the
+// map to floors, which tells the floor and makes its grid.
 //
 // Every arrow is a topic in shared memory (ipc/topics.hpp), except the snapshot, which stays inside the
 // process.
@@ -25,6 +26,7 @@
 #include "daemon/check_thread.hpp"
 #include "daemon/configuration.hpp"
 #include "daemon/contradictions.hpp"
+#include "daemon/floor_thread.hpp"
 #include "daemon/graph.hpp"
 #include "daemon/health.hpp"
 #include "daemon/imu_source.hpp"
@@ -64,7 +66,7 @@ class RobotGraph final : public Graph {
         black_box_(black_box::BlackBox::make(config)),
         files_(config),
         map_(stages_.map, stages_.T_base_lidar, config.output.cloud_interval_s, files_.maps(), files_.start(),
-             scheduling_.map),
+             scheduling_.map, config.floors.enabled ? &floor_feed_ : nullptr),
         registration_(stages_, map_.snapshots(), scan_queue_config(config.realtime),
                       scheduling_.registration),
         prior_(stages_.prior, scheduling_.prior),
@@ -85,6 +87,12 @@ class RobotGraph final : public Graph {
         loops_(config.loops.enabled && files_.output() != nullptr
                    ? std::make_unique<LoopThread>(stages_, scheduling_.loops)
                    : nullptr),
+        floors_(config.floors.enabled
+                    ? std::make_unique<FloorThread>(
+                          config.floors, floor_feed_,
+                          [this](std::uint32_t session) { return files_.maps().folder_of(session); },
+                          scheduling_.floors)
+                    : nullptr),
         output_(files_.checkpoint_file().empty()
                     ? nullptr
                     : std::make_unique<OutputThread>(
@@ -98,6 +106,7 @@ class RobotGraph final : public Graph {
     if (output_) workers_.add(output_->worker(), Watch::kNo);
     workers_.add(check_.worker(), Watch::kNo);
     if (loops_) workers_.add(loops_->worker(), Watch::kNo);
+    if (floors_) workers_.add(floors_->worker(), Watch::kNo);
     workers_.add(map_.worker());
     workers_.add(registration_.worker());
     workers_.add(prior_.worker());
@@ -164,6 +173,7 @@ class RobotGraph final : public Graph {
   }
   void fill_health(std::int64_t now_ns, ipc::HealthReport& report) override {
     monitor_.fill(status(now_ns), report);
+    if (floors_) add_floor(floors_->status(), report);
     if (black_box_) black_box_->fill_health(report);
   }
   [[nodiscard]] Apply apply_of(const Setting& setting) const override { return setting.apply; }
@@ -218,6 +228,7 @@ class RobotGraph final : public Graph {
   RunDescriptionPublisher description_;
   std::unique_ptr<black_box::BlackBox> black_box_;
   RunFiles files_;
+  FloorFeed floor_feed_;
   MapThread map_;
   RegistrationThread registration_;
   PriorThread prior_;
@@ -227,7 +238,8 @@ class RobotGraph final : public Graph {
   SampleThread samples_;
   std::unique_ptr<LidarThread> lidar_;  ///< null: the scans come from isobar-dds
   CheckThread check_;
-  std::unique_ptr<LoopThread> loops_;  ///< null: switched off, or no folder for what it finds
+  std::unique_ptr<LoopThread> loops_;    ///< null: switched off, or no folder for what it finds
+  std::unique_ptr<FloorThread> floors_;  ///< null: switched off
   std::unique_ptr<OutputThread> output_;
   HealthMonitor monitor_;
   WorkerGroup workers_;  ///< last: stops all threads before the stages are destroyed

@@ -24,6 +24,8 @@ class MapStores {
   [[nodiscard]] bool configured() const { return !first_.empty(); }
   /// Folder of the first map frame.
   [[nodiscard]] const std::filesystem::path& folder() const { return first_; }
+  /// Folder of a map frame; empty when none is configured. Any thread.
+  [[nodiscard]] std::filesystem::path folder_of(std::uint32_t session) const;
   /// Number of the newest map frame that has a folder; 0: none.
   [[nodiscard]] std::uint32_t newest_session() const;
 
@@ -56,8 +58,6 @@ class MapStores {
   void finish() noexcept;
 
  private:
-  [[nodiscard]] std::filesystem::path folder_of(std::uint32_t session) const;
-
   std::filesystem::path first_;
   bool beside_ = true;  ///< folders of later frames are beside the first one, not inside
   MapHeader header_;

@@ -18,6 +18,7 @@ RobotScheduling robot_scheduling(const RealtimeSettings& realtime) {
       {"output", 0, {}},
       {"check", 0, realtime.map_cpus},
       {"loops", 0, realtime.map_cpus},
+      {"floors", 0, realtime.map_cpus, 1e3, 10},
   };
 }
 

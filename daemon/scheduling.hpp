@@ -10,7 +10,8 @@ namespace isobar {
 
 /// Threads of a robot. "inertial" is the SampleThread, by the name of its configuration keys.
 struct RobotScheduling {
-  ThreadSettings lidar, inertial, imu, barometer, wheels, prior, registration, map, output, check, loops;
+  ThreadSettings lidar, inertial, imu, barometer, wheels, prior, registration, map, output, check, loops,
+      floors;
 };
 [[nodiscard]] RobotScheduling robot_scheduling(const RealtimeSettings& realtime);
 

@@ -88,6 +88,7 @@ Json floor_json(const ipc::FloorFigures& floor) {
   return {{"known", floor.known},
           {"number", floor.number},
           {"name", floor.name},
+          {"place", floor.place},
           {"certainty", floor.certainty},
           {"z_m", floor.z_m}};
 }
