@@ -44,8 +44,8 @@ struct CurrentFloor {
   std::int32_t number = 0;    ///< of the floor in its building
   FloorPlace place = FloorPlace::kUnknown;  ///< kOnFloor where known
   double certainty = 0.0;                   ///< 0 … 1, probability that the robot is on this floor
-  double z_m = 0.0;           ///< of the floor, map frame
-  char name[kFloorNameBytes] = {};  // NOLINT(modernize-avoid-c-arrays): null-terminated; may be empty
+  double z_m = 0.0;                         ///< of the floor, map frame
+  char name[kFloorNameBytes] = {};          // NOLINT(modernize-avoid-c-arrays): null-terminated; may be empty
 };
 
 }  // namespace isobar::ipc

@@ -12,9 +12,9 @@ namespace isobar {
 
 /// One floor, in the map frame. `lowest_m` … `highest_m` is the ground that was driven level.
 struct Floor {
-  int number =
-      0;  ///< 0: the floor nearest to where the run began; the next known one up: +1, or more where the distance is
-      ///< a multiple of the building's storeys
+  /// 0: the floor nearest to where the run began; the next known one up: +1, or more where the distance is a multiple of
+  /// the building's storeys.
+  int number = 0;
   double height_m = 0.0;  ///< of the ground, mean
   double lowest_m = 0.0;
   double highest_m = 0.0;
