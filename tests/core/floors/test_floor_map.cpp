@@ -95,7 +95,8 @@ TEST_CASE("a tile that comes again replaces its points, and an empty one removes
 
 TEST_CASE("beyond the limit of points only the ground of the farthest tiles is kept, and the floors stay") {
   const Scene scene = two_floors();
-  FloorMap map(GridConfig{}, {.points = scene.points.size() * 7 / 10, .places = 400'000, .grid_cells = 7'600.0});
+  FloorMap map(GridConfig{},
+               {.points = scene.points.size() * 7 / 10, .places = 400'000, .grid_cells = 7'600.0});
   add_tiles(scene, map);
   for (const Eigen::Vector3d& place : scene.path) map.drive_to(place);
   map.find();
