@@ -9,6 +9,7 @@
 
 #include "config/sources.hpp"
 #include "core/estimates.hpp"
+#include "core/floors/grid_config.hpp"
 #include "core/geometry.hpp"
 #include "core/loops/loop_config.hpp"
 #include "core/map/map_config.hpp"
@@ -150,6 +151,14 @@ struct RealtimeSettings {
   double prior_wait_ms = 50.0;             ///< see ScanQueueConfig
 };
 
+/// [floors]
+struct FloorSettings {
+  bool enabled = true;
+  double interval_s = 1.0;
+  double cpu_share = 0.2;
+  GridConfig grid;
+};
+
 struct Config {
   Role role = Role::kRobot;
   Method method = Method::kAdaptive;
@@ -170,6 +179,7 @@ struct Config {
   MapConfig map;
   MapFileSettings map_files;
   LoopConfig loops;
+  FloorSettings floors;
 };
 
 }  // namespace isobar

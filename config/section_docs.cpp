@@ -73,6 +73,7 @@ constexpr auto kDocs = std::to_array<Doc>({
     {"limits", "Plausibility limits of the sensor samples. Samples beyond them are refused and counted."},
     {"registration", "Preparation of a scan, matching to the map, solving and acceptance."},
     {"map", "Size and density of the local map, and when it is updated."},
+    {"floors", "Floors of the building, and the occupancy grid of the one that the robot is on."},
     {"loops", "Places that are seen again, and the trajectory that is corrected by them."},
 });
 

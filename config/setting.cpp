@@ -74,6 +74,7 @@ std::vector<Setting> settings_of(Config& config) {
   add_registration_settings(config.registration, settings);
   add_map_settings(config.map, config.map_files, settings);
   add_loop_settings(config.loops, settings);
+  add_floor_settings(config.floors, settings);
   return settings;
 }
 

@@ -104,6 +104,7 @@ void add_motion_settings(PriorConfig& prior, std::vector<Setting>& settings);
 void add_height_settings(HeightConfig& height, std::vector<Setting>& settings);
 void add_registration_settings(RegistrationConfig& registration, std::vector<Setting>& settings);
 void add_loop_settings(LoopConfig& loops, std::vector<Setting>& settings);
+void add_floor_settings(FloorSettings& floors, std::vector<Setting>& settings);
 void add_map_settings(MapConfig& map, MapFileSettings& files, std::vector<Setting>& settings);
 
 }  // namespace isobar

@@ -7,8 +7,9 @@
 //   wheel┤                               ▲                 └─▶ registered scans ─▶ map
 //   base ┘                               └────────────────────── snapshots ─────────┘
 //
-// Registered scans also go to loops, which corrects the trajectory by places that are seen again, and to place, which
-// searches a robot that does not know its place in the whole map.
+// Registered scans also go to loops, which corrects map and trajectory by places that are seen again, and to place, which
+// searches a robot that does not know its place in the whole map; poses and points of the map to floors, which tells the
+// floor and makes its grid.
 //
 // Every arrow is a topic in shared memory (ipc/topics.hpp), except the snapshot, which stays inside the
 // process.
@@ -26,6 +27,7 @@
 #include "daemon/check_thread.hpp"
 #include "daemon/configuration.hpp"
 #include "daemon/contradictions.hpp"
+#include "daemon/floor_thread.hpp"
 #include "daemon/graph.hpp"
 #include "daemon/health.hpp"
 #include "daemon/imu_source.hpp"
@@ -66,7 +68,7 @@ class RobotGraph final : public Graph {
         black_box_(black_box::BlackBox::make(config)),
         files_(config),
         map_(stages_.map, stages_.T_base_lidar, config.output.cloud_interval_s, files_.maps(), files_.start(),
-             scheduling_.map),
+             scheduling_.map, config.floors.enabled ? &floor_feed_ : nullptr),
         registration_(stages_, map_.snapshots(), scan_queue_config(config.realtime),
                       scheduling_.registration),
         prior_(stages_.prior, scheduling_.prior),
@@ -88,6 +90,12 @@ class RobotGraph final : public Graph {
                    ? std::make_unique<LoopThread>(stages_, files_.loop_files(config), map_, scheduling_.loops)
                    : nullptr),
         place_(stages_, files_, map_, registration_, scheduling_.place),
+        floors_(config.floors.enabled
+                    ? std::make_unique<FloorThread>(
+                          config.floors, floor_feed_,
+                          [this](std::uint32_t session) { return files_.maps().folder_of(session); },
+                          scheduling_.floors)
+                    : nullptr),
         output_(files_.checkpoint_file().empty()
                     ? nullptr
                     : std::make_unique<OutputThread>(
@@ -104,6 +112,7 @@ class RobotGraph final : public Graph {
     workers_.add(check_.worker(), Watch::kNo);
     if (loops_) workers_.add(loops_->worker(), Watch::kNo);
     workers_.add(place_.worker(), Watch::kNo);
+    if (floors_) workers_.add(floors_->worker(), Watch::kNo);
     workers_.add(map_.worker());
     workers_.add(registration_.worker());
     workers_.add(prior_.worker());
@@ -171,6 +180,7 @@ class RobotGraph final : public Graph {
   }
   void fill_health(std::int64_t now_ns, ipc::HealthReport& report) override {
     monitor_.fill(status(now_ns), report);
+    if (floors_) add_floor(floors_->status(), report);
     if (black_box_) black_box_->fill_health(report);
   }
   [[nodiscard]] Apply apply_of(const Setting& setting) const override { return setting.apply; }
@@ -225,6 +235,7 @@ class RobotGraph final : public Graph {
   RunDescriptionPublisher description_;
   std::unique_ptr<black_box::BlackBox> black_box_;
   RunFiles files_;
+  FloorFeed floor_feed_;
   MapThread map_;
   RegistrationThread registration_;
   PriorThread prior_;
@@ -236,6 +247,7 @@ class RobotGraph final : public Graph {
   CheckThread check_;
   std::unique_ptr<LoopThread> loops_;  ///< null: switched off, or no folder for what it finds
   PlaceThread place_;
+  std::unique_ptr<FloorThread> floors_;  ///< null: switched off
   std::unique_ptr<OutputThread> output_;
   HealthMonitor monitor_;
   WorkerGroup workers_;  ///< last: stops all threads before the stages are destroyed

@@ -25,6 +25,8 @@ class MapStores {
   [[nodiscard]] bool configured() const { return !first_.empty(); }
   /// Folder of the first map frame.
   [[nodiscard]] const std::filesystem::path& folder() const { return first_; }
+  /// Folder of a map frame; empty when none is configured. Any thread.
+  [[nodiscard]] std::filesystem::path folder_of(std::uint32_t session) const;
   /// Number of the newest map frame that has a folder; 0: none.
   [[nodiscard]] std::uint32_t newest_session() const;
 
@@ -41,8 +43,6 @@ class MapStores {
     if (read_only_) return &*read_only_;
     return store_.get();
   }
-  /// Folder of the map of a frame. Any thread.
-  [[nodiscard]] std::filesystem::path folder_of(std::uint32_t session) const;
   [[nodiscard]] const MapHeader& header() const { return header_; }
   /// Opens the present store anew, in a new folder, after its folder was deleted, with the tiles that can
   /// still be read.

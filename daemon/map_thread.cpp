@@ -32,7 +32,7 @@ std::unique_ptr<LocalMap> loaded_map(const MapConfig& config, const Eigen::Isome
 }  // namespace
 
 MapThread::MapThread(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, double cloud_interval_s,
-                     MapStores& maps, const RunStart& start, ThreadSettings settings)
+                     MapStores& maps, const RunStart& start, ThreadSettings settings, FloorFeed* floors)
     : config_(config),
       T_base_lidar_(T_base_lidar),
       maps_(maps),
@@ -40,6 +40,7 @@ MapThread::MapThread(const MapConfig& config, const Eigen::Isometry3d& T_base_li
       snapshots_(map_->snapshot()),
       scans_(ipc::topics::kRegisteredScan),
       cloud_(cloud_interval_s),
+      floors_(floors),
       waiter_({&scans_.raw()}),
       deadline_(settings.deadline_ms),
       worker_(std::move(settings), waiter_, [this] { loop(); }) {}
@@ -95,6 +96,7 @@ void MapThread::add(const RegisteredScan& scan) noexcept {
   }
   deadline_.note(scan.handed_over_ns, RobotClock::now_ns());
   cloud_.step(*map_, maps_.current(), scan.pose);
+  if (floors_ != nullptr) floors_->step(*map_, maps_.current(), scan.pose.T_map_base.translation());
 }
 
 // The old map is kept as it is; the new one begins empty, with a folder of its own.

@@ -9,6 +9,7 @@
 #include "core/map/local_map.hpp"
 #include "core/map/snapshot_exchange.hpp"
 #include "daemon/deadline.hpp"
+#include "daemon/floor_feed.hpp"
 #include "daemon/handover.hpp"
 #include "daemon/map_cloud.hpp"
 #include "daemon/map_stores.hpp"
@@ -36,9 +37,10 @@ struct MapStatus {
 class MapThread {
  public:
   /// @param maps keeps the tiles; used by this thread only, while it runs
+  /// @param floors gets the points of the map; null: nobody wants them. Outlives the thread
   /// @param start the map frame, and the place around which its tiles are read
   MapThread(const MapConfig& config, const Eigen::Isometry3d& T_base_lidar, double cloud_interval_s,
-            MapStores& maps, const RunStart& start, ThreadSettings settings);
+            MapStores& maps, const RunStart& start, ThreadSettings settings, FloorFeed* floors = nullptr);
 
   /// Once stopped, the whole local map is in the store.
   [[nodiscard]] Worker& worker() noexcept { return worker_; }
@@ -90,6 +92,7 @@ class MapThread {
   SnapshotExchange<MapSnapshot> snapshots_;
   ipc::Subscriber<RegisteredScan> scans_;
   MapCloudPublisher cloud_;
+  FloorFeed* floors_;  ///< null: nobody wants the points
   ipc::Waiter waiter_;
   LoggedLosses logged_;
   std::int64_t written_ns_ = 0;   ///< last write_tiles(), robot clock

@@ -31,6 +31,8 @@ std::string apply_to_this_thread(const ThreadSettings& settings) noexcept {
                  " refused: " + std::strerror(error) + " (LimitRTPRIO= or CAP_SYS_NICE allows it)";
     }
   }
+  // Of the calling thread alone, on Linux. More than before is never refused.
+  if (settings.nice > 0) setpriority(PRIO_PROCESS, 0, settings.nice);
   return refused;
 }
 

@@ -14,6 +14,7 @@ struct ThreadSettings {
   int fifo_priority = 0;     ///< SCHED_FIFO 1 … 99; 0: SCHED_OTHER
   std::vector<int> cpus{};   ///< allowed cores; empty: all
   double deadline_ms = 1e3;  ///< allowed time from input to output [ms], see Deadline
+  int nice = 0;              ///< of SCHED_OTHER, 0 … 19: others go first
 };
 
 /// Applies name and scheduling to the calling thread.

@@ -19,6 +19,7 @@ RobotScheduling robot_scheduling(const RealtimeSettings& realtime) {
       {"check", 0, realtime.map_cpus},
       {"loops", 0, realtime.map_cpus},
       {"place", 0, realtime.map_cpus},
+      {"floors", 0, realtime.map_cpus, 1e3, 10},
   };
 }
 

@@ -11,7 +11,7 @@ namespace isobar {
 /// Threads of a robot. "inertial" is the SampleThread, by the name of its configuration keys.
 struct RobotScheduling {
   ThreadSettings lidar, inertial, imu, barometer, wheels, prior, registration, map, output, check, loops,
-      place;
+      place, floors;
 };
 [[nodiscard]] RobotScheduling robot_scheduling(const RealtimeSettings& realtime);
 

@@ -135,6 +135,7 @@ void fill_floor(const ipc::CurrentFloor& floor, ipc::FloorFigures& out) {
   out.present = true;
   out.known = floor.known;
   out.number = floor.number;
+  ipc::copy_text(kFloorPlaceTexts.name(floor.place), out.place, sizeof(out.place));
   out.certainty = floor.certainty;
   out.z_m = floor.z_m;
   const std::string_view name(floor.name, strnlen(floor.name, sizeof(floor.name)));

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/floors/floor_place.hpp"
+
 namespace isobar::ipc {
 
 /// Longest name of a floor, with its terminating null [bytes].
@@ -40,9 +42,10 @@ struct CurrentFloor {
   std::uint32_t session = 1;  ///< number of the map frame
   bool known = false;         ///< false: no floor is told; number, name and z_m are then of the last one
   std::int32_t number = 0;    ///< of the floor in its building
-  double certainty = 0.0;     ///< 0 … 1, probability that the robot is on this floor
-  double z_m = 0.0;           ///< of the floor, map frame
-  char name[kFloorNameBytes] = {};  // NOLINT(modernize-avoid-c-arrays): null-terminated; may be empty
+  FloorPlace place = FloorPlace::kUnknown;  ///< kOnFloor where known
+  double certainty = 0.0;                   ///< 0 … 1, probability that the robot is on this floor
+  double z_m = 0.0;                         ///< of the floor, map frame
+  char name[kFloorNameBytes] = {};          // NOLINT(modernize-avoid-c-arrays): null-terminated; may be empty
 };
 
 }  // namespace isobar::ipc

@@ -82,6 +82,7 @@ struct FloorFigures {
   bool present = false;  ///< floors are told
   bool known = false;    ///< false: the figures are those of the last floor
   std::int32_t number = 0;
+  char place[24] = {};          // NOLINT(modernize-avoid-c-arrays): FloorPlace, "between floors"
   double certainty = kNoValue;  ///< 0 … 1
   double z_m = kNoValue;        ///< of the floor, map frame
   char name[48] = {};           // NOLINT(modernize-avoid-c-arrays): null-terminated; may be empty

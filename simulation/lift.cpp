@@ -65,8 +65,24 @@ void add_doors(std::vector<MovingBody>& bodies, double x, double y, const std::v
 
 }  // namespace
 
-LiftDrive::LiftDrive(const LiftSite& site, double start_m, Random& random)
-    : site_(site), route_({start_m, 0.0}, site.height_m, 0.0), random_(random) {}
+void cut_shaft(FloorPlan& plan, const LiftSite& site, double height_m) {
+  const double half = 0.5 * LiftSizes::kDoorWidthM;
+  const double x = site.front_m;
+  const double y = site.y_m;
+  plan.cut({{x, y - half, x + LiftSizes::kShaftWallM, y + half}, 0.0, LiftSizes::kDoorHeightM});
+  plan.cut({{x + LiftSizes::kShaftWallM, y - 1.0, x + LiftSizes::kShaftWallM + 2.5, y + 1.0},
+            0.0,
+            height_m,
+            false,
+            false});
+}
+
+LiftDrive::LiftDrive(LiftSite site, Route start, Random& random)
+    : site_(std::move(site)),
+      route_(std::move(start)),
+      random_(random),
+      storey_open_(site_.storeys_m.size(), std::vector<double>{0.0}),
+      storey_door_(site_.storeys_m.size(), 0.0) {}
 
 void LiftDrive::drive(const std::vector<Waypoint>& way) {
   route_.drive(way);
@@ -83,22 +99,21 @@ void LiftDrive::turn_round() {
   follow();
 }
 
-void LiftDrive::take_lift() {
-  const bool top = route_.pose().z_m > 0.5 * site_.height_m;
-  move_cabin_to(top ? site_.height_m : 0.0);
-  doors(top, 1.0);
+void LiftDrive::take_lift(std::size_t from, std::size_t to) {
+  move_cabin_to(site_.storeys_m[from]);
+  doors(from, 1.0);
   const double middle_m = site_.front_m + LiftSizes::kShaftWallM + kSillM + 0.5 * LiftSizes::kCabinDepthM;
-  drive({{{middle_m, 0.0}, route_.pose().z_m, 0.4, "flat"}});
+  drive({{{middle_m, site_.y_m}, route_.pose().z_m, 0.4, "flat"}});
   turn_round();
-  doors(top, 0.0);
+  doors(from, 0.0);
   const double before_m = route_.pose().z_m;
   const double cabin_m = cabin_z_m_.back();
   const std::size_t first = route_.samples().size();
-  route_.ride(top ? -site_.height_m : site_.height_m, kLiftSpeedMS, kLiftAccelerationMS2);
+  route_.ride(site_.storeys_m[to] - site_.storeys_m[from], kLiftSpeedMS, kLiftAccelerationMS2);
   for (std::size_t i = first; i < route_.samples().size(); ++i) {
     push(cabin_m + route_.samples()[i].z_m - before_m);
   }
-  doors(!top, 1.0);
+  doors(to, 1.0);
 }
 
 /// Pads the elevator's samples to the length of the robot's: the elevator stands still while the robot
@@ -110,17 +125,16 @@ void LiftDrive::follow() {
 void LiftDrive::push(double cabin_z_m) {
   cabin_z_m_.push_back(cabin_z_m);
   cabin_open_.push_back(cabin_door_);
-  top_open_.push_back(top_door_);
-  ground_open_.push_back(ground_door_);
+  for (std::size_t i = 0; i < storey_open_.size(); ++i) storey_open_[i].push_back(storey_door_[i]);
 }
 
 /// Opens (1) or closes (0) the doors of the cabin and of one storey while the robot waits.
-void LiftDrive::doors(bool top, double target) {
+void LiftDrive::doors(std::size_t storey, double target) {
   const double from = cabin_door_;
   for (double t = SplineGrid::kStepS; t <= kDoorTimeS; t += SplineGrid::kStepS) {
     const double phase = t / kDoorTimeS;
     cabin_door_ = from + (target - from) * 0.5 * (1.0 - std::cos(std::numbers::pi * phase));
-    (top ? top_door_ : ground_door_) = cabin_door_;
+    storey_door_[storey] = cabin_door_;
     wait(2.0 * SplineGrid::kStepS);
   }
   wait(random_.uniform(0.8, 1.5));
@@ -143,11 +157,13 @@ std::vector<MovingBody> LiftDrive::bodies() const {
   const std::size_t samples = cabin_z_m_.size();
   const double x = site_.front_m + LiftSizes::kShaftWallM;
   bodies.push_back({RayCaster(make_cabin()), Channel(std::vector<double>(samples, x)),
-                    Channel(std::vector<double>(samples, 0.0)), Channel(cabin_z_m_)});
+                    Channel(std::vector<double>(samples, site_.y_m)), Channel(cabin_z_m_)});
   const double landing_x = site_.front_m + 0.15;
-  add_doors(bodies, x + 0.08, 0.0, cabin_open_, cabin_z_m_);
-  add_doors(bodies, landing_x, 0.0, top_open_, std::vector<double>(samples, site_.height_m));
-  add_doors(bodies, landing_x, 0.0, ground_open_, std::vector<double>(samples, 0.0));
+  add_doors(bodies, x + 0.08, site_.y_m, cabin_open_, cabin_z_m_);
+  for (std::size_t i = storey_open_.size(); i-- > 0;) {
+    add_doors(bodies, landing_x, site_.y_m, storey_open_[i],
+              std::vector<double>(samples, site_.storeys_m[i]));
+  }
   return bodies;
 }
 

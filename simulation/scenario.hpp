@@ -59,6 +59,7 @@ struct Scenario {
 [[nodiscard]] Scenario make_three_floors(std::uint64_t seed, bool short_form);
 [[nodiscard]] Scenario make_elevator(std::uint64_t seed, bool short_form);
 [[nodiscard]] Scenario make_round_trip(std::uint64_t seed, bool short_form);
+[[nodiscard]] Scenario make_four_floors(std::uint64_t seed, bool short_form);
 [[nodiscard]] Scenario make_moulin(std::uint64_t seed, bool short_form);
 [[nodiscard]] Scenario make_stairs_demo(std::uint64_t seed, bool short_form);
 [[nodiscard]] Scenario make_hill(std::uint64_t seed, bool short_form);

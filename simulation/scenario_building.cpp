@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "simulation/corridor.hpp"
+#include "simulation/corridor_walk.hpp"
 #include "simulation/people.hpp"
 #include "simulation/scenario.hpp"
 #include "simulation/stairwell.hpp"
@@ -36,10 +37,10 @@ class Building {
   [[nodiscard]] const Stairwell& well(int storey) const { return wells_[static_cast<std::size_t>(storey)]; }
   [[nodiscard]] double floor_m(int storey) const { return storey * wells_.front().sizes().storey_m(); }
 
-  /// Appends waypoints along the corridor of a storey, with small random lateral offsets. `skip_first_m`,
-  /// `skip_last_m`: distances left out at the ends.
   void walk(std::vector<Waypoint>& way, int storey, bool forwards, double skip_first_m, double skip_last_m,
-            Random& random) const;
+            Random& random) const {
+    append_walk(way, corridor_, {floor_m(storey), forwards, skip_first_m, skip_last_m}, random);
+  }
 
  private:
   void add_storey(int index, Random& random) {
@@ -63,27 +64,6 @@ class Building {
   Corridor corridor_;
   std::vector<Stairwell> wells_;
 };
-
-void Building::walk(std::vector<Waypoint>& way, int storey, bool forwards, double skip_first_m,
-                    double skip_last_m, Random& random) const {
-  std::vector<Vector2d> corners = corridor_.corners_m;
-  if (!forwards) std::reverse(corners.begin(), corners.end());
-  corners.front() += skip_first_m * (corners[1] - corners[0]).normalized();
-  const std::size_t last = corners.size() - 1;
-  corners[last] -= skip_last_m * (corners[last] - corners[last - 1]).normalized();
-  const double speed = random.uniform(0.55, 0.75);
-  for (std::size_t i = 0; i < last; ++i) {
-    const Vector2d along = (corners[i + 1] - corners[i]).normalized();
-    const Vector2d left(-along.y(), along.x());
-    const double length = (corners[i + 1] - corners[i]).norm();
-    // The robot wanders by some centimetres around the centre line of a corridor.
-    for (double s = random.uniform(3.0, 5.0); s < length - 3.0; s += random.uniform(3.5, 6.0)) {
-      way.push_back(
-          {corners[i] + s * along + random.uniform(-0.07, 0.07) * left, floor_m(storey), speed, "flat"});
-    }
-    way.push_back({corners[i + 1], floor_m(storey), speed, "flat"});
-  }
-}
 
 /// Index after the first waypoint from `from` on that is suitable for a stop: on a flat and nearly straight
 /// stretch.

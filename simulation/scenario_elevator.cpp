@@ -40,17 +40,8 @@ Site draw_site(Random& random, bool short_form) {
   return site;
 }
 
-/// Cuts the opening of the door and the shaft behind it.
-void cut_elevator(FloorPlan& plan, const Site& site, double storey_m) {
-  const double half = 0.5 * LiftSizes::kDoorWidthM;
-  const double x = site.end_x_m;
-  plan.cut({{x, -half, x + LiftSizes::kShaftWallM, half}, 0.0, LiftSizes::kDoorHeightM});
-  plan.cut({{x + LiftSizes::kShaftWallM, -1.0, x + LiftSizes::kShaftWallM + 2.5, 1.0},
-            0.0,
-            storey_m,
-            false,
-            false});
-}
+/// The elevator, with the ground floor and the upper storey.
+LiftSite lift_of(const Site& site) { return {site.end_x_m, 0.0, {0.0, site.height_m}}; }
 
 /// Ground floor: the part behind the ramp is a plan of its own at the height of the ramp's end; the ramp
 /// replaces the floor between the two plans.
@@ -71,7 +62,7 @@ void build_ground(Mesh& mesh, const Site& site, Random& random) {
   storey.plan.cut({{x0, -half, x1, half}, 0.0, near.ceiling_m + rise, false, true});
   // No wall between the ramp and the far part, which has its own plan.
   storey.plan.cut({{x0 - 1.0, -half, x0, half}, 0.0, near.ceiling_m, false, false, true});
-  cut_elevator(storey.plan, site, site.height_m);
+  cut_shaft(storey.plan, lift_of(site), site.height_m);
   storey.plan.build(mesh, 0.0);
   mesh.quad({x0, -half, rise}, {x1, -half, 0.0}, {x1, half, 0.0}, {x0, half, rise}, Surface::kConcrete);
   Storey upper;
@@ -88,7 +79,7 @@ void build_top(Mesh& mesh, const Site& site, Random& random) {
   const double x = site.end_x_m;
   storey.taken.push_back({x, -1.5, x + 4.0, 1.5});
   add_corridor(site.corridor, storey, mesh, random);
-  cut_elevator(storey.plan, site, 2.6);
+  cut_shaft(storey.plan, lift_of(site), 2.6);
   storey.plan.build(mesh, site.height_m);
 }
 
@@ -115,18 +106,18 @@ Scenario make_elevator(std::uint64_t seed, bool short_form) {
   build_ground(mesh, site, random);
   build_top(mesh, site, random);
 
-  LiftDrive timeline({site.end_x_m, site.height_m}, random.uniform(1.5, 2.5), random);
+  LiftDrive timeline(lift_of(site), Route({random.uniform(1.5, 2.5), 0.0}, site.height_m, 0.0), random);
   const double speed = random.uniform(0.5, 0.7);
   timeline.wait(random.uniform(3.0, short_form ? 4.0 : 8.0));
   timeline.drive({{{site.end_x_m - 1.3, 0.0}, site.height_m, speed, "flat"}});
-  timeline.take_lift();
+  timeline.take_lift(1, 0);
   if (short_form) {
     timeline.drive({{{site.end_x_m - site.ramp_start_m, 0.0}, 0.0, speed, "flat"},
                     {{site.end_x_m - site.ramp_start_m - site.ramp_m, 0.0}, site.ramp_rise_m, 0.5, "ramp"},
                     {{1.5, 0.0}, site.ramp_rise_m, speed, "flat"}});
   } else {
     drive_ground_floor(timeline, site, short_form, random);
-    timeline.take_lift();
+    timeline.take_lift(0, 1);
     timeline.drive({{{random.uniform(2.0, 4.0), 0.0}, site.height_m, speed, "flat"}});
   }
   timeline.wait(2.0);

@@ -22,6 +22,7 @@
 #include "tools/commands.hpp"
 #include "tools/deviation_options.hpp"
 #include "tools/experiment_recording.hpp"
+#include "tools/floor_comparison.hpp"
 #include "tools/lidar_option.hpp"
 #include "tools/method_option.hpp"
 #include "tools/progress.hpp"
@@ -140,6 +141,11 @@ void evaluate_all(const ExperimentOptions& options, const std::filesystem::path&
   input.command = command;
   report::print_table(stdout, input.run);
   std::printf("\n");
+  if (options.request.name == "four-floors") {
+    for (const evaluation::EstimateSource& source : sources) {
+      print_floor_comparison(source.name.c_str(), compare_floors(input.run.reference, source.path));
+    }
+  }
   write_output(options.out / "report.html", report::render_report(input));
   write_output(options.out / "figures.json", report::figures_json(input.run));
   write_output(options.out / "overview.svg", report::render_overview_svg(input));

@@ -178,7 +178,9 @@ void add_experiment_all_command(CLI::App& experiment) {
   const auto [command, options] = add_subcommand<AllOptions>(
       experiment, "all", "Every scenario with several seeds and all methods, in one table", run_all);
   options.deviations.mount_error_deg = 0.5;
-  command.add_option("--scenarios", options.scenarios, "names (default: all but city-10km and city-hour)")
+  command
+      .add_option("--scenarios", options.scenarios,
+                  "names (default: all but city-10km, city-hour and four-floors)")
       ->delimiter(',');
   command.add_option("--seeds", options.seeds, "random seeds of world and sensor errors")
       ->delimiter(',')

@@ -27,7 +27,21 @@ double gap_m(const FloorLevel& a, const FloorLevel& b) {
   return std::max({a.lowest_m - b.highest_m, b.lowest_m - a.highest_m, 0.0});
 }
 
-// True if some place was driven at two heights, or a robot went up without driving: a building.
+// True if the path rises or falls by a storey on a way as short as only stairs and elevators have it. Their slope is 0.5
+// and more, with a landing between two flights still 0.25; hills and ramps that are driven have less.
+bool has_steep_storey(const std::vector<DrivenPlace>& places, double least_storey_m) {
+  constexpr double kSteep = 0.25;
+  const auto most_places = static_cast<std::size_t>(least_storey_m / kSteep / DrivenPlace::kStepM);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::size_t end = std::min(places.size(), i + most_places + 1);
+    for (std::size_t j = i + 1; j < end; ++j) {
+      if (std::abs(places[j].p_map.z() - places[i].p_map.z()) >= least_storey_m) return true;
+    }
+  }
+  return false;
+}
+
+// True if some place was driven at two heights.
 bool is_stacked(const std::vector<DrivenPlace>& places, double least_storey_m) {
   struct Range {
     double lowest_m;
@@ -91,7 +105,6 @@ Choice choose(std::vector<FloorLevel> levels, bool has_path, const FloorConfig& 
 }
 
 bool is_terrain(const Choice& choice, const std::vector<DrivenPlace>& places, const FloorConfig& config) {
-  if (is_stacked(places, config.least_storey_m)) return false;
   double level_m = 0.0;
   for (const FloorLevel& floor : choice.floors) {
     if (floor.highest_m - floor.lowest_m <= kEvenM) level_m += floor.driven_m;
@@ -100,8 +113,17 @@ bool is_terrain(const Choice& choice, const std::vector<DrivenPlace>& places, co
   return way_m >= config.least_drive_m && level_m < kLeastLevel * way_m;
 }
 
-// All heights of the path as one level, whatever their slopes.
-FloorLevel whole_path(const std::vector<DrivenPlace>& places, double base_height_m) {
+// The path until it leaves the height of its first place.
+std::vector<DrivenPlace> start_of(const std::vector<DrivenPlace>& places) {
+  const double start_m = places.front().p_map.z();
+  const auto leaves = std::find_if(places.begin(), places.end(), [start_m](const DrivenPlace& place) {
+    return std::abs(place.p_map.z() - start_m) > 0.5 * kEvenM;
+  });
+  return {places.begin(), leaves};
+}
+
+// All heights of a path as one level, whatever their slopes.
+FloorLevel one_level(const std::vector<DrivenPlace>& places, double base_height_m) {
   FloorLevel level;
   level.lowest_m = level.highest_m = places.front().p_map.z() - base_height_m;
   level.driven_m = DrivenPlace::kStepM * static_cast<double>(places.size() - 1);
@@ -121,6 +143,28 @@ double certainty_of(const FloorLevel& level, bool has_path) {
 }
 
 // Numbers from the floor nearest to the start.
+/// Height of a storey, from two floors that lie one above the other: the smallest distance that a storey can have; 0 where
+/// there is none.
+double storey_m(const std::vector<Floor>& floors) {
+  constexpr double kLowestM = 2.6;
+  constexpr double kHighestM = 5.5;
+  double storey = 0.0;
+  for (std::size_t i = 1; i < floors.size(); ++i) {
+    const double gap_m = floors[i].height_m - floors[i - 1].height_m;
+    if (gap_m >= kLowestM && gap_m <= kHighestM && (storey == 0.0 || gap_m < storey)) storey = gap_m;
+  }
+  return storey;
+}
+
+/// Storeys between two floors: more than one where an elevator has passed floors that were never driven.
+int storeys_between(const Floor& lower, const Floor& upper, double storey) {
+  constexpr double kSlack = 0.2;  // of a storey: storeys of one building differ
+  if (storey == 0.0) return 1;
+  const double count = (upper.height_m - lower.height_m) / storey;
+  const double whole = std::round(count);
+  return whole >= 2.0 && std::abs(count - whole) <= kSlack ? static_cast<int>(whole) : 1;
+}
+
 void number_floors(std::vector<Floor>& floors, double start_m) {
   const auto distance = [start_m](const Floor& floor) {
     return std::max({floor.lowest_m - start_m, start_m - floor.highest_m, 0.0});
@@ -128,7 +172,15 @@ void number_floors(std::vector<Floor>& floors, double start_m) {
   const auto zero = std::min_element(floors.begin(), floors.end(), [&](const Floor& a, const Floor& b) {
     return distance(a) < distance(b);
   });
-  for (auto at = floors.begin(); at != floors.end(); ++at) at->number = static_cast<int>(at - zero);
+  if (zero == floors.end()) return;
+  const double storey = storey_m(floors);
+  zero->number = 0;
+  for (auto at = zero; at + 1 != floors.end(); ++at) {
+    (at + 1)->number = at->number + storeys_between(*at, *(at + 1), storey);
+  }
+  for (auto at = zero; at != floors.begin(); --at) {
+    (at - 1)->number = at->number - storeys_between(*(at - 1), *at, storey);
+  }
 }
 
 Floor floor_of(const FloorLevel& level, bool has_path) {
@@ -155,10 +207,12 @@ Floors find_floors(const GroundColumns& ground, std::span<const Eigen::Vector3d>
                                             : levels_of_ground(ground, config.least_storey_m);
   measure_ground(ground, levels);
   Choice choice = choose(std::move(levels), has_path, config);
-  const bool terrain = has_path && is_terrain(choice, places, config);
+  const bool building =
+      is_stacked(places, config.least_storey_m) || has_steep_storey(places, config.least_storey_m);
+  const bool terrain = has_path && !building && is_terrain(choice, places, config);
   const bool assumed = has_path && choice.floors.empty();
   if (terrain || assumed) {
-    choice = {{whole_path(places, result.base_height_m)}, {}};
+    choice = {{one_level(building ? start_of(places) : places, result.base_height_m)}, {}};
   }
   measure_ground(ground, choice.floors);
   for (const FloorLevel& level : choice.floors) {

@@ -15,8 +15,24 @@ constexpr double kBesideM = 5.0;          // the map ends about this far beyond 
 constexpr double kBesideWeight = 0.3;     // of a floor that is not known at this place in plan
 constexpr double kPerRootTwoPi = 0.3989;  // 1 / sqrt(2 pi)
 
+constexpr double kHalfLevelM = 0.4;  // to its height
+
 double distance_m(const Floor& floor, double ground_m) {
   return std::max({floor.lowest_m - ground_m, ground_m - floor.highest_m, 0.0});
+}
+
+/// @param on_any probability of being on any floor
+FloorPlace place_of(const Floors& floors, double ground_m, double certainty, double on_any) {
+  if (certainty >= 0.5) return FloorPlace::kOnFloor;
+  if (on_any >= 0.5) return FloorPlace::kUnknown;
+  // A level that lies a storey from all floors is one that is not driven enough yet.
+  const bool is_near = std::any_of(
+      floors.floors.begin(), floors.floors.end(),
+      [ground_m](const Floor& floor) { return distance_m(floor, ground_m) < FloorConfig().least_storey_m; });
+  const bool on_half_level = std::any_of(
+      floors.half_levels.begin(), floors.half_levels.end(),
+      [ground_m](const HalfLevel& level) { return std::abs(level.height_m - ground_m) < kHalfLevelM; });
+  return is_near && on_half_level ? FloorPlace::kHalfLevel : FloorPlace::kBetween;
 }
 
 }  // namespace
@@ -63,6 +79,7 @@ FloorGuess floor_at(const Floors& floors, const Eigen::Vector3d& p_map_base, dou
   }
   const bool usable = guess.floor != nullptr && std::isfinite(ground_m) && std::isfinite(s);
   guess.certainty = usable ? std::max(best, 0.0) / sum : 0.0;
+  if (usable) guess.place = place_of(floors, ground_m, guess.certainty, 1.0 - kBetweenPerM / sum);
   return guess;
 }
 

@@ -6,11 +6,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/floors/floor_place.hpp"
+
 namespace isobar {
 
 /// One floor, in the map frame. `lowest_m` … `highest_m` is the ground that was driven level.
 struct Floor {
-  int number = 0;         ///< 0: the floor nearest to where the run began; the next known one up: +1
+  /// 0: the floor nearest to where the run began; the next known one up: +1, or more where the distance is a multiple of
+  /// the building's storeys.
+  int number = 0;
   double height_m = 0.0;  ///< of the ground, mean
   double lowest_m = 0.0;
   double highest_m = 0.0;
@@ -61,7 +65,8 @@ struct FloorConfig {
 /// The floor at a place. `floor` is null without floors.
 struct FloorGuess {
   const Floor* floor = nullptr;
-  double certainty = 0.0;  ///< 0 … 1: near 0 between floors, on a ramp or in an elevator
+  double certainty = 0.0;                   ///< 0 … 1: near 0 between floors, on a ramp or in an elevator
+  FloorPlace place = FloorPlace::kUnknown;  ///< kOnFloor from a certainty of 0.5 on
 };
 
 /// Floor of a robot whose base_link is at `p_map_base` [m], of a height with standard deviation `sigma_m`.

@@ -29,7 +29,8 @@ ColumnIndex GroundColumns::column_of(const Eigen::Vector3d& p_map) {
 
 void GroundColumns::add(std::span<const MapPoint> points) {
   for (const MapPoint& point : points) {
-    if (!is_upward(point) || !(point.p_map.cwiseAbs().maxCoeff() < kFarthestM)) continue;
+    if (!is_upward(point) || !point.p_map.allFinite()) continue;
+    if (point.p_map.cwiseAbs().maxCoeff() >= kFarthestM) continue;
     pending_.push_back({column_of(point.p_map), static_cast<float>(point.p_map.z()), 1});
   }
   if (pending_.size() > kMostPending) compress();

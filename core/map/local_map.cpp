@@ -234,6 +234,10 @@ void LocalMap::append_points(std::vector<MapPoint>& points) const {
   }
 }
 
+void LocalMap::append_points(const TileKey& key, std::vector<MapPoint>& points) const {
+  if (const MapTile* tile = find_tile(key)) tile->append_points(cell_m_, points);
+}
+
 std::size_t LocalMap::cell_count() const {
   std::size_t count = 0;
   for (const auto& [key, tile] : tiles_) {

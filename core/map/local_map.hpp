@@ -48,6 +48,11 @@ class LocalMap {
   /// Appends every point in memory, sorted: equal input gives equal output.
   void append_points(std::vector<MapPoint>& points) const;
 
+  /// Appends the points of one tile in memory; nothing for another one.
+  void append_points(const TileKey& key, std::vector<MapPoint>& points) const;
+  /// Keys of the tiles in memory, sorted by x, y, z.
+  [[nodiscard]] std::vector<TileKey> tile_keys() const { return TileKey::sorted(tiles_); }
+
   /// Writes every tile in memory to the storage, for the end of a run.
   void store_all();
   /// Writes some of the tiles whose planes have changed since they were last written, so that a crash loses

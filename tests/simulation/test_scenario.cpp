@@ -4,7 +4,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <string>
 
@@ -78,7 +80,8 @@ TEST_CASE("in every building, the robot stays clear of walls and people and on t
        {Case{make_three_floors, true}, Case{make_three_floors, false}, Case{make_stairs_demo, false},
         Case{make_stairs_demo, true}, Case{make_elevator, true}, Case{make_elevator, false},
         Case{make_stairs, true}, Case{make_stairs, false}, Case{make_corridor, true},
-        Case{make_corridor, false}, Case{make_parking, true}, Case{make_parking, false}}) {
+        Case{make_corridor, false}, Case{make_parking, true}, Case{make_parking, false},
+        Case{make_four_floors, true}}) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const Scenario scenario = test.make(seed, test.short_form);
       CAPTURE(scenario.description);
@@ -92,6 +95,49 @@ TEST_CASE("in every building, the robot stays clear of walls and people and on t
       CHECK(height.highest < 0.25);
     }
   }
+}
+
+TEST_CASE("four-floors has four storeys whose walls and furniture are equal, and visits all of them") {
+  const Scenario scenario = make_four_floors(3, true);
+  double highest_m = 0.0;
+  double farthest_m = 0.0;
+  for (const RawPose& pose : scenario.raw) {
+    highest_m = std::max(highest_m, pose.z_m);
+    farthest_m = std::max(farthest_m, pose.x_m);
+  }
+  const double storey_m = highest_m / 3.0;
+  const double shaft_m = farthest_m - 1.6;  // the robot stands in the middle of the cabin
+  std::array<int, 4> visited{};
+  int rays = 0;
+  int different = 0;
+  for (std::size_t i = 0; i < scenario.raw.size(); i += 50) {
+    const RawPose& pose = scenario.raw[i];
+    const double storeys = pose.z_m / storey_m;
+    if (std::abs(storeys - std::round(storeys)) < 0.01) {
+      ++visited.at(static_cast<std::size_t>(std::lround(storeys)));
+    }
+    if (pose.x_m < 1.0 || pose.x_m > shaft_m || pose.z_m > 0.01) continue;
+    for (int k = 0; k < 36; ++k) {
+      const double angle = k * std::numbers::pi / 18.0;
+      const Eigen::Vector3f direction =
+          Vector3d(std::cos(angle), std::sin(angle), -0.1 + 0.01 * k).normalized().cast<float>();
+      const Vector3d eye(pose.x_m, pose.y_m, 0.6);
+      const Hit here = scenario.world.standing().cast(eye.cast<float>(), direction, 8.0F);
+      const double hit_m = eye.x() + static_cast<double>(here.distance_m * direction.x());
+      // Stairs and shaft lead on at some storeys and end at others.
+      if (!here.found || hit_m < 0.1 || hit_m > shaft_m) continue;
+      for (int storey = 1; storey < 4; ++storey) {
+        const Vector3d above = eye + Vector3d(0.0, 0.0, storey * storey_m);
+        const Hit there = scenario.world.standing().cast(above.cast<float>(), direction, 8.0F);
+        ++rays;
+        if (std::abs(there.distance_m - here.distance_m) > 0.05F)
+          ++different;  // the height of a storey is known to some mm
+      }
+    }
+  }
+  CHECK(rays > 1'000);
+  CHECK(different < rays / 200);  // rays that graze an edge
+  for (const int count : visited) CHECK(count > 0);
 }
 
 TEST_CASE("three-floors is the paper's run: 311 m of corridors, 12 m of height, a long featureless stretch") {

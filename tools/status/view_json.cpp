@@ -85,11 +85,8 @@ Json map_json(const ipc::ServiceStatus& status) {
 
 Json floor_json(const ipc::FloorFigures& floor) {
   if (!floor.present) return nullptr;
-  return {{"known", floor.known},
-          {"number", floor.number},
-          {"name", floor.name},
-          {"certainty", floor.certainty},
-          {"z_m", floor.z_m}};
+  return {{"known", floor.known}, {"number", floor.number},       {"name", floor.name},
+          {"place", floor.place}, {"certainty", floor.certainty}, {"z_m", floor.z_m}};
 }
 
 }  // namespace

@@ -121,7 +121,11 @@ std::string floor_row(const ipc::FloorFigures& floor) {
   if (!floor.present) return {};
   const std::string which =
       floor.name[0] == '\0' ? std::to_string(floor.number) : fmt::format("{} ({})", floor.number, floor.name);
-  if (!floor.known) return row("floor", fmt::format("not known; last: {}", which));
+  if (!floor.known && std::isnan(floor.z_m)) return row("floor", "none known yet");
+  if (!floor.known) {
+    return row("floor",
+               fmt::format("{}; last: {}", floor.place[0] == '\0' ? "not known" : floor.place, which));
+  }
   return row("floor", fmt::format("{}, certain to {}", which, figure(100.0 * floor.certainty, 0, " %")));
 }
 

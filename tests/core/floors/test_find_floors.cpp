@@ -80,6 +80,56 @@ TEST_CASE("a half-storey landing and a staircase are no floors") {
   CHECK(found.floors[1].height_m == doctest::Approx(3.0).epsilon(0.02));
 }
 
+TEST_CASE(
+    "floors that an elevator has passed are counted where the building tells its storeys, and only there") {
+  struct Case {
+    std::vector<double> heights;  // in the order in which they are driven
+    std::vector<int> numbers;     // ascending
+  };
+  for (const Case& test : {Case{{0.0, 3.4, 10.3}, {0, 1, 3}},     // 2.03 storeys
+                           Case{{10.3, 0.0, 3.4}, {-3, -2, 0}},   // from the top
+                           Case{{0.0, 4.6, 7.8}, {0, 1, 2}},      // a tall ground floor: 1.44 storeys
+                           Case{{0.0, 10.5}, {0, 1}},             // nothing tells the storeys
+                           Case{{0.0, 3.2, 11.2}, {0, 1, 2}}}) {  // 2.5 storeys
+    Scene scene(0.01);
+    for (const double z : test.heights) {
+      scene.add_ground(0.0, 0.0, 20.0, 4.0, z);
+      scene.drive_to({2.0, 2.0, z});
+      scene.drive_to({18.0, 2.0, z});
+      scene.drive_to({2.0, 2.0, z});
+    }
+    const Floors found = floors_of(scene);
+    REQUIRE(found.floors.size() == test.numbers.size());
+    for (std::size_t i = 0; i < found.floors.size(); ++i) CHECK(found.floors[i].number == test.numbers[i]);
+  }
+}
+
+TEST_CASE(
+    "after stairs or an elevator the ground that comes is no slope of the floor below, however short that "
+    "was") {
+  for (const bool by_stairs : {true, false}) {
+    Scene scene(0.01);
+    scene.add_ground(0.0, 0.0, 6.0, 4.0, 0.0);
+    scene.drive_to({1.0, 2.0, 0.0});
+    scene.drive_to({5.0, 2.0, 0.0});
+    if (by_stairs) {
+      scene.drive_to({8.0, 2.0, 1.6});
+      scene.drive_to({9.0, 2.0, 1.6});
+      scene.drive_to({9.0, 3.5, 1.6});
+      scene.drive_to({8.0, 3.5, 1.6});
+      scene.drive_to({5.0, 3.5, 3.2});
+    } else {
+      scene.drive_to({5.0, 2.0, 3.2});
+    }
+    scene.drive_to({5.0, 4.0, 3.2});
+    const Floors found = floors_of(scene);
+    REQUIRE(found.floors.size() == 1);
+    CHECK_FALSE(found.floors[0].is_terrain);
+    CHECK(found.floors[0].highest_m < 0.5);
+    CHECK(floor_at(found, scene.path.back(), 0.05).place == FloorPlace::kBetween);
+  }
+}
+
 TEST_CASE("a mezzanine is a half level of its own height, and changes no number") {
   Scene scene(0.01);
   scene.add_ground(0.0, 0.0, 30.0, 10.0, 0.0);

@@ -58,6 +58,17 @@ TEST_CASE(
   CHECK(floor_at({}, {0.0, 0.0, 0.0}, 0.05).floor == nullptr);
 }
 
+TEST_CASE("a place is on a floor, on a half level, between floors, or unknown where the height is") {
+  Floors floors = three();
+  floors.half_levels.push_back({1.5, 3.0, 6.0});
+  CHECK(floor_at(floors, {5.0, 5.0, 3.3}, 0.05).place == FloorPlace::kOnFloor);
+  CHECK(floor_at(floors, {5.0, 5.0, 1.8}, 0.05).place == FloorPlace::kHalfLevel);
+  CHECK(floor_at(floors, {5.0, 5.0, 1.1}, 0.05).place == FloorPlace::kBetween);
+  CHECK(floor_at(floors, {5.0, 5.0, 1.8}, 5.0).place == FloorPlace::kUnknown);  // 3 m are within one sigma
+  CHECK(floor_at({}, {5.0, 5.0, 1.8}, 0.05).place == FloorPlace::kUnknown);
+  CHECK(floor_at(floors, {5.0, 5.0, NAN}, 0.05).place == FloorPlace::kUnknown);
+}
+
 TEST_CASE("of two floors of nearly one height, the one that is known at the place is told") {
   Floors floors = three();
   floors.floors[1].extent_m = {Eigen::Vector2d(100.0, 0.0), Eigen::Vector2d(120.0, 20.0)};
