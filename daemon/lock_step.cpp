@@ -130,9 +130,9 @@ void LockStep::register_admissible() {
     registration_.register_scan(*scan, *map_->snapshot(), registered_);
     spare_.push_back(std::move(scan));
     ++scans_;
+    find_place();
     insert_scan();
     loops_.add_scan(registered_);
-    find_place();
   }
 }
 

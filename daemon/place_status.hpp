@@ -31,12 +31,14 @@ struct PlaceStatus {
   static constexpr std::size_t kMostHypotheses = 16;
 
   PlaceState state = PlaceState::kIdle;
-  bool lost = false;     ///< searched because the robot is lost
-  bool carried = false;  ///< searched because it may have been carried away; neither: because it has just started
+  bool lost = false;  ///< searched because the robot is lost
+  bool carried =
+      false;  ///< searched because it may have been carried away; neither: because it has just started
   bool height_is_known =
       false;  ///< by air pressure in the datum of the map; else every level of ground is searched
   std::uint64_t searches = 0;  ///< since the start
   std::uint64_t refused = 0;   ///< places found that the registration did not confirm
+  std::uint64_t given_up = 0;  ///< times that a new map frame was asked for
   std::uint64_t found = 0;     ///< places found
   double search_s = 0.0;       ///< CPU time of the last search
   double waited_s = 0.0;       ///< since the place is unknown
