@@ -37,14 +37,17 @@ constexpr double kLongestWayM = 40.0;
 constexpr double kLongestSearchS = 120.0;
 constexpr double kLongestBlindS = 30.0;
 constexpr int kUnknownSearches = 2;
+// Fit of a place that is tried. Right places of second sessions fit to 0.88 … 0.97, the best one of another building to 0.63.
+constexpr double kLeastFit = 0.75;
 // Error of the height by air pressure in the datum of the map, 1 sigma: zones of ventilation, doors, noise. The largest one
 // that still tells one slab.
 constexpr double kLeastHeightSigmaM = 0.15;
 constexpr double kLargestHeightSigmaM = 0.33;
 // The same where weather and height cannot be told apart.
 constexpr double kUnknownHeightM = 10.0;
-// Height above the highest and below the lowest ground of the map that is none of its.
-constexpr double kOutsideMapM = 3.0;
+// Height above the highest and below the lowest part of the map from which the pressure is that of another base station, and not
+// of a floor that the map does not have.
+constexpr double kOutsideMapM = 25.0;
 struct Extent {
   double low_m = 0.0;
   double high_m = 0.0;
@@ -213,6 +216,7 @@ void PlaceStage::search(const PoseEstimate& pose) {
   T_odom_asked_ = T_odom_level;
   asked_ns_ = pose.stamp_ns;
   ++status_.searches;
+  status_.fit = result.candidates.empty() ? 0.0 : result.candidates.front().fit.score();
   status_.search_s = 1e-3 * timer.elapsed_ms();
   status_.carried ? take_carried(result, pose) : take(result, pose.stamp_ns);
 }
@@ -237,7 +241,8 @@ SlabHeight PlaceStage::height() {
   const bool differential = prior_.height_source == HeightSource::kDifferential;
   const double z_m = height_is_of_map_ ? z_above_height_m_ + prior_.height_m : last_z_m_;
   const bool inside = z_m > extent.low_m - kOutsideMapM && z_m < extent.high_m + kOutsideMapM;
-  status_.height_is_known = height_is_of_map_ && inside && (differential || status_.lost || status_.carried);
+  status_.height_is_known =
+      height_is_of_map_ && (status_.lost || status_.carried || (inside && differential));
   if (status_.height_is_known) {
     const double sigma_m = std::sqrt(std::max(prior_.height_variance_m2, 0.0) + squared(kLeastHeightSigmaM));
     return {z_m, std::min(sigma_m, kLargestHeightSigmaM)};
@@ -248,7 +253,8 @@ SlabHeight PlaceStage::height() {
 
 void PlaceStage::take(const ColdStartResult& result, std::int64_t stamp_ns) {
   status_.hypothesis_count = 0;
-  switch (result.verdict) {
+  const bool fits_badly = result.verdict == ColdStartVerdict::kFound && status_.fit < kLeastFit;
+  switch (fits_badly ? ColdStartVerdict::kUnknown : result.verdict) {
     case ColdStartVerdict::kFound: {
       const Eigen::Isometry3d& T_map_level = result.candidates.front().T_map_level;
       tell(T_map_level * T_odom_asked_.inverse(Eigen::Isometry), stamp_ns);

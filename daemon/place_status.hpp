@@ -40,6 +40,7 @@ struct PlaceStatus {
   std::uint64_t refused = 0;   ///< places found that the registration did not confirm
   std::uint64_t given_up = 0;  ///< times that a new map frame was asked for
   std::uint64_t found = 0;     ///< places found
+  double fit = 0.0;            ///< share of the scans that the best place explains, 0 … 1
   double search_s = 0.0;       ///< CPU time of the last search
   double waited_s = 0.0;       ///< since the place is unknown
   double driven_m = 0.0;       ///< the same, by odometry
