@@ -136,9 +136,9 @@ void LockStep::register_admissible() {
     registration_.register_scan(*scan, *map_->snapshot(), registered_);
     spare_.push_back(std::move(scan));
     ++scans_;
+    find_place();
     insert_scan();
     if (!localises_) exchange_map(loops_.add_scan(registered_));
-    find_place();
   }
 }
 

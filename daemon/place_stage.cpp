@@ -11,6 +11,7 @@
 #include "core/squared.hpp"
 #include "core/stamp.hpp"
 #include "daemon/cpu_time.hpp"
+#include "daemon/place_frames.hpp"
 
 namespace isobar {
 
@@ -36,26 +37,17 @@ constexpr double kLongestWayM = 40.0;
 constexpr double kLongestSearchS = 120.0;
 constexpr double kLongestBlindS = 30.0;
 constexpr int kUnknownSearches = 2;
+// Fit of a place that is tried. Right places of second sessions fit to 0.88 … 0.97, the best one of another building to 0.63.
+constexpr double kLeastFit = 0.75;
 // Error of the height by air pressure in the datum of the map, 1 sigma: zones of ventilation, doors, noise. The largest one
 // that still tells one slab.
 constexpr double kLeastHeightSigmaM = 0.15;
 constexpr double kLargestHeightSigmaM = 0.33;
 // The same where weather and height cannot be told apart.
 constexpr double kUnknownHeightM = 10.0;
-// Height above the highest and below the lowest ground of the map that is none of its.
-constexpr double kOutsideMapM = 3.0;
-
-// The level frame of a pose: its origin and heading.
-Eigen::Isometry3d levelled(const Eigen::Isometry3d& T) {
-  Eigen::Isometry3d level = T;
-  level.linear() = rotation_about_z(yaw_of(T.linear()));
-  return level;
-}
-
-Eigen::Isometry3d odometry_of(const PoseEstimate& pose) {
-  return pose.T_map_odom.inverse(Eigen::Isometry) * pose.T_map_base;
-}
-
+// Height above the highest and below the lowest part of the map from which the pressure is that of another base station, and not
+// of a floor that the map does not have.
+constexpr double kOutsideMapM = 25.0;
 struct Extent {
   double low_m = 0.0;
   double high_m = 0.0;
@@ -103,38 +95,49 @@ void PlaceStage::begin_at(const RunStart& start, bool stays) {
 
 bool PlaceStage::is_needed(const PoseEstimate& pose) const {
   const bool starts = searches_start_ && place_unknown(pose) && pose.covariance(0, 0) > 0.0;
-  return read_map_ && (starts || pose.lost == LostReason::kTurn || pose.lost == LostReason::kTilt);
+  return read_map_ &&
+         (starts || carried_ || pose.lost == LostReason::kTurn || pose.lost == LostReason::kTilt);
 }
 
 PlaceOrder PlaceStage::add_scan(const RegisteredScan& scan) {
   const PoseEstimate& pose = scan.pose;
   if (!is_needed(pose)) {
     if (began_ns_ != 0) end_search();
-    if (pose.mode == PoseMode::kRegistered && prior_.height_source != HeightSource::kNone) {
-      last_z_m_ = pose.T_map_base.translation().z();
-      z_above_height_m_ = last_z_m_ - prior_.height_m;
-      height_is_of_map_ = true;
-    }
-    return {};
+    watch(pose);
+    if (!carried_) return {};
   }
+  return continue_search(scan);
+}
+
+PlaceOrder PlaceStage::continue_search(const RegisteredScan& scan) {
+  const PoseEstimate& pose = scan.pose;
   if (began_ns_ == 0) begin_search(pose);
   status_.waited_s = seconds_between(began_ns_, pose.stamp_ns);
   const bool sees = scan.point_count >= kLeastPoints;
   if (sees) collect(scan);
   if (told_ns_ != 0) {
     if (seconds_between(told_ns_, pose.stamp_ns) < kConfirmedWithinS) return {};
-    told_ns_ = 0;
-    ++status_.refused;
-    ++unknown_;
-    status_.state = PlaceState::kUnknown;
+    note_refusal(pose);
   }
-  if (sees && is_due(pose.stamp_ns)) search(pose);
+  if (began_ns_ != 0 && sees && is_due(pose.stamp_ns)) search(pose);
+  if (began_ns_ == 0) return {};
   PlaceOrder order{std::exchange(found_, {}), false};
   if (!order.T_map_odom && told_ns_ == 0 && is_over()) {
     order.give_up = true;
+    status_.given_up += status_.state == PlaceState::kGivenUp ? 0 : 1;
     status_.state = PlaceState::kGivenUp;
   }
   return order;
+}
+
+// The registration has not confirmed the place in time. A robot that knew its place may have gone on there.
+void PlaceStage::note_refusal(const PoseEstimate& pose) {
+  told_ns_ = 0;
+  const bool went_on = status_.carried && is_at_found_place(pose);
+  status_.refused += went_on ? 0 : 1;
+  ++unknown_;
+  status_.state = PlaceState::kUnknown;
+  if (status_.carried) end_search();
 }
 
 void PlaceStage::begin_search(const PoseEstimate& pose) {
@@ -143,12 +146,19 @@ void PlaceStage::begin_search(const PoseEstimate& pose) {
   unknown_ = 0;
   status_.state = PlaceState::kCollecting;
   status_.lost = pose.lost != LostReason::kNone;
+  status_.carried = carried_ && !status_.lost;
+  looks_ = 0;
+  seen_at_.reset();
+  // Before the scans of another place are in it.
+  if (status_.carried) map_ = read_map_(pose.session);
   status_.waited_s = status_.driven_m = 0.0;
 }
 
 void PlaceStage::end_search() {
   began_ns_ = told_ns_ = 0;
   searches_start_ = searches_start_ && stays_;
+  carried_ = status_.carried = false;
+  carried_watch_.restart();
   scans_.clear();
   map_.reset();
   status_.state = PlaceState::kIdle;
@@ -176,12 +186,12 @@ bool PlaceStage::is_due(std::int64_t stamp_ns) const {
   const Eigen::Isometry3d T = T_odom_asked_.inverse(Eigen::Isometry) * levelled(scans_.back().T_odom_base);
   const bool moved =
       T.translation().head<2>().norm() >= kNextViewM || std::abs(yaw_of(T.linear())) >= kNextViewRad;
-  const bool waits = status_.state == PlaceState::kAmbiguous;
+  const bool waits = status_.state == PlaceState::kAmbiguous || status_.carried;
   return moved || (!waits && seconds_between(asked_ns_, stamp_ns) >= kNextTimeS);
 }
 
 bool PlaceStage::is_over() const {
-  if (stays_ || status_.lost) return false;
+  if (stays_ || status_.lost || status_.carried) return false;
   const bool blind = status_.state == PlaceState::kBlind || status_.state == PlaceState::kCollecting;
   return unknown_ >= kUnknownSearches || status_.driven_m > kLongestWayM ||
          status_.waited_s > kLongestSearchS || (blind && status_.waited_s > kLongestBlindS);
@@ -199,15 +209,16 @@ void PlaceStage::search(const PoseEstimate& pose) {
   fill_query(T_odom_level);
   const ColdStartInput input{*map_, query_, T_odom_level.linear().transpose() * T_odom_base.linear(),
                              height()};
-  const bool follows = status_.state == PlaceState::kAmbiguous;
+  const bool follows = status_.state == PlaceState::kAmbiguous && !status_.carried;
   const Eigen::Isometry3d T_before_now = T_odom_asked_.inverse(Eigen::Isometry) * T_odom_level;
   const ColdStartResult& result =
       follows ? cold_start_.follow(input, T_before_now) : cold_start_.locate(input);
   T_odom_asked_ = T_odom_level;
   asked_ns_ = pose.stamp_ns;
-  take(result, pose.stamp_ns);
   ++status_.searches;
+  status_.fit = result.candidates.empty() ? 0.0 : result.candidates.front().fit.score();
   status_.search_s = 1e-3 * timer.elapsed_ms();
+  status_.carried ? take_carried(result, pose) : take(result, pose.stamp_ns);
 }
 
 // Scans of a robot that drives are laid onto each other by odometry.
@@ -230,7 +241,8 @@ SlabHeight PlaceStage::height() {
   const bool differential = prior_.height_source == HeightSource::kDifferential;
   const double z_m = height_is_of_map_ ? z_above_height_m_ + prior_.height_m : last_z_m_;
   const bool inside = z_m > extent.low_m - kOutsideMapM && z_m < extent.high_m + kOutsideMapM;
-  status_.height_is_known = height_is_of_map_ && inside && (differential || status_.lost);
+  status_.height_is_known =
+      height_is_of_map_ && (status_.lost || status_.carried || (inside && differential));
   if (status_.height_is_known) {
     const double sigma_m = std::sqrt(std::max(prior_.height_variance_m2, 0.0) + squared(kLeastHeightSigmaM));
     return {z_m, std::min(sigma_m, kLargestHeightSigmaM)};
@@ -241,13 +253,11 @@ SlabHeight PlaceStage::height() {
 
 void PlaceStage::take(const ColdStartResult& result, std::int64_t stamp_ns) {
   status_.hypothesis_count = 0;
-  switch (result.verdict) {
+  const bool fits_badly = result.verdict == ColdStartVerdict::kFound && status_.fit < kLeastFit;
+  switch (fits_badly ? ColdStartVerdict::kUnknown : result.verdict) {
     case ColdStartVerdict::kFound: {
       const Eigen::Isometry3d& T_map_level = result.candidates.front().T_map_level;
-      found_ = T_map_level * T_odom_asked_.inverse(Eigen::Isometry);
-      told_ns_ = stamp_ns;
-      ++status_.found;
-      status_.state = PlaceState::kTold;
+      tell(T_map_level * T_odom_asked_.inverse(Eigen::Isometry), stamp_ns);
       break;
     }
     case ColdStartVerdict::kAmbiguous:
@@ -261,6 +271,13 @@ void PlaceStage::take(const ColdStartResult& result, std::int64_t stamp_ns) {
       status_.state = query_.can_judge() ? PlaceState::kUnknown : PlaceState::kBlind;
       break;
   }
+}
+
+void PlaceStage::tell(const Eigen::Isometry3d& T_map_odom, std::int64_t stamp_ns) {
+  found_ = T_map_odom;
+  told_ns_ = stamp_ns;
+  ++status_.found;
+  status_.state = PlaceState::kTold;
 }
 
 void PlaceStage::describe(const ColdStartResult& result) {

@@ -11,6 +11,7 @@
 #include "core/estimates.hpp"
 #include "core/place/cold_start.hpp"
 #include "core/registration/place_hint.hpp"
+#include "daemon/carried_watch.hpp"
 #include "daemon/place_status.hpp"
 #include "daemon/run_start.hpp"
 #include "daemon/stage_settings.hpp"
@@ -31,7 +32,8 @@ struct PlaceOrder {
 };
 
 /// Search of the place in the whole map, as a stage: registered scans and priors in, hints out. Works only while the
-/// registration does not know the place: after the start in a known map, and when the robot is lost. Live runs (PlaceThread)
+/// registration does not know the place: after the start in a known map, when the robot is lost, and when it may have been
+/// carried away. Live runs (PlaceThread)
 /// and replay (LockStep) run this same object. Not on the way of a scan: it allocates, and takes up to seconds. One thread.
 class PlaceStage {
  public:
@@ -55,6 +57,9 @@ class PlaceStage {
   };
 
   [[nodiscard]] bool is_needed(const PoseEstimate& pose) const;
+  void watch(const PoseEstimate& pose);
+  [[nodiscard]] PlaceOrder continue_search(const RegisteredScan& scan);
+  void note_refusal(const PoseEstimate& pose);
   void begin_search(const PoseEstimate& pose);
   void end_search();
   void collect(const RegisteredScan& scan);
@@ -64,6 +69,9 @@ class PlaceStage {
   void fill_query(const Eigen::Isometry3d& T_odom_level);
   [[nodiscard]] SlabHeight height();
   void take(const ColdStartResult& result, std::int64_t stamp_ns);
+  void tell(const Eigen::Isometry3d& T_map_odom, std::int64_t stamp_ns);
+  [[nodiscard]] bool is_at_found_place(const PoseEstimate& pose) const;
+  void take_carried(const ColdStartResult& result, const PoseEstimate& pose);
   void describe(const ColdStartResult& result);
 
   Eigen::Isometry3d T_base_lidar_;
@@ -79,6 +87,11 @@ class PlaceStage {
   bool height_is_of_map_ = false;  // z of the map is the prior's height + z_above_height_m_
   double z_above_height_m_ = 0.0;
   double last_z_m_ = 0.0;  // of the last pose in the map
+
+  CarriedWatch carried_watch_;
+  bool carried_ = false;                      // the robot may have been carried away
+  int looks_ = 0;                             // searches since then
+  std::optional<Eigen::Isometry3d> seen_at_;  // T_map_odom of the place found by the first of two looks
 
   std::int64_t began_ns_ = 0;  // of this search; 0: none
   std::int64_t told_ns_ = 0;   // of a place found, whose confirmation is awaited; 0: none

@@ -34,6 +34,7 @@ std::string ambiguous_text(const PlaceStatus& status) {
 std::string place_text(const PlaceStatus& status) {
   const std::string height =
       status.height_is_known ? "" : "; its height is not known in this map, all floors are searched";
+  if (status.carried) return "what the robot sees has changed at once while it stood: its place is searched";
   switch (status.state) {
     case PlaceState::kIdle:
       return {};

@@ -38,7 +38,9 @@ struct PlaceStatus {
       false;  ///< by air pressure in the datum of the map; else every level of ground is searched
   std::uint64_t searches = 0;  ///< since the start
   std::uint64_t refused = 0;   ///< places found that the registration did not confirm
+  std::uint64_t given_up = 0;  ///< times that a new map frame was asked for
   std::uint64_t found = 0;     ///< places found
+  double fit = 0.0;            ///< share of the scans that the best place explains, 0 … 1
   double search_s = 0.0;       ///< CPU time of the last search
   double waited_s = 0.0;       ///< since the place is unknown
   double driven_m = 0.0;       ///< the same, by odometry

@@ -191,6 +191,10 @@ void describe_place(const LockStep& pipeline, const OutputSink& sink, ReplaySumm
         (place.searches == 1 ? " search" : " searches") + " of all of it" +
         (place.refused > 0 ? ", " + std::to_string(place.refused) + " not confirmed" : ""));
   }
+  if (place.given_up > 0) {
+    summary.warnings.emplace_back(
+        "no place of the stored map fits what the robot saw at the start: it is kept, and a new map frame began");
+  }
   if (sink.unknown() > 0) {
     summary.warnings.emplace_back("no pose for " + std::to_string(sink.unknown()) +
                                   " scans: the place in the map was not known yet");

@@ -121,9 +121,9 @@ class Registration {
   /// Somebody searches the whole map. Where no scan confirms the place of resume(), the robot then waits for a hint() or
   /// for give_up_place(), instead of beginning a new map frame. Before the first scan.
   void wait_for_place(bool waits) { state_.waits_for_place = waits; }
-  /// The place cannot be found: if it is still awaited and no hint is tried, a new map frame begins with the next scan.
+  /// The place cannot be found: if it is still searched and no hint is tried, a new map frame begins with the next scan.
   /// No effect after stay_in().
-  void give_up_place() { state_.place_given_up = true; }
+  void give_up_place() { state_.place_given_up = searching() && !state_.home; }
   /// The map frame is that of a stored map for the whole run: begin_new_frame() searches the place in it anew, at `place`,
   /// which is anywhere. Before the first scan.
   void stay_in(const KnownPlace& place) { state_.home = place; }

@@ -142,7 +142,7 @@ bool Registration::start_at_place(const Prior& prior) {
 // The robot drives on by dead reckoning until somebody has found its place in the whole map, or has given it up.
 void Registration::await_place(const Prior& end, const Prediction& expected, PoseEstimate& pose) {
   state_.motion.keep_prediction(end, expected);
-  if (state_.place_given_up && !state_.home) leave_unknown_place(pose);
+  if (state_.place_given_up) leave_unknown_place(pose);
   pose.T_map_odom = pose.T_map_base * end.T_odom_base.inverse();
   state_.last = pose;
 }
@@ -166,7 +166,7 @@ void Registration::search_place(const MapSnapshot& map, const Prior& end, const 
     search_hint(map, end, expected, out);
     return;
   }
-  if (state_.awaits_place) {
+  if (state_.awaits_place || state_.place_given_up) {
     await_place(end, expected, pose);
     return;
   }

@@ -55,7 +55,9 @@ class Robot {
   /// One scan at a place, a tenth of a second later.
   PlaceOrder scan_at(const Eigen::Isometry3d& T_map_base) {
     stamp_ns_ += static_cast<std::int64_t>(kScanS * 1e9);
-    const std::vector<Eigen::Vector3f> points = world_.seen_from(T_map_base);
+    if (points_.empty() || !T_map_base.isApprox(T_seen_)) points_ = world_.seen_from(T_map_base);
+    T_seen_ = T_map_base;
+    const std::vector<Eigen::Vector3f>& points = points_;
     scan_->point_count = sees_ ? static_cast<std::uint32_t>(points.size()) : 0;
     for (std::size_t i = 0; i < scan_->point_count; ++i) {
       scan_->points[i].x_m = points[i].x();
@@ -68,11 +70,17 @@ class Robot {
     const Eigen::Isometry3d T_odom_base = level_pose_at(31.0, -7.0, 5.0, 77.0) * T_map_base;
     pose.T_map_odom = level_pose_at(-3.0, 2.0, 0.5, -30.0);
     pose.T_map_base = pose.T_map_odom * T_odom_base;
+    if (believed_) {
+      pose.T_map_base = *believed_;
+      pose.T_map_odom = pose.T_map_base * T_odom_base.inverse(Eigen::Isometry);
+    }
     Prior prior;
     prior.stamp_ns = stamp_ns_;
     prior.height_source = height_source_;
     prior.height_m = 2.0 + T_map_base.translation().z();
     prior.height_variance_m2 = 0.01;
+    prior.velocity_valid = true;
+    prior.v_base_m_s.x() = stands_ ? 0.0 : 0.5;
     stage_->add_prior(prior);
     last_ = stage_->add_scan(*scan_);
     return last_;
@@ -89,17 +97,28 @@ class Robot {
   [[nodiscard]] const PlaceStatus& status() const { return stage_->status(); }
   [[nodiscard]] const PoseEstimate& pose() const { return scan_->pose; }
   void know_place() { scan_->pose.mode = PoseMode::kRegistered; }
+  /// Where a robot believes to be that knows its place, and how much of its scans matches there.
+  void believe(const Eigen::Isometry3d& T_map_base, double overlap) {
+    believed_ = T_map_base;
+    scan_->pose.overlap = overlap;
+    scan_->pose.sampled_points = 1000;
+  }
+  void stand_on_wheels(bool stands) { stands_ = stands; }
   void see(bool sees) { sees_ = sees; }
   void lose_base_station() { height_source_ = HeightSource::kSingleBarometer; }
   [[nodiscard]] int reads() const { return reads_; }
 
  private:
   const Building& world_;
+  Eigen::Isometry3d T_seen_ = Eigen::Isometry3d::Identity();
+  std::vector<Eigen::Vector3f> points_;  // seen there: casting rays takes most of the time of these tests
   std::unique_ptr<PlaceStage> stage_;
   std::unique_ptr<RegisteredScan> scan_ = std::make_unique<RegisteredScan>();
   std::int64_t stamp_ns_ = 1'000'000'000;
   HeightSource height_source_ = HeightSource::kDifferential;
   bool sees_ = true;
+  bool stands_ = false;
+  std::optional<Eigen::Isometry3d> believed_;
   int reads_ = 0;
   PlaceOrder last_;
 };
@@ -169,8 +188,9 @@ TEST_CASE("an ambiguous place is given up after a bounded time, but not in a sto
 }
 
 TEST_CASE("a robot in another building is said to be nowhere, and given up after a second look") {
-  const Building elsewhere = two_rooms();
-  const Eigen::Isometry3d T = level_pose_at(12.0, 6.5, 0.0, 30.0);
+  Building elsewhere;  // a corridor, which is longer than the rooms of the map
+  elsewhere.add_room({0.0, 0.0, 0.0}, {25.0, 2.2, 3.0});
+  const Eigen::Isometry3d T = level_pose_at(12.0, 1.0, 0.0, 30.0);
   Robot robot(office(), elsewhere);
   for (int i = 0; i < 20; ++i) CHECK_FALSE(robot.scan_at(T).give_up);
   CHECK(robot.status().state == PlaceState::kUnknown);
@@ -220,6 +240,49 @@ TEST_CASE("without a base station all floors are searched, and those that look a
   CHECK_FALSE(alone.status().height_is_known);
   CHECK(alone.status().state == PlaceState::kAmbiguous);
   CHECK(place_text(alone.status()).ends_with("all floors are searched"));
+}
+
+TEST_CASE("a robot that stands and at once sees another place is found there, after a second look") {
+  const Building building = office();
+  const Eigen::Isometry3d T_before = level_pose_at(1.1, -0.7, 0.0, 40.0);
+  const Eigen::Isometry3d T_after = level_pose_at(14.3, 0.6, 0.0, -75.0);
+  Robot robot(building, building);
+  robot.know_place();
+  robot.stand_on_wheels(true);
+  robot.believe(T_before, 0.9);
+  CHECK_FALSE(robot.stand_at(T_before, 3.0).T_map_odom.has_value());
+  CHECK(robot.reads() == 0);
+  robot.believe(T_before, 0.3);
+  robot.stand_at(T_after, 0.1);
+  robot.believe(T_before, 0.8);  // its own scans are in the map since
+  CHECK_FALSE(robot.stand_at(T_after, 5.0).T_map_odom.has_value());
+  CHECK(robot.status().carried);
+  CHECK(robot.reads() == 1);
+  const Eigen::Isometry3d T_on = T_after * level_pose_at(1.2, 0.0, 0.0, 0.0);
+  robot.believe(T_before * level_pose_at(1.2, 0.0, 0.0, 0.0), 0.8);
+  const PlaceOrder order = robot.stand_at(T_on, 2.0);
+  REQUIRE(order.T_map_odom.has_value());
+  check_hint(order.hint_at(robot.pose()), T_on);
+}
+
+TEST_CASE("a robot that drives, or before which a door opens, is not taken to be carried away") {
+  const Building building = office();
+  const Eigen::Isometry3d T = level_pose_at(1.1, -0.7, 0.0, 40.0);
+  for (const bool stands : {false, true}) {
+    CAPTURE(stands);
+    Robot robot(building, building);
+    robot.know_place();
+    robot.stand_on_wheels(stands);
+    robot.believe(T, 0.9);
+    robot.stand_at(T, 3.0);
+    robot.believe(T, 0.3);
+    CHECK_FALSE(robot.stand_at(T, 0.1).T_map_odom.has_value());
+    CHECK(robot.status().carried == stands);
+    robot.believe(T, 0.8);
+    CHECK_FALSE(robot.stand_at(T, 2.0).T_map_odom.has_value());
+    CHECK_FALSE(robot.status().carried);
+    CHECK(robot.status().searches == (stands ? 1 : 0));
+  }
 }
 
 }  // namespace isobar::test::test_place_stage
