@@ -19,13 +19,13 @@ inline constexpr const char* kUsualLidar = "VLP-16";
 struct ScenarioRequest {
   std::string name;        ///< one of scenarios()
   std::uint64_t seed = 1;  ///< random seed of world, path and sensor errors
-  /// Another session on the same site, by the same robot and base station: other noise, turn-on errors of IMU and wheels,
-  /// weather, time, and furniture; 0: the first one.
-  std::uint64_t session_seed = 0;
   bool short_form = false;                                        ///< a reduced run of 30 to 60 s
   double stop_after_s = std::numeric_limits<double>::infinity();  ///< ends the recording at this time
   Deviations deviations{};          ///< faults asked for, besides the usual errors
   std::string lidar = kUsualLidar;  ///< model, as in lidar.model
+  /// Another session on the same site, by the same robot and base station: other noise, turn-on errors of IMU and wheels,
+  /// weather, time, and furniture; 0: the first one.
+  std::uint64_t session_seed = 0;
 };
 
 /// Name and description of a scenario.
