@@ -193,13 +193,15 @@ void describe_place(const LockStep& pipeline, const OutputSink& sink, ReplaySumm
   }
   if (place.given_up > 0) {
     summary.warnings.emplace_back(
-        "no place of the stored map fits what the robot saw at the start: it is kept, and a new map frame began");
+        "no place of the stored map fits what the robot saw at the start: it is kept, and a new map frame "
+        "began");
   }
   if (sink.unknown() > 0) {
     summary.warnings.emplace_back("no pose for " + std::to_string(sink.unknown()) +
                                   " scans: the place in the map was not known yet");
   }
-  if (const std::string text = place_text(place); !text.empty()) summary.warnings.push_back(text);
+  const std::string text = place_text(place);
+  if (!text.empty() && !place.carried) summary.warnings.push_back(text);
 }
 
 /// Feeds all events to the pipeline.

@@ -71,7 +71,9 @@ void add_place(const StatusSnapshot& now, HealthReport& report) {
   const std::string message =
       idle ? fmt::format("{} searches of the whole map, the last in {:.2f} s", place.searches, place.search_s)
            : place_text(place);
-  add_entry(report, "place", idle ? HealthLevel::kOk : HealthLevel::kWarning, message,
+  // A robot that may have been carried away registers as ever: a door that opens is no fault.
+  const bool known = idle || (place.carried && place.state != PlaceState::kTold);
+  add_entry(report, "place", known ? HealthLevel::kOk : HealthLevel::kWarning, message,
             static_cast<double>(place.hypothesis_count));
 }
 
