@@ -48,12 +48,12 @@ bool usable(const SlabHeight& height) {
   return std::abs(height.z_m) < 1e5 && height.sigma_m >= 0.0 && height.sigma_m < 1e3;
 }
 
-bool usable(const PlaceHint& hint) {
+bool usable(const SearchArea& hint) {
   return std::abs(hint.x_m) < 1e7 && std::abs(hint.y_m) < 1e7 && std::abs(hint.yaw_rad) < 1e3 &&
          (hint.sigma_m.array() > 0.0).all() && (hint.sigma_m.array() < 1e6).all() && hint.sigma_yaw_rad > 0.0;
 }
 
-SearchWindow window_of(const std::optional<PlaceHint>& hint) {
+SearchWindow window_of(const std::optional<SearchArea>& hint) {
   SearchWindow window;
   if (!hint) return window;
   const Eigen::Vector2d p(hint->x_m, hint->y_m);
@@ -72,7 +72,7 @@ ColdStart::ColdStart(const ColdStartConfig& config, const RegistrationConfig& re
       traits_(traits_of(Method::k4Dof, HeightSource::kDifferential)),
       matcher_(registration, Eigen::Vector3d::Zero()) {}
 
-const ColdStartResult& ColdStart::locate(const ColdStartInput& input, const std::optional<PlaceHint>& hint) {
+const ColdStartResult& ColdStart::locate(const ColdStartInput& input, const std::optional<SearchArea>& hint) {
   result_ = {};
   judged_.clear();
   if (input.query.can_judge() && usable(input.height) && (!hint || usable(*hint))) {
@@ -89,7 +89,7 @@ const ColdStartResult& ColdStart::locate(const ColdStartInput& input, const std:
 }
 
 void ColdStart::search_slab(const ColdStartInput& input, const SlabHeight& height,
-                            const std::optional<PlaceHint>& hint) {
+                            const std::optional<SearchArea>& hint) {
   hypotheses_.clear();
   const SearchWindow window = window_of(hint);
   if (!image_.build(input.map.structure(), height, window.box)) return;

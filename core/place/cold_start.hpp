@@ -45,8 +45,8 @@ struct ColdStartResult {
   std::size_t tried = 0;                   ///< hypotheses of the search
 };
 
-/// A pose given by a person, such as /initialpose: the search is limited to 3 sigma around it.
-struct PlaceHint {
+/// Part of the map to which a search is limited: 3 sigma around a pose that somebody names.
+struct SearchArea {
   double x_m = 0.0;
   double y_m = 0.0;
   double yaw_rad = 0.0;
@@ -83,7 +83,7 @@ class ColdStart {
   explicit ColdStart(const ColdStartConfig& config = {}, const RegistrationConfig& registration = {});
 
   /// Searches all places, or those near `hint`. A height or a hint that is not finite fits nowhere.
-  const ColdStartResult& locate(const ColdStartInput& input, const std::optional<PlaceHint>& hint = {});
+  const ColdStartResult& locate(const ColdStartInput& input, const std::optional<SearchArea>& hint = {});
   /// After a motion by odometry since the last call: `T_before_now`, pose of the query's level frame in that of the
   /// query before, a rotation about z. Candidates that do not fit any more are dropped; the verdict is kUnknown when none is
   /// left, and locate() begins anew.
@@ -98,7 +98,7 @@ class ColdStart {
   };
 
   void search_slab(const ColdStartInput& input, const SlabHeight& height,
-                   const std::optional<PlaceHint>& hint);
+                   const std::optional<SearchArea>& hint);
   void refine(const ColdStartInput& input, const SlabHeight& height);
   /// A candidate, and what speaks for it. Until judge() its weight is a logarithm of what else is known of it.
   struct Judged {

@@ -230,7 +230,7 @@ int run(const Options& options) {
       continue;
     }
     const double yaw_rad = std::atan2(truth.linear()(1, 0), truth.linear()(0, 0));
-    const PlaceHint hint{truth.translation().x(), truth.translation().y(), yaw_rad, {0.15, 0.15}, 0.03};
+    const SearchArea hint{truth.translation().x(), truth.translation().y(), yaw_rad, {0.15, 0.15}, 0.03};
     print_place(result, truth, cold_start.locate(input, hint));
   }
   tally.print();

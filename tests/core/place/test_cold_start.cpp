@@ -20,7 +20,7 @@ bool at(const PlaceCandidate& candidate, const Eigen::Isometry3d& T) {
 
 /// Result at `T_world_level` of `world`, in the map of `in_map`.
 ColdStartResult start(const Building& in_map, const Building& world, const Eigen::Isometry3d& T_world_level,
-                      double sigma_m = 0.15, const std::optional<PlaceHint>& hint = {}) {
+                      double sigma_m = 0.15, const std::optional<SearchArea>& hint = {}) {
   static PlaceQuery query;
   world.look(T_world_level, query);
   const KnownMap map = in_map.map();
@@ -153,14 +153,14 @@ TEST_CASE("a hint decides between identical rooms, and is refused where nothing 
   add_room(building, 0.0);
   add_room(building, 10.0);
   const Eigen::Isometry3d T = level_pose_at(12.6, 1.7, 0.0, 25.0);
-  const PlaceHint near{12.2, 2.1, 0.2, {0.5, 0.5}, 0.3};
+  const SearchArea near{12.2, 2.1, 0.2, {0.5, 0.5}, 0.3};
   const ColdStartResult found = start(building, building, T, 0.15, near);
   CHECK(found.verdict == ColdStartVerdict::kFound);
   REQUIRE(!found.candidates.empty());
   CHECK(at(found.candidates.front(), T));
-  const PlaceHint wrong{2.5, 2.0, 2.0, {0.5, 0.5}, 0.3};
+  const SearchArea wrong{2.5, 2.0, 2.0, {0.5, 0.5}, 0.3};
   CHECK(start(building, building, T, 0.15, wrong).verdict == ColdStartVerdict::kHintRefused);
-  const PlaceHint outside{60.0, 2.0, 0.2, {0.5, 0.5}, 0.3};
+  const SearchArea outside{60.0, 2.0, 0.2, {0.5, 0.5}, 0.3};
   CHECK(start(building, building, T, 0.15, outside).verdict == ColdStartVerdict::kHintRefused);
 }
 
@@ -176,11 +176,11 @@ TEST_CASE("a height or a hint that is no number finds nothing, and does no harm"
           ColdStartVerdict::kUnknown);
   }
   const ColdStartInput input{map, query, Eigen::Matrix3d::Identity(), {0.0, 0.15}};
-  CHECK(cold_start.locate(input, PlaceHint{nan, 0.0, 0.0, {1.0, 1.0}, 0.3}).verdict ==
+  CHECK(cold_start.locate(input, SearchArea{nan, 0.0, 0.0, {1.0, 1.0}, 0.3}).verdict ==
         ColdStartVerdict::kHintRefused);
-  CHECK(cold_start.locate(input, PlaceHint{0.0, 0.0, nan, {1.0, 1.0}, 0.3}).verdict ==
+  CHECK(cold_start.locate(input, SearchArea{0.0, 0.0, nan, {1.0, 1.0}, 0.3}).verdict ==
         ColdStartVerdict::kHintRefused);
-  CHECK(cold_start.locate(input, PlaceHint{0.0, 0.0, 0.0, {nan, 1.0}, 0.3}).verdict ==
+  CHECK(cold_start.locate(input, SearchArea{0.0, 0.0, 0.0, {nan, 1.0}, 0.3}).verdict ==
         ColdStartVerdict::kHintRefused);
 }
 
