@@ -182,7 +182,7 @@ Subcommand<MapOptions> add_part(CLI::App& map, const char* name, const char* pur
 
 void add_map_command(CLI::App& app) {
   CLI::App& map =
-      *app.add_subcommand("map", "Show, check and export the map of a run; its floors and their grids");
+      *app.add_subcommand("map", "Show, check, export and merge the maps of runs; their floors and grids");
   map.require_subcommand(1);
   add_part(map, "info", "Tiles, bytes, extent, damage", run_info);
   add_part(map, "check", "Read every tile; exit code 65 when any is damaged", run_check);
@@ -195,6 +195,7 @@ void add_map_command(CLI::App& app) {
   command.add_option("--box", options.box, "only points in the box X0 Y0 Z0 X1 Y1 Z1 [m]")->expected(6);
   add_map_floors_command(map);
   add_map_grid_command(map);
+  add_map_merge_command(map);
 }
 
 }  // namespace isobar::tools

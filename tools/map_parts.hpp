@@ -17,8 +17,9 @@ std::unique_ptr<FileTileStore> open_map(const std::filesystem::path& directory);
 /// Prints the damage found on opening; nothing without damage.
 void print_faults(const TileStoreCounters& counters);
 
-/// Add "map floors" and "map grid".
+/// Add "map floors", "map grid" and "map merge".
 void add_map_floors_command(CLI::App& map);
 void add_map_grid_command(CLI::App& map);
+void add_map_merge_command(CLI::App& map);
 
 }  // namespace isobar::tools

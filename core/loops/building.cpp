@@ -68,7 +68,15 @@ bool Building::add(const RegisteredScan& scan, const std::optional<AirHeight>& a
     chain_.forget_beyond(most_planes_);
     if (counts_.submaps % kOptimiseEvery == 0) static_cast<void>(graph_.optimise());
   }
-  return !chain_.last_key().p_base.empty() && look_for_loops(scan);
+  const KeyScan& key = chain_.last_key();
+  return !key.p_base.empty() && look_for_loops({key, chain_.holder(), scan, chain_.complete()});
+}
+
+bool Building::look_again(std::size_t holder, std::size_t key, const RegisteredScan& scan,
+                          std::size_t submaps) {
+  KeyScan sampled = chain_.submaps()[holder].keys[key];
+  take_sample(scan, SubmapConfig{}.sample_points, sampled.p_base);
+  return look_for_loops({sampled, holder, scan, std::min(submaps, chain_.complete())});
 }
 
 void Building::follow_map(const PoseEstimate& pose) {
@@ -135,20 +143,19 @@ Eigen::Isometry3d Building::T_map_submap(std::size_t number) const {
   return graph_.T_map_submap(static_cast<NodeId>(number));
 }
 
-bool Building::look_for_loops(const RegisteredScan& scan) {
-  const KeyScan& key = chain_.last_key();
+bool Building::look_for_loops(const Wanted& wanted) {
   std::vector<Loop> accepted;
   bool scan_is_set = false;
-  for (const Candidate& candidate : candidates(key)) {
-    const auto expected = guess(candidate.submap, key);
+  for (const Candidate& candidate : candidates(wanted)) {
+    const auto expected = guess(candidate.submap, wanted);
     if (!expected || !chain_.planes_of(candidate.submap, storage_)) continue;
-    if (!scan_is_set) matcher_.set_scan(scan);
+    if (!scan_is_set) matcher_.set_scan(wanted.scan);
     scan_is_set = true;
     ++counts_.tried;
-    auto loop = matcher_.match(chain_.submaps()[candidate.submap], key, *expected);
+    auto loop = matcher_.match(chain_.submaps()[candidate.submap], wanted.key, *expected);
     if (!loop) continue;
     ++counts_.matched;
-    loop->holder = chain_.holder();
+    loop->holder = wanted.holder;
     const std::vector<Loop> pair = pairs_.add(evidence_of(*loop, *expected));
     accepted.insert(accepted.end(), pair.begin(), pair.end());
   }
@@ -156,10 +163,11 @@ bool Building::look_for_loops(const RegisteredScan& scan) {
 }
 
 // Submaps of earlier visits with a key scan near this one, the nearest first.
-std::vector<Building::Candidate> Building::candidates(const KeyScan& key) {
+std::vector<Building::Candidate> Building::candidates(const Wanted& wanted) const {
   std::vector<Candidate> found;
-  const Eigen::Vector3d p_map = (T_map_submap(chain_.holder()) * key.T_submap_base).translation();
-  for (std::size_t number = 0; number < chain_.complete(); ++number) {
+  const KeyScan& key = wanted.key;
+  const Eigen::Vector3d p_map = (T_map_submap(wanted.holder) * key.T_submap_base).translation();
+  for (std::size_t number = 0; number < wanted.submaps; ++number) {
     const Submap& submap = chain_.submaps()[number];
     if ((!submap.planes && storage_ == nullptr) || key.way_m - submap.last_way_m < search_.min_way_m)
       continue;
@@ -178,11 +186,12 @@ std::vector<Building::Candidate> Building::candidates(const KeyScan& key) {
   return found;
 }
 
-std::optional<LoopGuess> Building::guess(std::size_t submap, const KeyScan& key) {
+std::optional<LoopGuess> Building::guess(std::size_t submap, const Wanted& wanted) {
   LoopGuess guess;
-  guess.T_submap_base = T_map_submap(submap).inverse() * T_map_submap(chain_.holder()) * key.T_submap_base;
+  guess.T_submap_base =
+      T_map_submap(submap).inverse() * T_map_submap(wanted.holder) * wanted.key.T_submap_base;
   const auto covariance =
-      graph_.relative_covariance(static_cast<NodeId>(submap), static_cast<NodeId>(chain_.holder()));
+      graph_.relative_covariance(static_cast<NodeId>(submap), static_cast<NodeId>(wanted.holder));
   if (!covariance) return std::nullopt;
   guess.level_sigma_m = std::sqrt(std::max((*covariance)(0, 0), (*covariance)(1, 1)));
   guess.height_sigma_m = std::sqrt((*covariance)(2, 2));

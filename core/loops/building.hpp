@@ -51,6 +51,11 @@ class Building {
   /// @return true when loops have changed corrections()
   bool add(const RegisteredScan& scan, const std::optional<AirHeight>& air);
 
+  /// Looks for loops of a key scan of continue_from() once more, to submaps 0 … `submaps` - 1: those of another run.
+  /// `scan`: its points.
+  /// @return true when loops have changed corrections()
+  bool look_again(std::size_t holder, std::size_t key, const RegisteredScan& scan, std::size_t submaps);
+
   /// Poses of all key scans, live and corrected; none without a loop, since then nothing corrects the live poses.
   [[nodiscard]] std::vector<CorrectedKey> corrections() const;
   /// Stamps of the first live poses in a map that had been moved, ascending: PoseCorrections needs them.
@@ -74,14 +79,21 @@ class Building {
     std::size_t submap;
     double distance_m;
   };
+  /// A key scan that loops are looked for, and where.
+  struct Wanted {
+    const KeyScan& key;
+    std::size_t holder;
+    const RegisteredScan& scan;
+    std::size_t submaps;  ///< the first ones
+  };
 
   void follow_map(const PoseEstimate& pose);
   void add_node(std::size_t number);
   void store(const RegisteredScan& scan, bool begins);
   [[nodiscard]] ChainLink place_of(const RegisteredScan& scan) const;
-  [[nodiscard]] std::vector<Candidate> candidates(const KeyScan& key);
-  [[nodiscard]] std::optional<LoopGuess> guess(std::size_t submap, const KeyScan& key);
-  bool look_for_loops(const RegisteredScan& scan);
+  [[nodiscard]] std::vector<Candidate> candidates(const Wanted& wanted) const;
+  [[nodiscard]] std::optional<LoopGuess> guess(std::size_t submap, const Wanted& wanted);
+  bool look_for_loops(const Wanted& wanted);
   [[nodiscard]] LoopEvidence evidence_of(const Loop& loop, const LoopGuess& guess) const;
   bool add_edge(const Loop& loop);
   bool accept(const std::vector<Loop>& loops);

@@ -7,6 +7,14 @@
 
 namespace isobar {
 
+void take_sample(const RegisteredScan& scan, std::size_t most, std::vector<Eigen::Vector3f>& sample) {
+  sample.clear();
+  const std::size_t stride = scan.point_count / most + 1;
+  for (std::size_t i = 0; i < scan.point_count; i += stride) {
+    sample.emplace_back(scan.points[i].x_m, scan.points[i].y_m, scan.points[i].z_m);
+  }
+}
+
 bool KeyScanChoice::wants(const PoseEstimate& pose) const {
   if (pose.mode == PoseMode::kPriorOnly || !pose.for_map || place_unknown(pose)) return false;
   if (!pose.T_map_base.matrix().allFinite()) return false;

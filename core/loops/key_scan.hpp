@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -30,8 +31,11 @@ struct KeyScan {
   Eigen::Isometry3d T_submap_base = Eigen::Isometry3d::Identity();  ///< in the submap that holds the key scan
   std::optional<AirHeight> air;
   std::vector<Eigen::Vector3f> p_base;  ///< sample of the points [m]; empty where no loop is measured
-  ScanHandle scan = kNoScanHandle;            ///< in the building's storage
+  ScanHandle scan = kNoScanHandle;      ///< in the building's storage
 };
+
+/// Evenly chosen points of a scan, at most `most`, in place of `sample`'s content.
+void take_sample(const RegisteredScan& scan, std::size_t most, std::vector<Eigen::Vector3f>& sample);
 
 /// Chooses key scans: half a metre or 15 degrees apart, and at a speed at which that is every scan, 0.2 s.
 class KeyScanChoice {

@@ -75,7 +75,7 @@ ChainStep SubmapChain::add(const RegisteredScan& scan, const std::optional<AirHe
   if (!choice_.wants(scan.pose)) return step;
   step.key = true;
   choice_.take(scan.pose);
-  take_sample(scan);
+  take_sample(scan, config_.sample_points, sample_);
   if (growing_.empty()) {
     begin_submap(scan, air);
     T_older_base_ = upright(scan.pose.T_map_base).inverse() * scan.pose.T_map_base;
@@ -94,9 +94,9 @@ ChainStep SubmapChain::add(const RegisteredScan& scan, const std::optional<AirHe
   return step;
 }
 
-// The older submap holds the key scan. The sample is needed for the loops of this scan only.
+// The older submap holds the key scan. Its sample serves the loops of this scan, and later the test of loops to this submap
+// by free space.
 void SubmapChain::hold(const RegisteredScan& scan, const std::optional<AirHeight>& air) {
-  if (!submaps_[holder_].keys.empty()) submaps_[holder_].keys.back().p_base = {};
   holder_ = growing_.front().number;
   Submap& holder = submaps_[holder_];
   holder.last_way_m = choice_.way_m();
@@ -135,6 +135,7 @@ const std::shared_ptr<const MapSnapshot>& SubmapChain::planes_of(std::size_t num
   if (!submap.planes && storage != nullptr) {
     SubmapMaker maker(map_config_, T_base_lidar_, *storage);
     submap.planes = maker.planes_of(submaps_, number);
+    maker.restore_samples(submap, config_);
   }
   return submap.planes;
 }
@@ -153,6 +154,7 @@ void SubmapChain::forget_beyond(std::size_t planes) {
     if (sum <= planes) break;
     sum -= submaps_[number].planes->plane_count();
     submaps_[number].planes.reset();
+    for (KeyScan& key : submaps_[number].keys) key.p_base = {};
   }
 }
 
@@ -235,14 +237,6 @@ void SubmapChain::insert(const RegisteredScan& scan) {
         i == 0 ? Eigen::Isometry3d::Identity() : submaps_[growing_[i].number].link.T_before_submap.inverse();
     moved_->pose.T_map_base = T_submap_older * T_older_base_;
     growing_[i].map->update(*moved_);
-  }
-}
-
-void SubmapChain::take_sample(const RegisteredScan& scan) {
-  sample_.clear();
-  const std::size_t stride = scan.point_count / config_.sample_points + 1;
-  for (std::size_t i = 0; i < scan.point_count; i += stride) {
-    sample_.emplace_back(scan.points[i].x_m, scan.points[i].y_m, scan.points[i].z_m);
   }
 }
 

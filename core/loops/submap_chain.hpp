@@ -64,7 +64,8 @@ class SubmapChain {
   void follow_map(const Eigen::Isometry3d& T_now_before);
   /// Storage keeps the scan of the last key scan.
   [[nodiscard]] KeyScan& last_key() { return submaps_[holder_].keys.back(); }
-  /// Planes of a complete submap: made anew from its key scans where they were forgotten. Null where the storage cannot.
+  /// Planes of a complete submap, and samples of its key scans: made anew where they were forgotten. Null where the storage
+  /// cannot.
   const std::shared_ptr<const MapSnapshot>& planes_of(std::size_t number, BuildingStorage* storage);
   /// Frees the planes that were used longest ago, beyond `planes` in all.
   void forget_beyond(std::size_t planes);
@@ -84,7 +85,6 @@ class SubmapChain {
   void complete_oldest();
   void hold(const RegisteredScan& scan, const std::optional<AirHeight>& air);
   void insert(const RegisteredScan& scan);
-  void take_sample(const RegisteredScan& scan);
 
   SubmapConfig config_;
   MapConfig map_config_;

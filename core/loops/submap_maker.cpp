@@ -29,4 +29,14 @@ std::shared_ptr<const MapSnapshot> SubmapMaker::planes_of(std::span<const Submap
   return map.snapshot()->empty() ? nullptr : map.snapshot();
 }
 
+void SubmapMaker::restore_samples(Submap& submap, const SubmapConfig& config) {
+  double sampled_way_m = submap.first_way_m - config.loop_spacing_m;
+  for (KeyScan& key : submap.keys) {
+    if (key.way_m - sampled_way_m < config.loop_spacing_m) continue;
+    sampled_way_m = key.way_m;
+    if (!key.p_base.empty() || key.scan == kNoScanHandle || !storage_.read_scan(key.scan, *scan_)) continue;
+    take_sample(*scan_, config.sample_points, key.p_base);
+  }
+}
+
 }  // namespace isobar

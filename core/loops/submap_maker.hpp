@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/loops/building_storage.hpp"
+#include "core/loops/loop_config.hpp"
 #include "core/loops/submap.hpp"
 #include "core/map/map_config.hpp"
 #include "core/map/map_snapshot.hpp"
@@ -24,6 +25,9 @@ class SubmapMaker {
   /// held them. Key scans that cannot be read are left out; null where there is none.
   [[nodiscard]] std::shared_ptr<const MapSnapshot> planes_of(std::span<const Submap> submaps,
                                                              std::size_t number);
+  /// Reads the samples of key scans that lack one, SubmapConfig::loop_spacing_m apart: the test of a loop by free space
+  /// needs them.
+  void restore_samples(Submap& submap, const SubmapConfig& config);
 
  private:
   MapConfig map_;

@@ -32,7 +32,8 @@ using LiveError = std::function<Eigen::Isometry3d(double way_m)>;
 /// Makes the scans of a drive along the ring at 1 m/s, four a second.
 class RingRun {
  public:
-  explicit RingRun(LiveError error = {}) : error_(std::move(error)), world_(ring_of_corridors()) {}
+  explicit RingRun(LiveError error = {}, World world = ring_of_corridors())
+      : error_(std::move(error)), world_(std::move(world)) {}
 
   /// The next scan with its live pose, valid until the next call.
   const RegisteredScan& next();
