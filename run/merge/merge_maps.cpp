@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/merge/merge_maps.hpp"
 
+#include <cstdio>
 #include <memory>
 #include <system_error>
 #include <utility>

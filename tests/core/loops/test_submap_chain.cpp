@@ -99,6 +99,22 @@ TEST_CASE("a pose that is no number, none in the map or dead reckoning alone is 
   CHECK_FALSE(choice.wants(bad));
 }
 
+TEST_CASE(
+    "samples of key scans stay as long as the planes of their submap: loops are tested by free space with "
+    "them") {
+  auto chain = test_submap_chain::chain();
+  RingRun run;
+  while (run.way_m() < 45.0) chain.add(run.next(), std::nullopt);
+  const auto samples = [&](std::size_t number) {
+    const auto& keys = chain.submaps()[number].keys;
+    return std::count_if(keys.begin(), keys.end(), [](const KeyScan& key) { return !key.p_base.empty(); });
+  };
+  REQUIRE(chain.complete() >= 2);
+  CHECK(samples(1) >= 4);  // of 10 m, one each 2 m
+  chain.forget_beyond(0);
+  CHECK(samples(1) == 0);
+}
+
 TEST_CASE("the oldest submaps are forgotten beyond the memory, and no others") {
   auto chain = test_submap_chain::chain();
   RingRun run;

@@ -91,6 +91,18 @@ TEST_CASE("a floor that looks the same is another floor by its height, and nothi
   CHECK(merged.figures.tried == 0);
 }
 
+TEST_CASE("a session in another building does not fit") {
+  World hall;
+  hall.add_box({-4.0, -2.5, 0.0}, {15.5, 12.0, 3.4});
+  hall.add_box({3.0, 2.5, 0.0}, {8.0, 5.0, 3.4});
+  hall.add_box({-4.0, 6.0, 0.0}, {-2.0, 8.0, 2.0});
+  hall.add_box({10.0, -2.5, 0.0}, {12.0, -1.4, 1.8});
+  RingSession a({.until_m = 42.0});
+  RingSession b({.T_map_world = kFrameOfB, .until_m = 42.0, .world = hall});
+  const MergedBuilding merged = merge(a, b, {-0.4, 0.3});
+  CHECK_FALSE(merged.problem.empty());
+}
+
 TEST_CASE("scans that cannot be read are left out, and the rest fits") {
   RingSession a({.until_m = 42.0});
   RingSession b({.T_map_world = kFrameOfB, .from_m = 15.0, .until_m = 45.0});
