@@ -195,4 +195,9 @@ bool BuildingStore::read_scan(ScanHandle handle, RegisteredScan& out) {
   return false;
 }
 
+bool BuildingStore::sync() noexcept {
+  const bool part = !part_ || ::fdatasync(part_.get()) == 0;
+  return ::fdatasync(log_.get()) == 0 && part;
+}
+
 }  // namespace isobar

@@ -54,6 +54,8 @@ class BuildingStore final : public BuildingStorage {
   void add_loop(const Loop& loop) override;
   void add_move(std::int64_t stamp_ns) override;
   bool read_scan(ScanHandle handle, RegisteredScan& out) override;
+  /// Waits until everything is on the disk. False where the disk refuses.
+  bool sync() noexcept;
 
  private:
   explicit BuildingStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
