@@ -90,12 +90,9 @@ class RobotGraph final : public Graph {
                    ? std::make_unique<LoopThread>(stages_, files_.loop_files(config), map_, scheduling_.loops)
                    : nullptr),
         place_(stages_, files_, map_, registration_, scheduling_.place),
-        floors_(config.floors.enabled
-                    ? std::make_unique<FloorThread>(
-                          config.floors, floor_feed_,
-                          [this](std::uint32_t session) { return files_.maps().folder_of(session); },
-                          scheduling_.floors)
-                    : nullptr),
+        floors_(config.floors.enabled ? std::make_unique<FloorThread>(config.floors, floor_feed_,
+                                                                      files_.map_folder(), scheduling_.floors)
+                                      : nullptr),
         output_(files_.checkpoint_file().empty()
                     ? nullptr
                     : std::make_unique<OutputThread>(
@@ -126,11 +123,7 @@ class RobotGraph final : public Graph {
   }
 
   void start() override {
-    const PresentSensors present{.imu = config_.imu.present(),
-                                 .wheels = config_.wheel.present(),
-                                 .barometer = config_.barometer.present(),
-                                 .base_station = config_.input.expect_base_station};
-    for (const std::string& text : missing_sensor_texts(present)) spdlog::info("{}", text);
+    for (const std::string& text : missing_sensor_texts(present_sensors(config_))) spdlog::info("{}", text);
     workers_.start();
   }
   void stop() override {

@@ -11,6 +11,13 @@ std::string without_barometer(bool imu) {
 
 }  // namespace
 
+PresentSensors present_sensors(const Config& config) {
+  return {.imu = config.imu.present(),
+          .wheels = config.wheel.present(),
+          .barometer = config.barometer.present(),
+          .base_station = config.input.expect_base_station};
+}
+
 std::vector<std::string> missing_sensor_texts(const PresentSensors& present) {
   std::vector<std::string> texts;
   if (!present.imu) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "config/config.hpp"
+
 namespace isobar {
 
 /// Sensors that a run has.
@@ -14,6 +16,9 @@ struct PresentSensors {
   bool barometer = true;
   bool base_station = true;
 };
+
+/// Those that a live run is configured for.
+[[nodiscard]] PresentSensors present_sensors(const Config& config);
 
 /// A sentence for each sensor that is missing, of a method whose inputs it is; docs/missing-sensors.md has the figures.
 [[nodiscard]] std::vector<std::string> missing_sensor_texts(const PresentSensors& present);

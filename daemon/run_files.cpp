@@ -75,8 +75,8 @@ std::filesystem::path RunFiles::checkpoint_file() const {
 }
 
 std::unique_ptr<LoopFiles> RunFiles::loop_files(const Config& config) const {
-  return std::make_unique<LoopFiles>([this](std::uint32_t session) { return maps_.folder_of(session); },
-                                     map_header(config), map_limits(config), config.loops.max_disk_gb);
+  return std::make_unique<LoopFiles>(map_folder(), map_header(config), map_limits(config),
+                                     config.loops.max_disk_gb);
 }
 
 std::uint32_t RunFiles::newest_session() const {

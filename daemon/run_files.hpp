@@ -33,6 +33,10 @@ class RunFiles {
     return output_ ? &*output_ : nullptr;
   }  ///< null: none configured
   [[nodiscard]] MapStores& maps() noexcept { return maps_; }
+  /// Folder of the map of a map frame; may be asked by any thread.
+  [[nodiscard]] LoopFiles::MapFolder map_folder() const {
+    return [this](std::uint32_t session) { return maps_.folder_of(session); };
+  }
   /// Files of the loops, in the folders of the maps.
   [[nodiscard]] std::unique_ptr<LoopFiles> loop_files(const Config& config) const;
   [[nodiscard]] const MapStores& maps() const noexcept { return maps_; }

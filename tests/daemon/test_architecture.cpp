@@ -88,6 +88,7 @@ const std::map<std::string, Names> kMayIncludeInCore{
     {"core/floors", {"core/map"}},
     {"core/place", {"core/map", "core/registration"}},
     {"core/loops", {"core/graph", "core/map", "core/registration"}},
+    {"core/merge", {"core/graph", "core/loops", "core/map", "core/place", "core/registration"}},
 };
 
 /// Libraries and the places that may include them. A library that is not listed may be included anywhere.

@@ -99,7 +99,7 @@ TEST_CASE("an unknown scenario is a usage error that lists the known ones") {
   const Scratch scratch;
   std::string message;
   try {
-    simulate(brief("four-floors", 1), scratch / "run", {});
+    simulate(brief("forty-floors", 1), scratch / "run", {});
   } catch (const isobar::UsageError& error) {
     message = error.what();
   }
