@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "core/errors.hpp"
+#include "core/geometry.hpp"
+#include "run/evaluation/second_session.hpp"
 #include "tools/commands.hpp"
 #include "tools/report/figures_json.hpp"
 #include "tools/report/report.hpp"
@@ -29,6 +31,7 @@ struct EvaluateArguments {
   std::string json;
   std::string alignment = "start";
   bool corrected = false;
+  std::vector<std::string> first_session;  ///< its reference and its run
 };
 
 std::vector<evaluation::EstimateSource> sources_of(const EvaluateArguments& arguments) {
@@ -51,6 +54,23 @@ evaluation::Alignment alignment_of(const std::string& name) {
   return evaluation::Alignment::kStart;
 }
 
+/// Errors in the map frame of another session: no alignment of their own.
+void print_in_first_frame(const std::vector<std::string>& first_session,
+                          const evaluation::EvaluatedRun& run) {
+  const evaluation::ReferenceData first = evaluation::load_reference(first_session[0]);
+  const evaluation::Trajectory first_run = evaluation::read_estimate(first_session[1]);
+  std::printf("In the frame of %s, without an alignment of their own\n", first_session[1].c_str());
+  std::printf("poses  position rms     max   yaw rms     max\n");
+  for (const evaluation::EvaluatedMethod& method : run.methods) {
+    const auto error = evaluation::second_session_error(
+        {first.trajectory, first_run}, {run.reference.trajectory, evaluation::read_estimate(method.source)});
+    std::printf("%5zu       %.3f m  %.3f m  %.2f deg  %.2f deg  %s\n", error.poses, error.position_rms_m,
+                error.position_max_m, error.yaw_rms_rad / kRadPerDeg, error.yaw_max_rad / kRadPerDeg,
+                method.name.c_str());
+  }
+  std::printf("\n");
+}
+
 void run_evaluate(const EvaluateArguments& arguments, const std::string& command) {
   const std::vector<evaluation::EstimateSource> sources = sources_of(arguments);
   std::optional<std::filesystem::path> segments;
@@ -64,6 +84,7 @@ void run_evaluate(const EvaluateArguments& arguments, const std::string& command
   input.command = command;
   report::print_table(stdout, input.run);
   std::printf("\n");
+  if (!arguments.first_session.empty()) print_in_first_frame(arguments.first_session, input.run);
   if (!arguments.json.empty()) write_output(arguments.json, report::figures_json(input.run));
   if (!arguments.picture.empty()) write_output(arguments.picture, report::render_overview_svg(input));
   if (!arguments.report.empty()) write_output(arguments.report, report::render_report(input));
@@ -92,6 +113,11 @@ void add_evaluate_command(CLI::App& app) {
       ->option_text("start|yaw|rigid");
   command.add_flag("--corrected", options.corrected,
                    "evaluate the trajectory of each run as its loops correct it as well");
+  command
+      .add_option("--first-session", options.first_session,
+                  "reference and run of the session whose map was used: errors in its frame as well")
+      ->expected(2)
+      ->option_text("REFERENCE RUN");
   command.add_option("--title", options.title, "headline of the report");
   command.add_option("--report", options.report, "HTML file for the report; it opens without a network");
   command.add_option("--picture", options.picture, "SVG file for the overview picture");

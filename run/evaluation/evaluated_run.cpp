@@ -106,6 +106,12 @@ void add_notes(EvaluatedRun& run) {
 
 }  // namespace
 
+Trajectory read_estimate(const fs::path& path) {
+  const bool is_run = fs::is_directory(path);
+  const fs::path file = is_run ? path / files::kTrajectoryFile : path;
+  return parse_tum(files::read_text_file(file), file.string());
+}
+
 ReferenceData load_reference(const fs::path& path, const std::optional<fs::path>& segments_file) {
   ReferenceData reference;
   const bool is_recording = fs::is_directory(path);

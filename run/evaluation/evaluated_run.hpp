@@ -29,6 +29,10 @@ struct ReferenceData {
 ReferenceData load_reference(const std::filesystem::path& path,
                              const std::optional<std::filesystem::path>& segments_file = std::nullopt);
 
+/// Trajectory of a .tum file, or of the folder of a run.
+/// @throws DataError naming the file when it cannot be read or breaks its format
+Trajectory read_estimate(const std::filesystem::path& path);
+
 /// Where an estimate is read from.
 struct EstimateSource {
   std::string name;            ///< in tables and charts; empty: set by default_names()
