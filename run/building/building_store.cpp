@@ -23,6 +23,7 @@ namespace {
 constexpr const char* kLogFile = "building.log";
 // A scan of kMostScanPoints.
 constexpr std::size_t kMostScanBytes = 104 + std::size_t{8} * kMostScanPoints;
+constexpr std::size_t kMostWaitingBytes = 16U << 20;  // of ten hours
 constexpr std::uint64_t kMostLogBytes = 1U << 30;  // of 100 000 submaps
 
 ScanHandle handle_of(std::uint32_t part, std::uint64_t offset) { return (ScanHandle{part} << 32U) | offset; }
@@ -110,18 +111,25 @@ void BuildingStore::refuse(const std::string& why) {
 }
 
 // Appends bytes as a whole: a part of a record would hide all later ones.
-void BuildingStore::append(const FileDescriptor& file, std::uint64_t& size,
+bool BuildingStore::append(const FileDescriptor& file, std::uint64_t& size,
                            const std::vector<std::byte>& bytes) {
   const ssize_t written = ::write(file.get(), bytes.data(), bytes.size());
   if (written == static_cast<ssize_t>(bytes.size())) {
     size += bytes.size();
-    return;
+    return true;
   }
   refuse(folder_.string() + ": cannot be written: " + (written < 0 ? errno_message() : "the disk is full"));
   if (::ftruncate(file.get(), static_cast<off_t>(size)) != 0) refuse(folder_.string() + ": cannot be cut");
+  return false;
 }
 
-void BuildingStore::append_log() { append(log_, log_bytes_, record_); }
+// Records of the log name the ones before them: what a full disk refuses waits for the next one. Once too much waits the log
+// ends where it is, whole.
+void BuildingStore::append_log() {
+  if (waiting_.size() > kMostWaitingBytes) return;
+  waiting_.insert(waiting_.end(), record_.begin(), record_.end());
+  if (append(log_, log_bytes_, waiting_)) waiting_.clear();
+}
 
 void BuildingStore::add_submap(const Submap& submap) {
   record_.clear();
@@ -153,8 +161,7 @@ ScanHandle BuildingStore::append_scan(const RegisteredScan& scan) {
   encode_scan(scan, record_);
   auto& [number, size] = *parts_.rbegin();
   const std::uint64_t offset = size;
-  append(part_, size, record_);
-  return size > offset ? handle_of(number, offset) : kNoScanHandle;
+  return append(part_, size, record_) ? handle_of(number, offset) : kNoScanHandle;
 }
 
 bool BuildingStore::open_part() {

@@ -61,7 +61,7 @@ class BuildingStore final : public BuildingStorage {
   explicit BuildingStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
   void load();
   void append_log();
-  void append(const FileDescriptor& file, std::uint64_t& size, const std::vector<std::byte>& bytes);
+  bool append(const FileDescriptor& file, std::uint64_t& size, const std::vector<std::byte>& bytes);
   [[nodiscard]] ScanHandle append_scan(const RegisteredScan& scan);
   bool open_part();
   void refuse(const std::string& why);
@@ -77,6 +77,7 @@ class BuildingStore final : public BuildingStorage {
   std::uint32_t reading_number_ = 0;
   StoredBuilding stored_;
   BuildingStoreCounters counters_;
+  std::vector<std::byte> waiting_;        // for the log, since the disk has refused it
   std::vector<std::byte> record_;         // scratch
   std::vector<std::byte> reading_bytes_;  // scratch
 };

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -185,6 +187,36 @@ TEST_CASE("one process at a time writes a building, and others may read it meanw
   write_building(*store);
   CHECK_THROWS_AS(static_cast<void>(BuildingStore::open_to_continue(folder.path(), kPlenty)), ServiceError);
   CHECK(BuildingStore::open_to_read(folder.path())->stored().loops.size() == 1);
+}
+
+TEST_CASE(
+    "what a full disk refuses of the log is written when it has room, in its order; its scans are missing") {
+  const TemporaryFolder folder;
+  {
+    const auto store = BuildingStore::open_to_continue(folder.path(), kPlenty);
+    // The kernel refuses files beyond this size as a full disk does, by a part of a write.
+    rlimit unlimited{};
+    getrlimit(RLIMIT_FSIZE, &unlimited);
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit full{64, unlimited.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &full);
+    Submap submap;
+    store->add_submap(submap);
+    KeyScan lost = key_number(1);
+    store->add_key(0, lost, *scan_number(1));
+    CHECK(lost.scan == kNoScanHandle);
+    setrlimit(RLIMIT_FSIZE, &unlimited);
+    KeyScan kept = key_number(2);
+    store->add_key(0, kept, *scan_number(2));
+    CHECK(kept.scan != kNoScanHandle);
+    CHECK(store->counters().refused > 0);
+  }
+  const auto store = BuildingStore::open_to_read(folder.path());
+  REQUIRE(store->stored().submaps.size() == 1);
+  CHECK(store->stored().submaps[0].keys.size() == 2);
+  CHECK(store->counters().removed_bytes == 0);
+  const auto scan = std::make_unique<RegisteredScan>();
+  CHECK(store->read_scan(store->stored().submaps[0].keys[1].scan, *scan));
 }
 
 TEST_CASE("beyond the limit the oldest scans go, and the log stays") {
