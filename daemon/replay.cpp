@@ -169,6 +169,14 @@ void warn_of_two_lidars(const LockStep& pipeline, std::uint16_t port, ReplaySumm
   }
 }
 
+/// Places seen again, and the maps laid anew for them.
+void describe_loops(const LoopStage& loops, ReplaySummary& summary) {
+  summary.loops = loops.counts().taken;
+  run_counts::append(summary.counts, counts_of(loops.counts()));
+  summary.counts.push_back({"maps laid anew", loops.moves(), loops.problem()});
+  if (!loops.problem().empty()) summary.warnings.push_back("loops: " + loops.problem());
+}
+
 /// The contradictions in the status of the run.
 void add_contradictions(const std::vector<std::string>& texts, std::vector<files::RunCount>& counts) {
   for (const std::string& text : texts) counts.push_back({"contradiction", 1, text});
@@ -252,10 +260,6 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   output.flush();
   maps.write_checkpoint(sink.checkpoint(), pipeline.prior_estimator().height_datum());
   if (used.loops.enabled) write_corrected_trajectories(out, pipeline.loops());
-  summary.loops = pipeline.loops().counts().taken;
-  if (const std::string problem = pipeline.loops().problem(); !problem.empty()) {
-    summary.warnings.push_back("loops: " + problem);
-  }
   const std::vector<files::RunCount> map_counts = counts_of_map(maps.store(), output);
 
   summary.scans = pipeline.scans();
@@ -265,8 +269,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   summary.map_points = output.map_points();
   summary.counts = collect_counts(reader, pipeline);
   run_counts::append(summary.counts, map_counts);
-  run_counts::append(summary.counts, counts_of(pipeline.loops().counts()));
-  summary.counts.push_back({"maps laid anew", pipeline.loops().moves(), pipeline.loops().problem()});
+  describe_loops(pipeline.loops(), summary);
   add_contradictions(contradictions, summary.counts);
   warn_of_scans_without(manifest, used.imu.present(), sink, summary);
   describe_place(pipeline, sink, summary);

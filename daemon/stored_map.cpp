@@ -20,7 +20,7 @@ fs::path map_folder_in(const fs::path& folder) {
   std::error_code error;
   if (fs::exists(folder / "map.toml", error)) return folder;
   for (std::uint32_t session = files::newest_session(folder); session > 0; --session) {
-    const fs::path map = files::RunOutput::map_directory(folder, session);
+    fs::path map = files::RunOutput::map_directory(folder, session);
     if (fs::exists(map / "map.toml", error)) return map;
   }
   throw DataError(folder.string() + ": holds no map: neither map.toml nor a run with a folder map");
