@@ -103,8 +103,8 @@ class MotionModel {
 
   RegistrationConfig config_;
   bool started_ = false;
-  Prior last_;                                                    // prior at the last scan
-  double lift_m_ = 0.0;                                           // of the map over the altimeter, by follow_map()
+  Prior last_;           // prior at the last scan
+  double lift_m_ = 0.0;  // of the map over the altimeter, by follow_map()
   Eigen::Isometry3d T_map_base_ = Eigen::Isometry3d::Identity();  // pose at the last scan
   Eigen::Vector3d v_map_m_s_ = Eigen::Vector3d::Zero();           // filtered, of the last registrations
   Eigen::Vector3d w_base_rad_s_ = Eigen::Vector3d::Zero();        // turn rate of the last step
