@@ -17,9 +17,9 @@ inline constexpr const char* kUsualLidar = "VLP-16";
 
 /// Arguments of simulate().
 struct ScenarioRequest {
-  std::string name;        ///< one of scenarios()
-  std::uint64_t seed = 1;  ///< random seed of world, path and sensor errors
-  bool short_form = false;                                        ///< a reduced run of 30 to 60 s
+  std::string name;         ///< one of scenarios()
+  std::uint64_t seed = 1;   ///< random seed of world, path and sensor errors
+  bool short_form = false;  ///< a reduced run of 30 to 60 s
   double stop_after_s = std::numeric_limits<double>::infinity();  ///< ends the recording at this time
   Deviations deviations{};          ///< faults asked for, besides the usual errors
   std::string lidar = kUsualLidar;  ///< model, as in lidar.model

@@ -84,7 +84,7 @@ struct RegistrationState {
   double scan_height_m = 0.0;        ///< Prior::height_m at the last scan
   double risen_variance_m2 = 0.0;    ///< of z, from moving ground
   std::optional<KnownPlace> place;
-  MapMove map_move;  ///< of the map of the last scan
+  MapMove map_move;                ///< of the map of the last scan
   std::optional<KnownPlace> home;  ///< see Registration::stay_in()
   bool waits_for_place = false;    ///< see Registration::wait_for_place()
   bool awaits_place = false;       ///< no search around the last place has found it, or none was made

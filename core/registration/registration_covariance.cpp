@@ -123,8 +123,7 @@ double Registration::height_variance() const {
   return first_m2 + state_.drift.left_of_arrival() * (now_m2 - first_m2);
 }
 
-void Registration::lay_scan(const MethodTraits& traits, const Matrix6d& scan_covariance,
-                            PoseEstimate& pose) {
+void Registration::lay_scan(const MethodTraits& traits, const Matrix6d& scan_covariance, PoseEstimate& pose) {
   if (state_.unseen.way_m() > kLaidWayM || state_.unseen.time_s() > kLaidS) {
     state_.drift.add_unseen(state_.unseen.covariance());
   }

@@ -24,7 +24,7 @@ constexpr const char* kLogFile = "building.log";
 // A scan of kMostScanPoints.
 constexpr std::size_t kMostScanBytes = 104 + std::size_t{8} * kMostScanPoints;
 constexpr std::size_t kMostWaitingBytes = 16U << 20;  // of ten hours
-constexpr std::uint64_t kMostLogBytes = 1U << 30;  // of 100 000 submaps
+constexpr std::uint64_t kMostLogBytes = 1U << 30;     // of 100 000 submaps
 
 ScanHandle handle_of(std::uint32_t part, std::uint64_t offset) { return (ScanHandle{part} << 32U) | offset; }
 
