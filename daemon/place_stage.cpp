@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "core/loops/submap.hpp"
 #include "core/place/place_grid.hpp"
 #include "core/so3.hpp"
 #include "core/squared.hpp"
@@ -183,7 +184,7 @@ bool PlaceStage::is_due(std::int64_t stamp_ns) const {
   if (scans_.size() < kScans) return false;
   const double first_s = status_.lost ? kAroundLostS : around_first_ ? kAroundLastS : 0.0;
   if (asked_ns_ == 0) return status_.waited_s >= first_s;
-  const Eigen::Isometry3d T = T_odom_asked_.inverse(Eigen::Isometry) * levelled(scans_.back().T_odom_base);
+  const Eigen::Isometry3d T = T_odom_asked_.inverse(Eigen::Isometry) * upright(scans_.back().T_odom_base);
   const bool moved =
       T.translation().head<2>().norm() >= kNextViewM || std::abs(yaw_of(T.linear())) >= kNextViewRad;
   const bool waits = status_.state == PlaceState::kAmbiguous || status_.carried;
@@ -205,7 +206,7 @@ void PlaceStage::search(const PoseEstimate& pose) {
     return;
   }
   const Eigen::Isometry3d T_odom_base = scans_.back().T_odom_base;
-  const Eigen::Isometry3d T_odom_level = levelled(T_odom_base);
+  const Eigen::Isometry3d T_odom_level = upright(T_odom_base);
   fill_query(T_odom_level);
   const ColdStartInput input{*map_, query_, T_odom_level.linear().transpose() * T_odom_base.linear(),
                              height()};

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "core/geometry.hpp"
+#include "core/loops/submap.hpp"
+#include "core/so3.hpp"
 #include "daemon/place_frames.hpp"
 #include "daemon/place_stage.hpp"
 
@@ -37,13 +39,13 @@ void PlaceStage::watch(const PoseEstimate& pose) {
 }
 
 bool PlaceStage::is_at_found_place(const PoseEstimate& pose) const {
-  return seen_at_ && are_near(*seen_at_ * levelled(odometry_of(pose)), levelled(pose.T_map_base), kPresentM);
+  return seen_at_ && are_near(*seen_at_ * upright(odometry_of(pose)), upright(pose.T_map_base), kPresentM);
 }
 
 // Two looks, a metre apart, must find one and the same other place, in a map that knows nothing of where the robot believes
 // to be. If that fits as well, something else has changed.
 void PlaceStage::take_carried(const ColdStartResult& result, const PoseEstimate& pose) {
-  const Eigen::Isometry3d T_present = levelled(pose.T_map_base);
+  const Eigen::Isometry3d T_present = upright(pose.T_map_base);
   const bool present_fits =
       std::any_of(result.candidates.begin(), result.candidates.end(),
                   [&](const PlaceCandidate& one) { return are_near(one.T_map_level, T_present, kPresentM); });

@@ -26,16 +26,6 @@ fs::path map_folder_in(const fs::path& folder) {
   throw DataError(folder.string() + ": holds no map: neither map.toml nor a run with a folder map");
 }
 
-/// The checkpoint beside the tiles; else that of the run whose newest map this is.
-std::optional<files::Checkpoint> checkpoint_of(const fs::path& map) {
-  if (auto checkpoint = files::read_checkpoint(map / files::kCheckpointFile)) return checkpoint;
-  const fs::path run = fs::absolute(map).parent_path();
-  auto checkpoint = files::read_checkpoint(run / files::kCheckpointFile);
-  if (!checkpoint || files::RunOutput::map_directory(run, checkpoint->session) != fs::absolute(map))
-    return {};
-  return checkpoint;
-}
-
 void refuse_other_grid(const fs::path& map, const MapHeader& header) {
   const MapHeader found = read_map_header(map);
   if (found == header) return;
@@ -73,7 +63,7 @@ StoredMap find_stored_map(const fs::path& folder, const MapHeader& header) {
   stored.folder = map_folder_in(fs::absolute(folder).lexically_normal());
   refuse_other_grid(stored.folder, header);
   KnownPlace place;
-  if (const auto checkpoint = checkpoint_of(stored.folder)) {
+  if (const auto checkpoint = files::checkpoint_of_map(stored.folder)) {
     stored.start = continuation_of(*checkpoint);
     place = *stored.start.place;
   }

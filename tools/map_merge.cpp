@@ -11,6 +11,7 @@
 #include "core/geometry.hpp"
 #include "core/so3.hpp"
 #include "daemon/stage_settings.hpp"
+#include "run/files/checkpoint.hpp"
 #include "run/files/run_layout.hpp"
 #include "run/floors/floor_names.hpp"
 #include "run/floors/stored_floors.hpp"

@@ -54,7 +54,7 @@ MergedBuilding BuildingMerger::run(const HeightRelation& height) {
     merged_.problem = kNoLoops;
     return std::move(merged_);
   }
-  conclude(merged_.joined);
+  conclude(*b, merged_.joined);
   return std::move(merged_);
 }
 
@@ -144,7 +144,7 @@ void BuildingMerger::find_loops(const Building& a, const Building& b, JoinedBuil
 }
 
 // Poses of the graph that is stored: without the places that were found as loops.
-void BuildingMerger::conclude(JoinedBuildings& joined) {
+void BuildingMerger::conclude(const Building& b, JoinedBuildings& joined) {
   Building building(settings_.loops, settings_.map, settings_.registration, b_.T_base_lidar);
   building.continue_from(joined.building);
   for (Submap& submap : joined.building.submaps) {
@@ -167,7 +167,7 @@ void BuildingMerger::conclude(JoinedBuildings& joined) {
   if (merged_.figures.loops < kLeastLoops) merged_.problem = kNoLoops;
   merged_.figures.rms_m =
       std::sqrt(sum_m2 / static_cast<double>(std::max<std::size_t>(merged_.figures.loops, 1)));
-  merged_.figures.T_a_b = building.T_map_submap(joined.submaps_of_a) * posed(b_)->T_map_submap(0).inverse();
+  merged_.figures.T_a_b = building.T_map_submap(joined.submaps_of_a) * b.T_map_submap(0).inverse();
 }
 
 }  // namespace isobar

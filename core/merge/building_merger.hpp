@@ -79,7 +79,7 @@ class BuildingMerger {
   [[nodiscard]] Loop seed(const Building& a, const Building& b, const ChosenHypothesis& chosen) const;
   [[nodiscard]] std::size_t nearest_submap(const Building& a, const Eigen::Vector3d& p_a) const;
   void find_loops(const Building& a, const Building& b, JoinedBuildings& joined);
-  void conclude(JoinedBuildings& joined);
+  void conclude(const Building& b, JoinedBuildings& joined);
   void report(double share) const {
     if (progress_) progress_(share);
   }

@@ -28,17 +28,11 @@ void check(const std::error_code& error, const fs::path& file) {
     throw ServiceError(file.string() + ": cannot be exchanged for the corrected map: " + error.message());
 }
 
-/// Tiles, journal and lock are of the old map; everything else goes over.
-bool goes_over(const fs::path& file) {
-  const std::string name = file.filename();
-  return name != "map.toml" && name != "lock" && file.extension() != kTilesExtension &&
-         file.extension() != ".index" && file.extension() != kScansExtension;
-}
-
+/// What is not of the old map's tiles goes over.
 void take_over_files(const fs::path& from, const fs::path& to) {
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(from, error)) {
-    if (!goes_over(entry.path())) continue;
+    if (is_of_tiles(entry.path())) continue;
     fs::rename(entry.path(), to / entry.path().filename(), error);
     check(error, entry.path());
   }

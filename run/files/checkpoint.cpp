@@ -11,6 +11,7 @@
 
 #include "core/errors.hpp"
 #include "core/plausibility.hpp"
+#include "run/files/run_layout.hpp"
 #include "run/files/text_file.hpp"
 #include "run/tile_store/tile_record.hpp"
 
@@ -177,6 +178,19 @@ std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file) {
   auto checkpoint = decode(std::as_bytes(std::span(content)), rule);
   if (!checkpoint) throw DataError(file.string() + ": " + rule);
   return checkpoint;
+}
+
+std::filesystem::path run_folder_of(const std::filesystem::path& map_folder) {
+  return std::filesystem::absolute(map_folder / "").lexically_normal().parent_path().parent_path();
+}
+
+std::optional<Checkpoint> checkpoint_of_map(const std::filesystem::path& map_folder) {
+  if (auto own = read_checkpoint(map_folder / kCheckpointFile)) return own;
+  auto of_run = read_checkpoint(run_folder_of(map_folder) / kCheckpointFile);
+  const std::string name =
+      std::filesystem::absolute(map_folder / "").lexically_normal().parent_path().filename();
+  const bool of_this = of_run && name == name_of_session(kMapDirectory, of_run->session);
+  return of_this ? of_run : std::nullopt;
 }
 
 }  // namespace isobar::files

@@ -42,4 +42,11 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
 /// @throws DataError "file: rule" when it cannot be read or is damaged
 [[nodiscard]] std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file);
 
+/// The folder in which a map's folder lies: that of its run.
+[[nodiscard]] std::filesystem::path run_folder_of(const std::filesystem::path& map_folder);
+/// The checkpoint of a map: in its folder, or beside it in that of its run, where it is of this map frame. Nothing where there
+/// is none.
+/// @throws DataError for a damaged checkpoint
+[[nodiscard]] std::optional<Checkpoint> checkpoint_of_map(const std::filesystem::path& map_folder);
+
 }  // namespace isobar::files

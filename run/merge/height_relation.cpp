@@ -2,14 +2,10 @@
 #include "run/merge/height_relation.hpp"
 
 #include <cmath>
-#include <string>
 
 #include "core/altitude/hypsometry.hpp"
-#include "run/files/run_layout.hpp"
 
 namespace isobar::files {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -33,18 +29,6 @@ std::optional<HeightRelation> height_relation(const HeightDatum& a, const Height
     if (std::abs(relation.z_a_b_m) <= kMostM) return relation;
   }
   return std::nullopt;
-}
-
-fs::path run_folder_of(const fs::path& map_folder) {
-  return fs::absolute(map_folder / "").lexically_normal().parent_path().parent_path();
-}
-
-std::optional<Checkpoint> checkpoint_of_map(const fs::path& map_folder) {
-  if (auto own = read_checkpoint(map_folder / kCheckpointFile)) return own;
-  auto of_run = read_checkpoint(run_folder_of(map_folder) / kCheckpointFile);
-  const std::string name = fs::absolute(map_folder / "").lexically_normal().parent_path().filename();
-  const bool of_this = of_run && name == name_of_session(kMapDirectory, of_run->session);
-  return of_this ? of_run : std::nullopt;
 }
 
 }  // namespace isobar::files

@@ -35,9 +35,7 @@ void check(const std::error_code& error, const fs::path& file) {
 /// Files of A beside its tiles that hold for the merged map, too.
 bool goes_over(const fs::directory_entry& entry) {
   const fs::path& file = entry.path();
-  return entry.is_regular_file() && file.filename() != "map.toml" && file.filename() != "lock" &&
-         file.extension() != kTilesExtension && file.extension() != ".index" &&
-         file.extension() != kScansExtension && file.extension() != ".part";
+  return entry.is_regular_file() && !is_of_tiles(file) && file.extension() != ".part";
 }
 
 }  // namespace

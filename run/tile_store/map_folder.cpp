@@ -176,6 +176,11 @@ fs::path numbered_file(const fs::path& directory, std::uint32_t number, const ch
   return directory / name.data();
 }
 
+bool is_of_tiles(const fs::path& file) {
+  return file.filename() == "map.toml" || file.filename() == "lock" || file.extension() == kTilesExtension ||
+         file.extension() == ".index" || file.extension() == kScansExtension;
+}
+
 void remove_map(const fs::path& directory) {
   std::vector<fs::path> files{directory / "map.toml", directory / "checkpoint"};
   const fs::path building = directory / kBuildingFolder;

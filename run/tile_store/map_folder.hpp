@@ -57,6 +57,8 @@ std::vector<std::uint32_t> file_numbers(const std::filesystem::path& directory, 
 /// Path of such a file.
 std::filesystem::path numbered_file(const std::filesystem::path& directory, std::uint32_t number,
                                     const char* extension);
+/// True for a file in the folder of a map that belongs to its tiles: header, lock, segments, indices, journal.
+[[nodiscard]] bool is_of_tiles(const std::filesystem::path& file);
 /// Deletes the files of the map and no other file of the folder. The caller holds the lock.
 /// @throws ServiceError when a file cannot be deleted
 void remove_map(const std::filesystem::path& directory);
