@@ -127,6 +127,13 @@ if [ "${ISOBAR_ISOLATED:-}" = yes ]; then
   "$isobar" play "$work/recording" >"$work/play.log" 2>&1 &
   play=$!
   wait_for 'No space left on device' "$work/full.log"
+  # What one writer gives up, another may take: the disk is filled again until the trajectory fails, too.
+  for _ in $(seq 100); do
+    grep -q 'writing resumes when the disk allows' "$work/full.log" && break
+    head -c 100m /dev/zero >>"$work/small/filler" 2>/dev/null || true
+    sleep 0.2
+  done
+  wait_for 'writing resumes when the disk allows' "$work/full.log"
   sleep 4
   rm "$work/small/filler"
   mount -o remount,size=60m "$work/small"
