@@ -30,6 +30,7 @@ struct EvaluateArguments {
   std::string picture;
   std::string json;
   std::string alignment = "start";
+  std::optional<double> max_gap_s;
   bool corrected = false;
   std::vector<std::string> first_session;  ///< its reference and its run
 };
@@ -77,6 +78,7 @@ void run_evaluate(const EvaluateArguments& arguments, const std::string& command
   if (!arguments.segments.empty()) segments = arguments.segments;
   evaluation::EvaluationOptions options;
   options.ate_alignment = alignment_of(arguments.alignment);
+  options.max_gap_s = arguments.max_gap_s;
   report::ReportInput input;
   input.run = evaluation::evaluate_methods(evaluation::load_reference(arguments.reference, segments), sources,
                                            options);
@@ -111,6 +113,13 @@ void add_evaluate_command(CLI::App& app) {
       ->check(CLI::IsMember({"start", "yaw", "rigid"}))
       ->capture_default_str()
       ->option_text("start|yaw|rigid");
+  command
+      .add_option(
+          "--max-gap", options.max_gap_s,
+          "longest gap between two poses that is bridged [s] (0.5, or 1.5 usual intervals where these are "
+          "longer)")
+      ->check(CLI::Range(0.001, 3600.0))
+      ->option_text("SECONDS");
   command.add_flag("--corrected", options.corrected,
                    "evaluate the trajectory of each run as its loops correct it as well");
   command

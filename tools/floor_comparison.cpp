@@ -17,13 +17,12 @@ namespace isobar::tools {
 
 namespace {
 
-constexpr double kGapS = 0.5;    // of the reference
 constexpr double kSigmaM = 0.1;  // of the height of a registered pose
 
 std::vector<evaluation::PosePair> pairs_of(const evaluation::ReferenceData& reference,
                                            const std::filesystem::path& file) {
   const evaluation::Trajectory estimate = evaluation::parse_tum(files::read_text_file(file), file.string());
-  return evaluation::associate(reference.trajectory, estimate, kGapS);
+  return evaluation::associate(reference.trajectory, estimate);
 }
 
 void compare_corrected(const evaluation::ReferenceData& reference, const std::filesystem::path& file,

@@ -10,10 +10,51 @@ namespace isobar::evaluation {
 
 namespace {
 
-StampedPose interpolated(const StampedPose& a, const StampedPose& b, double fraction, std::int64_t stamp_ns) {
-  return {stamp_ns, a.position_m + fraction * (b.position_m - a.position_m),
-          a.attitude.slerp(fraction, b.attitude)};
-}
+// Typical intervals that are no gap: a sensor that misses its time a little loses nothing.
+constexpr double kGapIntervals = 1.5;
+
+// Ratio of the intervals from which on the estimate is interpolated: equal rates with jitter stay below it.
+constexpr double kSparserRatio = 1.5;
+
+/// A trajectory at ascending stamps, between its poses.
+class Interpolation {
+ public:
+  Interpolation(const Trajectory& trajectory, double max_gap_s)
+      : poses_(trajectory.poses), max_gap_s_(max_gap_s) {}
+
+  /// False outside the trajectory's time and in a gap longer than `max_gap_s`.
+  bool move_to(std::int64_t stamp_ns) {
+    while (after_ < poses_.size() && poses_[after_].stamp_ns < stamp_ns) ++after_;
+    if (after_ == poses_.size()) return false;
+    fraction_ = 1.0;
+    if (poses_[after_].stamp_ns == stamp_ns) return true;
+    if (after_ == 0) return false;
+    const std::int64_t before_ns = poses_[after_ - 1].stamp_ns;
+    const double gap_s = seconds_between(before_ns, poses_[after_].stamp_ns);
+    fraction_ = seconds_between(before_ns, stamp_ns) / gap_s;
+    return gap_s <= max_gap_s_;
+  }
+
+  [[nodiscard]] StampedPose pose() const {
+    const StampedPose& b = poses_[after_];
+    if (fraction_ == 1.0) return b;
+    const StampedPose& a = poses_[after_ - 1];
+    return {(fraction_ < 0.5 ? a : b).stamp_ns, a.position_m + fraction_ * (b.position_m - a.position_m),
+            a.attitude.slerp(fraction_, b.attitude)};
+  }
+
+  /// Of a quantity that is known at each pose.
+  [[nodiscard]] double value_of(const std::vector<double>& values) const {
+    if (fraction_ == 1.0) return values[after_];
+    return values[after_ - 1] + fraction_ * (values[after_] - values[after_ - 1]);
+  }
+
+ private:
+  const std::vector<StampedPose>& poses_;
+  double max_gap_s_;
+  std::size_t after_ = 0;  ///< index of the first pose at or after the stamp
+  double fraction_ = 1.0;  ///< of the way from the pose before it
+};
 
 Eigen::Isometry3d yaw_and_translation(double yaw, const Eigen::Vector3d& from_m,
                                       const Eigen::Vector3d& to_m) {
@@ -48,6 +89,38 @@ Eigen::Isometry3d yaw_umeyama(const std::vector<PosePair>& pairs) {
   return yaw_and_translation(std::atan2(sine, cosine), mean_estimate_m, mean_reference_m);
 }
 
+/// Of the attitude of one side since the first pair.
+double largest_turn_rad(const std::vector<PosePair>& pairs, StampedPose PosePair::*side) {
+  double largest = 0.0;
+  for (const PosePair& pair : pairs) {
+    largest = std::max(largest, (pairs.front().*side).attitude.angularDistance((pair.*side).attitude));
+  }
+  return largest;
+}
+
+/// Of the horizontal direction of the reference's path since its first steps of a metre.
+double largest_bend_rad(const std::vector<PosePair>& pairs) {
+  constexpr double kStepM = 1.0;
+  std::optional<double> first_rad;
+  double largest = 0.0;
+  Eigen::Vector3d corner_m = pairs.front().reference.position_m;
+  for (const PosePair& pair : pairs) {
+    const Eigen::Vector3d step_m = pair.reference.position_m - corner_m;
+    if (step_m.head<2>().norm() < kStepM) continue;
+    const double direction_rad = std::atan2(step_m.y(), step_m.x());
+    if (!first_rad) first_rad = direction_rad;
+    largest = std::max(largest, std::abs(wrap_angle_rad(direction_rad - *first_rad)));
+    corner_m = pair.reference.position_m;
+  }
+  return largest;
+}
+
+/// The same turn, with both at one place at the first common pose.
+Eigen::Isometry3d moved_to_start(Eigen::Isometry3d transform, const PosePair& first) {
+  transform.translation() = first.reference.position_m - transform.linear() * first.estimate.position_m;
+  return transform;
+}
+
 Eigen::Isometry3d rigid_umeyama(const std::vector<PosePair>& pairs) {
   Eigen::Matrix3Xd from(3, static_cast<Eigen::Index>(pairs.size()));
   Eigen::Matrix3Xd to(3, static_cast<Eigen::Index>(pairs.size()));
@@ -62,32 +135,50 @@ Eigen::Isometry3d rigid_umeyama(const std::vector<PosePair>& pairs) {
 
 }  // namespace
 
-std::vector<PosePair> associate(const Trajectory& reference, const Trajectory& estimate, double max_gap_s) {
+double typical_interval_s(const Trajectory& trajectory) {
+  const std::vector<StampedPose>& poses = trajectory.poses;
+  if (poses.size() < 2) return 0.0;
+  std::vector<double> intervals_s;
+  intervals_s.reserve(poses.size() - 1);
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    intervals_s.push_back(seconds_between(poses[i - 1].stamp_ns, poses[i].stamp_ns));
+  const auto middle = intervals_s.begin() + static_cast<std::ptrdiff_t>(intervals_s.size() / 2);
+  std::nth_element(intervals_s.begin(), middle, intervals_s.end());
+  return *middle;
+}
+
+double bridged_gap_s(const Trajectory& trajectory, std::optional<double> wanted_s) {
+  return wanted_s ? *wanted_s : std::max(kUsualGapS, kGapIntervals * typical_interval_s(trajectory));
+}
+
+bool reference_is_sparser(const Trajectory& reference, const Trajectory& estimate) {
+  return typical_interval_s(reference) > kSparserRatio * typical_interval_s(estimate);
+}
+
+std::vector<PosePair> associate(const Trajectory& reference, const Trajectory& estimate,
+                                std::optional<double> max_gap_s) {
   const std::vector<double> distance_m = travelled_distance_m(reference.poses);
   std::vector<PosePair> pairs;
-  pairs.reserve(estimate.poses.size());
-  std::size_t after = 0;  // index of the first reference pose at or after the stamp
-  for (const StampedPose& pose : estimate.poses) {
-    while (after < reference.poses.size() && reference.poses[after].stamp_ns < pose.stamp_ns) ++after;
-    if (after == reference.poses.size()) break;
-    const StampedPose& b = reference.poses[after];
-    if (b.stamp_ns == pose.stamp_ns) {
-      pairs.push_back({pose.stamp_ns, distance_m[after], b, pose});
-      continue;
+  if (reference_is_sparser(reference, estimate)) {
+    Interpolation at(estimate, bridged_gap_s(estimate, max_gap_s));
+    pairs.reserve(reference.poses.size());
+    for (std::size_t i = 0; i < reference.poses.size(); ++i) {
+      const StampedPose& pose = reference.poses[i];
+      if (at.move_to(pose.stamp_ns)) pairs.push_back({pose.stamp_ns, distance_m[i], pose, at.pose()});
     }
-    if (after == 0) continue;
-    const StampedPose& a = reference.poses[after - 1];
-    const double gap_s = seconds_between(a.stamp_ns, b.stamp_ns);
-    if (gap_s > max_gap_s) continue;
-    const double fraction = seconds_between(a.stamp_ns, pose.stamp_ns) / gap_s;
-    const double at_m = distance_m[after - 1] + fraction * (distance_m[after] - distance_m[after - 1]);
-    pairs.push_back({pose.stamp_ns, at_m, interpolated(a, b, fraction, pose.stamp_ns), pose});
+    return pairs;
+  }
+  Interpolation at(reference, bridged_gap_s(reference, max_gap_s));
+  pairs.reserve(estimate.poses.size());
+  for (const StampedPose& pose : estimate.poses) {
+    if (at.move_to(pose.stamp_ns)) pairs.push_back({pose.stamp_ns, at.value_of(distance_m), at.pose(), pose});
   }
   return pairs;
 }
 
-double coverage(const Trajectory& reference, const Trajectory& estimate, double max_gap_s) {
+double coverage(const Trajectory& reference, const Trajectory& estimate, std::optional<double> max_gap_s) {
   if (reference.empty() || estimate.empty()) return 0.0;
+  const double longest_s = bridged_gap_s(estimate, max_gap_s);
   const std::int64_t begin_ns = reference.poses.front().stamp_ns;
   const std::int64_t end_ns = reference.poses.back().stamp_ns;
   if (begin_ns == end_ns) return 1.0;
@@ -96,12 +187,19 @@ double coverage(const Trajectory& reference, const Trajectory& estimate, double 
   for (const StampedPose& pose : estimate.poses) {
     const std::int64_t stamp_ns = std::clamp(pose.stamp_ns, begin_ns, end_ns);
     const double gap_s = seconds_between(previous_ns, stamp_ns);
-    if (gap_s < max_gap_s) covered_s += gap_s;
+    if (gap_s <= longest_s) covered_s += gap_s;
     previous_ns = stamp_ns;
   }
   const double rest_s = seconds_between(previous_ns, end_ns);
-  if (rest_s < max_gap_s) covered_s += rest_s;
+  if (rest_s <= longest_s) covered_s += rest_s;
   return covered_s / seconds_between(begin_ns, end_ns);
+}
+
+bool lacks_attitude(const std::vector<PosePair>& pairs) {
+  constexpr double kStillRad = 1e-6;
+  constexpr double kTurnedRad = 0.5;
+  return !pairs.empty() && largest_turn_rad(pairs, &PosePair::reference) < kStillRad &&
+         largest_turn_rad(pairs, &PosePair::estimate) > kTurnedRad && largest_bend_rad(pairs) > kTurnedRad;
 }
 
 Eigen::Isometry3d alignment_transform(const std::vector<PosePair>& pairs, Alignment alignment) {
@@ -109,6 +207,8 @@ Eigen::Isometry3d alignment_transform(const std::vector<PosePair>& pairs, Alignm
   switch (alignment) {
     case Alignment::kStart:
       return start_alignment(pairs.front());
+    case Alignment::kStartOfPath:
+      return moved_to_start(yaw_umeyama(pairs), pairs.front());
     case Alignment::kYawTranslation:
       return yaw_umeyama(pairs);
     case Alignment::kRigid:

@@ -112,10 +112,10 @@ ConsistencyFigures consistency_of(const std::vector<PosePair>& pairs, std::vecto
   Counts counts;
   auto next = covariances.begin();
   for (const PosePair& pair : pairs) {
-    while (next != covariances.end() && next->stamp_ns < pair.stamp_ns) ++next;
+    while (next != covariances.end() && next->stamp_ns < pair.estimate.stamp_ns) ++next;
     if (next == covariances.end()) break;
     const CovarianceMatrix& claimed = next->covariance;
-    if (next->stamp_ns != pair.stamp_ns || !claimed.allFinite() || claimed.isZero(0.0)) continue;
+    if (next->stamp_ns != pair.estimate.stamp_ns || !claimed.allFinite() || claimed.isZero(0.0)) continue;
     counts.add(*next, error_of(pair),
                turn * claimed * turn.transpose() + kResolutionVariance * CovarianceMatrix::Identity());
   }

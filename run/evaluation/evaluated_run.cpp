@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <system_error>
 #include <unordered_map>
@@ -83,12 +84,30 @@ EvaluatedMethod evaluate_one(const ReferenceData& reference, const EstimateSourc
   return method;
 }
 
+/// A reference whose poses are usually further apart than kUsualGapS.
+void add_gap_note(EvaluatedRun& run) {
+  const double interval_s = typical_interval_s(run.reference.trajectory);
+  if (interval_s <= kUsualGapS) return;
+  char text[112];
+  std::snprintf(text, sizeof text, "The reference has one pose in %.2g s, more than the usual %.1f s apart.",
+                interval_s, kUsualGapS);
+  run.notes.emplace_back(text);
+}
+
 void add_notes(EvaluatedRun& run) {
   run.notes = run.reference.notes;
   if (std::any_of(run.methods.begin(), run.methods.end(),
                   [](const EvaluatedMethod& m) { return m.evaluation.figures.whole_run_as_flat; })) {
     run.notes.emplace_back("No flat segments: the relative error on z is over the whole run.");
   }
+  if (std::any_of(run.methods.begin(), run.methods.end(),
+                  [](const EvaluatedMethod& m) { return !m.evaluation.figures.reference_attitude; })) {
+    run.notes.emplace_back(
+        "The reference has no attitude: the yaw of its frame is the one that fits the path best, and angles "
+        "are not "
+        "compared.");
+  }
+  add_gap_note(run);
   for (const EvaluatedMethod& method : run.methods) {
     const MethodFigures& figures = method.evaluation.figures;
     if (needed_repair(figures.repairs))
@@ -96,7 +115,11 @@ void add_notes(EvaluatedRun& run) {
     if (figures.repairs.cut_line > 0)
       run.notes.push_back(cut_note(display_name(method.name), figures.repairs));
     for (const std::string& note : method.notes) run.notes.push_back(display_name(method.name) + ": " + note);
-    const std::size_t outside = figures.poses - figures.paired;
+    if (!figures.verdict.ok()) {
+      run.notes.push_back(display_name(method.name) + ": " + verdict_word(figures.verdict.kind) + ", " +
+                          figures.verdict.reason + ".");
+    }
+    const std::size_t outside = figures.outside;
     if (static_cast<double>(outside) > kNotedShareOutside * static_cast<double>(figures.poses)) {
       run.notes.push_back(display_name(method.name) + ": " + std::to_string(outside) + " of " +
                           std::to_string(figures.poses) +

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <string>
 #include <utility>
 
 #include "core/errors.hpp"
+#include "core/stamp.hpp"
 #include "run/evaluation/floors.hpp"
 
 namespace isobar::evaluation {
@@ -100,21 +103,52 @@ double share_within_two_sigma(const std::vector<PosePair>& pairs, std::vector<He
   std::size_t within = 0;
   auto sigma = sigmas.begin();
   for (const PosePair& pair : pairs) {
-    while (sigma != sigmas.end() && sigma->stamp_ns < pair.stamp_ns) ++sigma;
+    while (sigma != sigmas.end() && sigma->stamp_ns < pair.estimate.stamp_ns) ++sigma;
     if (sigma == sigmas.end()) break;
-    if (sigma->stamp_ns != pair.stamp_ns || !std::isfinite(sigma->sigma_m)) continue;
+    if (sigma->stamp_ns != pair.estimate.stamp_ns || !std::isfinite(sigma->sigma_m)) continue;
     ++known;
     if (std::abs(height_error_m(pair)) <= 2.0 * sigma->sigma_m) ++within;
   }
   return known == 0 ? MethodFigures::kNone : static_cast<double>(within) / static_cast<double>(known);
 }
 
-bool is_lost(const Evaluation& evaluation, const EvaluationOptions& options) {
-  if (evaluation.figures.coverage < options.lost_below_coverage) return true;
-  const double bound_m =
-      std::max(options.lost_beyond_m, options.lost_beyond_share_of_distance * evaluation.figures.travelled_m);
-  return std::any_of(evaluation.pairs.begin(), evaluation.pairs.end(),
-                     [&](const PosePair& pair) { return position_error_m(pair) > bound_m; });
+/// Poses of the estimate that have no reference.
+std::size_t poses_outside(const Trajectory& reference, const Trajectory& estimate,
+                          const std::vector<PosePair>& pairs) {
+  if (!reference_is_sparser(reference, estimate)) return estimate.poses.size() - pairs.size();
+  const std::int64_t begin_ns = reference.poses.front().stamp_ns;
+  const std::int64_t end_ns = reference.poses.back().stamp_ns;
+  return static_cast<std::size_t>(std::count_if(
+      estimate.poses.begin(), estimate.poses.end(),
+      [&](const StampedPose& pose) { return pose.stamp_ns < begin_ns || pose.stamp_ns > end_ns; }));
+}
+
+std::string seconds_text(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g s", seconds);
+  return text;
+}
+
+/// Why two trajectories have no pose at the same time.
+DataError no_pair(const Trajectory& reference, const Trajectory& estimate, std::optional<double> max_gap_s) {
+  const double late_s = seconds_between(reference.poses.back().stamp_ns, estimate.poses.front().stamp_ns);
+  const double early_s = seconds_between(estimate.poses.back().stamp_ns, reference.poses.front().stamp_ns);
+  if (late_s > 0.0) return DataError("begins " + seconds_text(late_s) + " after the end of the reference");
+  if (early_s > 0.0) return DataError("ends " + seconds_text(early_s) + " before the start of the reference");
+  const bool interpolates_estimate = reference_is_sparser(reference, estimate);
+  const Trajectory& between = interpolates_estimate ? estimate : reference;
+  return DataError(std::string(interpolates_estimate ? "it" : "the reference") + " has one pose in " +
+                   seconds_text(typical_interval_s(between)) + ", further apart than the longest gap of " +
+                   seconds_text(bridged_gap_s(between, max_gap_s)));
+}
+
+/// Angles between the estimate and a reference that has none mean nothing.
+void forget_angles(MethodFigures& figures) {
+  figures.rpe_translation = {};
+  figures.rpe_rotation_rad_m = {};
+  figures.yaw_drift_rad = MethodFigures::kNone;
+  figures.yaw_drift_rad_m = MethodFigures::kNone;
+  figures.consistency = {};
 }
 
 }  // namespace
@@ -124,14 +158,17 @@ Evaluation evaluate(const Trajectory& reference, const std::vector<Segment>& seg
                     const EvaluationOptions& options, std::vector<PoseCovariance> covariances) {
   Evaluation evaluation;
   evaluation.pairs = associate(reference, estimate, options.max_gap_s);
-  if (evaluation.pairs.empty()) throw DataError("no pose lies within the time of the reference");
-  evaluation.T_reference_estimate = alignment_transform(evaluation.pairs, Alignment::kStart);
+  if (evaluation.pairs.empty()) throw no_pair(reference, estimate, options.max_gap_s);
+  const bool has_attitude = !lacks_attitude(evaluation.pairs);
+  evaluation.T_reference_estimate =
+      alignment_transform(evaluation.pairs, has_attitude ? Alignment::kStart : Alignment::kStartOfPath);
   apply_transform(evaluation.pairs, evaluation.T_reference_estimate);
 
   MethodFigures& figures = evaluation.figures;
   figures.coverage = coverage(reference, estimate, options.max_gap_s);
   figures.poses = estimate.poses.size();
   figures.paired = evaluation.pairs.size();
+  figures.outside = poses_outside(reference, estimate, evaluation.pairs);
   figures.repairs = estimate.repairs;
   figures.travelled_m = travelled_distance_m(reference.poses).back();
   const std::vector<Segment> flat = flat_segments(segments);
@@ -142,7 +179,10 @@ Evaluation evaluate(const Trajectory& reference, const std::vector<Segment>& seg
   figures.consistency =
       consistency_of(evaluation.pairs, std::move(covariances), evaluation.T_reference_estimate);
   figures.sigma_share = share_within_two_sigma(evaluation.pairs, sigmas);
-  figures.lost = is_lost(evaluation, options);
+  figures.reference_attitude = has_attitude;
+  if (!has_attitude) forget_angles(figures);
+  figures.verdict =
+      verdict_on(evaluation.pairs, reference, figures.coverage, figures.travelled_m, options.verdict);
   return evaluation;
 }
 

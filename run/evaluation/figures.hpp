@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/statistics/distribution.hpp"
@@ -14,14 +15,15 @@
 #include "run/evaluation/segments.hpp"
 #include "run/evaluation/surface_index.hpp"
 #include "run/evaluation/trajectory.hpp"
+#include "run/evaluation/verdict.hpp"
 
 namespace isobar::evaluation {
 
 /// Parameters of the evaluation.
 struct EvaluationOptions {
-  /// Longest gap [s], > 0: across a longer one the reference is not interpolated and the estimate does not
-  /// cover the time. Five scans at 10 Hz.
-  double max_gap_s = 0.5;
+  /// Longest gap [s], > 0: across a longer one nothing is interpolated and the estimate does not cover the time;
+  /// not given: bridged_gap_s().
+  std::optional<double> max_gap_s;
   WindowOptions z_window{5.0, 0.1};      ///< of the paper's relative error on z
   WindowOptions pose_window{10.0, 0.1};  ///< of the relative pose error
   /// Alignment for the absolute trajectory error. All other figures use Alignment::kStart.
@@ -30,12 +32,7 @@ struct EvaluationOptions {
   double floor_gap_m = 1.0;
   /// Time at the start that MethodFigures::settled_floors_mean_m leaves out [s].
   double settling_s = 60.0;
-  /// Smallest coverage of a run that is not lost.
-  double lost_below_coverage = 0.95;
-  /// A run is also lost if its position error ever exceeds both limits: below them a drift is a poor
-  /// estimate, beyond them scans no longer match the map.
-  double lost_beyond_m = 5.0;
-  double lost_beyond_share_of_distance = 0.05;
+  VerdictLimits verdict;
 };
 
 /// Height error of the estimate on one floor, over all flat segments there.
@@ -58,11 +55,14 @@ struct MethodFigures {
 
   double coverage = 0.0;           ///< share of the reference's time, 0 … 1
   std::size_t poses = 0;           ///< of the estimate
-  std::size_t paired = 0;          ///< poses with a reference
+  std::size_t paired = 0;          ///< common times of estimate and reference
+  std::size_t outside = 0;         ///< poses of the estimate outside the reference's time or in its gaps
   StampRepairs repairs;            ///< of the estimate's stamps
   double travelled_m = 0.0;        ///< by the reference
   bool whole_run_as_flat = false;  ///< no flat segments: z_rpe is over the whole run
-  bool lost = false;               ///< see EvaluationOptions
+  bool reference_attitude =
+      true;  ///< false: the reference has positions only, and figures of angles are unknown
+  Verdict verdict;
 
   Distribution z_rpe;                     ///< relative error on z, 0 … [1]
   Distribution rpe_translation;           ///< [1]

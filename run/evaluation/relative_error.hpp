@@ -13,7 +13,7 @@ namespace isobar::evaluation {
 
 /// Windows start every `start_step_m` of travel, so that neither a robot at rest nor a higher pose rate gets
 /// more weight, and end at the first pose `length_m` further along the reference. Windows longer by more than
-/// a tenth (a gap in the estimate) are left out.
+/// a tenth, and than 1.5 usual steps of the pairs (a gap in the estimate), are left out.
 struct WindowOptions {
   double length_m = 5.0;
   double start_step_m = 0.1;

@@ -10,9 +10,8 @@
 namespace isobar::evaluation {
 
 SecondSessionError second_session_error(const Session& first, const Session& second) {
-  constexpr double kMaxGapS = 0.1;
-  const auto pairs_before = associate(first.reference, first.estimate, kMaxGapS);
-  std::vector<PosePair> pairs = associate(second.reference, second.estimate, kMaxGapS);
+  const auto pairs_before = associate(first.reference, first.estimate);
+  std::vector<PosePair> pairs = associate(second.reference, second.estimate);
   SecondSessionError error;
   if (pairs_before.empty() || pairs.empty()) return error;
   apply_transform(pairs, alignment_transform(pairs_before, Alignment::kYawTranslation));

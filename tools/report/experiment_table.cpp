@@ -70,7 +70,7 @@ void add_recording(const ExperimentResult& result, std::vector<Cells>& rows) {
       const bool is_best = sizes[i] == best[i] && result.cells.size() > 1;
       row.push_back(plain_number(sizes[i], kColumns[i].decimals) + (is_best ? "*" : " "));
     }
-    row.emplace_back(!cell.failure.empty() ? "FAILED" : cell.figures.lost ? "LOST" : "ok");
+    row.emplace_back(cell.failure.empty() ? evaluation::verdict_word(cell.figures.verdict.kind) : "FAILED");
     rows.push_back(std::move(row));
   }
 }
@@ -93,7 +93,7 @@ std::vector<Summary> summaries(const std::vector<ExperimentResult>& results) {
           std::find_if(all.begin(), all.end(), [&](const Summary& one) { return one.method == cell.method; });
       if (summary == all.end()) summary = all.insert(all.end(), Summary{cell.method, {}, {}, 0, 0});
       ++summary->recordings;
-      if (!cell.failure.empty() || cell.figures.lost) ++summary->lost;
+      if (!cell.failure.empty() || !cell.figures.verdict.ok()) ++summary->lost;
       const Sizes sizes = sizes_of(cell);
       for (std::size_t i = 0; i < sizes.size(); ++i) {
         if (!std::isnan(sizes[i])) summary->sizes[i].push_back(sizes[i]);
@@ -117,7 +117,7 @@ Cells heading(const char* first, const char* second, const char* last) {
 std::string experiment_table(const std::vector<ExperimentResult>& results) {
   std::vector<Cells> rows{heading("recording", "method", "verdict")};
   for (const ExperimentResult& result : results) add_recording(result, rows);
-  std::vector<Cells> medians{heading("all recordings", "", "lost or failed")};
+  std::vector<Cells> medians{heading("all recordings", "", "not ok")};
   for (const Summary& summary : summaries(results)) {
     Cells medians_of{evaluation::display_name(summary.method), "median"};
     Cells near{"", "within 1.1 x best"};

@@ -41,7 +41,9 @@ Json method_json(const evaluation::EvaluatedMethod& method) {
   const evaluation::MethodFigures& figures = method.evaluation.figures;
   Json json{{"name", method.name},
             {"source", method.source.string()},
-            {"lost", figures.lost},
+            {"verdict", evaluation::verdict_word(figures.verdict.kind)},
+            {"verdict_reason", figures.verdict.reason},
+            {"lost", figures.verdict.kind == evaluation::VerdictKind::kLost},
             {"z_rpe_over_whole_run", figures.whole_run_as_flat}};
   for (const FigureRow& row : figure_rows()) json[row.key] = json_number(json_value(row, figures));
   json["floors"] = Json::array();

@@ -46,8 +46,9 @@ std::vector<std::string> table_head(const evaluation::EvaluatedRun& run, std::ve
 std::vector<TableCell> verdict_row(const evaluation::EvaluatedRun& run) {
   std::vector<TableCell> row{{"Verdict"}, {""}};
   for (const evaluation::EvaluatedMethod& method : run.methods) {
-    const bool lost = method.evaluation.figures.lost;
-    row.push_back({lost ? "lost" : "ok", lost ? "lost" : ""});
+    const evaluation::Verdict& verdict = method.evaluation.figures.verdict;
+    const std::string reason = verdict.ok() ? "" : ": " + verdict.reason;
+    row.push_back({verdict_word(verdict.kind) + reason, verdict.ok() ? "" : "lost"});
   }
   return row;
 }
@@ -65,6 +66,7 @@ std::string definition(const std::string& term, const std::string& text) {
 std::string ate_alignment_text(evaluation::Alignment alignment) {
   switch (alignment) {
     case evaluation::Alignment::kStart:
+    case evaluation::Alignment::kStartOfPath:
       return "after the alignment above";
     case evaluation::Alignment::kYawTranslation:
       return "after the best-fitting yaw and translation (Umeyama 1991)";
@@ -150,14 +152,17 @@ std::string definitions(const evaluation::EvaluatedRun& run) {
       definition("Map",
                  "Points of the map after the alignment above, by their distance from the nearest surface of "
                  "the simulated world that does not move (surfaces.stl).");
-  html += definition("Time covered",
-                     "Share of the reference's time between consecutive poses of the estimate less than " +
-                         fixed(options.max_gap_s, 1) + " s apart.");
-  html += definition("Verdict", "Lost if less than " + fixed(100.0 * options.lost_below_coverage, 0) +
-                                    " % of the time is covered, or if the position error ever exceeds both " +
-                                    fixed(options.lost_beyond_m, 0) + " m and " +
-                                    fixed(100.0 * options.lost_beyond_share_of_distance, 0) +
-                                    " % of the distance.");
+  html += definition(
+      "Time covered",
+      "Share of the reference's time between consecutive poses of the estimate no further apart than " +
+          (options.max_gap_s ? fixed(*options.max_gap_s, 1) + " s."
+                             : fixed(evaluation::kUsualGapS, 1) +
+                                   " s, or 1.5 of its usual intervals where these are longer."));
+  html += definition("Verdict",
+                     "Lost if the position error ever exceeds both " + fixed(options.verdict.beyond_m, 0) +
+                         " m and " + fixed(100.0 * options.verdict.beyond_share_of_distance, 0) +
+                         " % of the distance; else incomplete if less than " +
+                         fixed(100.0 * options.verdict.least_coverage, 0) + " % of the time is covered.");
   return html + "</dl>\n";
 }
 

@@ -41,7 +41,7 @@ void print_figures(std::FILE* out, const evaluation::EvaluatedRun& run) {
     for (const FigureRow& row : figure_rows()) {
       if (row.heading != nullptr) cells.push_back(plain(shown(row, method.evaluation.figures)));
     }
-    cells.emplace_back(method.evaluation.figures.lost ? "LOST" : "ok");
+    cells.emplace_back(verdict_word(method.evaluation.figures.verdict.kind));
     table.push_back(std::move(cells));
   }
   std::fputs(aligned_rows(table).c_str(), out);

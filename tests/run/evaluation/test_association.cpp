@@ -33,7 +33,7 @@ double largest_distance_m(const std::vector<PosePair>& pairs) {
 TEST_CASE(
     "the reference is interpolated at the estimate's stamps, exactly on a straight path at a constant turn "
     "rate") {
-  const Trajectory reference = straight(10.0, 0.25, 0.1, 0.2);
+  const Trajectory reference = straight(10.0, 0.125, 0.1, 0.2);
   const Trajectory estimate = straight(10.0, 0.1, 0.1, 0.2);
   const std::vector<PosePair> pairs = associate(reference, estimate, 0.5);
   REQUIRE(pairs.size() == estimate.poses.size());

@@ -53,6 +53,7 @@ Run draw(const Matrix6& truth, const Matrix6& claim) {
     error = root * error;
     PosePair pair;
     pair.stamp_ns = 1000 + static_cast<std::int64_t>(i);
+    pair.estimate.stamp_ns = pair.stamp_ns;
     pair.reference.attitude = rotation_from_rpy({0.1, -0.2, 0.01 * static_cast<double>(i)});
     pair.reference.position_m = Vector3d(static_cast<double>(i), 2.0, 3.0);
     pair.estimate.position_m = pair.reference.position_m + error.head<3>();
@@ -154,7 +155,8 @@ TEST_CASE(
     "the longest time silently wrong ends with a pose that is right, not registered, or admits its error") {
   Run run = draw(some_covariance() * 1e-6, some_covariance());
   for (std::size_t i = 0; i < kPoses; ++i) {
-    run.pairs[i].stamp_ns = run.covariances[i].stamp_ns = 100'000'000 * static_cast<std::int64_t>(i);
+    run.pairs[i].stamp_ns = run.pairs[i].estimate.stamp_ns = run.covariances[i].stamp_ns =
+        100'000'000 * static_cast<std::int64_t>(i);
   }
   CHECK(figures_of(run).longest_silent_s == 0.0);
   for (std::size_t i = 100; i < 200; ++i) run.pairs[i].estimate.position_m.x() += 0.5;  // ten sigma

@@ -31,7 +31,7 @@ TEST_CASE("a perfect estimate in another frame has no error and full coverage, a
   CHECK(std::abs(e.figures.yaw_drift_rad) < 1e-9);
   CHECK(e.figures.coverage == Approx(1.0));
   CHECK(e.figures.whole_run_as_flat);
-  CHECK_FALSE(e.figures.lost);
+  CHECK(e.figures.verdict.ok());
   CHECK(std::isnan(e.figures.sigma_share));
 }
 
@@ -109,11 +109,80 @@ TEST_CASE("a floor visited twice is one floor, with the error of its worst visit
   CHECK(f.floors[1].mean_error_m == Approx(-0.1).epsilon(1e-6));
 }
 
-TEST_CASE("a run is lost when it stops early or leaves the reference far behind, not when it only drifts") {
+TEST_CASE("a run is lost when it leaves the reference far behind, incomplete when it stops early, else ok") {
   const Trajectory reference = straight(200.0, 0.01);
-  CHECK_FALSE(evaluate(reference, {}, straight(200.0, 0.1, 0.02), {}).figures.lost);  // 4 m in 200 m
-  CHECK(evaluate(reference, {}, straight(190.0, 0.1), {}).figures.lost);              // 95 % covered
-  CHECK(evaluate(reference, {}, stepped(straight(200.0, 0.1), 100.0, 20.0), {}).figures.lost);
+  const auto verdict_on_run = [&](const Trajectory& estimate) {
+    return evaluate(reference, {}, estimate, {}).figures.verdict;
+  };
+  CHECK(verdict_on_run(straight(200.0, 0.1, 0.02)).kind == VerdictKind::kOk);  // 4 m in 200 m
+  const Verdict early = verdict_on_run(straight(180.0, 0.1));
+  CHECK(early.kind == VerdictKind::kIncomplete);
+  CHECK(early.reason == "covers 90 % of 200.0 s: ends 20.0 s early");
+  const Verdict lost = verdict_on_run(stepped(straight(200.0, 0.1), 100.0, 20.0));
+  CHECK(lost.kind == VerdictKind::kLost);
+  CHECK(lost.reason.starts_with("off by 20.0 m at 100."));
+  CHECK(lost.reason.ends_with("beyond 10.0 m"));
+}
+
+TEST_CASE("an incomplete run says what is missing: late begin and gaps") {
+  Trajectory estimate = straight(100.0, 0.1);
+  std::erase_if(estimate.poses, [](const StampedPose& p) {
+    return p.stamp_ns < at_ns(10.0) || (p.stamp_ns > at_ns(50.0) && p.stamp_ns < at_ns(58.0));
+  });
+  const Verdict verdict = evaluate(straight(100.0, 0.01), {}, estimate, {}).figures.verdict;
+  CHECK(verdict.reason == "covers 82 % of 100.0 s: begins 10.0 s late, gaps of 8.0 s");
+}
+
+TEST_CASE(
+    "a reference of one pose a second gives the figures of a dense one, whichever of the two is sparse") {
+  const Trajectory dense = straight(60.0, 0.1, 0.02);
+  const Trajectory sparse = straight(60.0, 1.0);
+  const MethodFigures of_dense = evaluate(straight(60.0, 0.01), {}, dense, {}).figures;
+  for (const MethodFigures& f : {evaluate(sparse, {}, dense, {}).figures,
+                                 evaluate(straight(60.0, 0.1), {}, straight(60.0, 1.0, 0.02), {}).figures}) {
+    CHECK(f.verdict.ok());
+    CHECK(f.coverage == Approx(1.0));
+    CHECK(f.paired == 61);
+    CHECK(f.outside == 0);
+    // A straight path at one speed: interpolation is exact; the root mean square is over other times.
+    CHECK(f.final_height_error_m == Approx(of_dense.final_height_error_m).epsilon(1e-6));
+    CHECK(f.ate_rms_m == Approx(of_dense.ate_rms_m).epsilon(0.02));
+    CHECK(f.z_rpe.count > 0);
+    CHECK(f.z_rpe.median == Approx(of_dense.z_rpe.median).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("a reference without attitude is aligned by its path, and angles are not compared") {
+  Trajectory positions = winding(60.0, 1.0);
+  for (StampedPose& pose : positions.poses) pose.attitude = Eigen::Quaterniond::Identity();
+  const Trajectory estimate = transformed(yaw_and_shift(1.3, {3, -4, 5}), winding(60.0, 0.1));
+  const MethodFigures f = evaluate(positions, {}, estimate, {}).figures;
+  CHECK_FALSE(f.reference_attitude);
+  CHECK(f.ate_max_m < 1e-6);  // rounding only: the stamps of the reference are among the estimate's
+  CHECK(std::isnan(f.yaw_drift_rad));
+  CHECK(f.verdict.ok());
+}
+
+TEST_CASE("two trajectories without a common time are told apart from one with gaps") {
+  const auto message = [](const Trajectory& reference, const Trajectory& estimate,
+                          std::optional<double> gap_s) {
+    EvaluationOptions options;
+    options.max_gap_s = gap_s;
+    try {
+      (void)evaluate(reference, {}, estimate, {}, options);
+    } catch (const DataError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  Trajectory later = straight(10.0, 0.1);
+  for (StampedPose& pose : later.poses) pose.stamp_ns += at_ns(20.0) - at_ns(0.0);
+  CHECK(message(straight(10.0, 0.1), later, std::nullopt) == "begins 10 s after the end of the reference");
+  CHECK(message(later, straight(10.0, 0.1), std::nullopt) == "ends 10 s before the start of the reference");
+  Trajectory between = straight(9.0, 1.0);
+  for (StampedPose& pose : between.poses) pose.stamp_ns += 500'000'000;
+  CHECK(message(straight(10.0, 1.0), between, 0.5) ==
+        "the reference has one pose in 1 s, further apart than the longest gap of 0.5 s");
 }
 
 TEST_CASE("a height error that grows evenly to 2 m is within two sigma of 0.5 m for half of the time") {

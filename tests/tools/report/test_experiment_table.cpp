@@ -73,7 +73,7 @@ TEST_CASE("a failed method is listed with its message, spoils no median and has 
   std::vector<ExperimentResult> results = two_recordings();
   results[1].cells[1] = failed("4dof");
   results.push_back({"moulin-1", "the folder cannot be written", {}, ""});
-  results[0].cells[0].figures.lost = true;
+  results[0].cells[0].figures.verdict.kind = evaluation::VerdictKind::kLost;
   const std::string text = experiment_table(results);
   CHECK_FALSE(line_with(text, {"hill-2, 4dof: the disk is full"}).empty());
   CHECK_FALSE(line_with(text, {"moulin-1: the folder cannot be written"}).empty());
