@@ -250,7 +250,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   if (manifest.base_barometer) summary.base_clock = reader.base_clock().reason;
 
   files::RunOutput output(out);
-  output.write_settings(show_config(used));
+  output.write_settings(run_settings(used));
   OutputSink sink(output);
   ReplayMaps maps(used, out);
   LockStep pipeline(stage_settings(used), sink, maps.storage(), maps.loop_files(used),

@@ -61,7 +61,7 @@ RunFiles::RunFiles(const Config& config)
   choose_stored_start(config);
   if (directory_.empty()) return;
   output_.emplace(directory_, files::Start::kContinue, start_.session);
-  do_or_log([&] { output_->write_settings(show_config(config)); });
+  do_or_log([&] { output_->write_settings(run_settings(config)); });
   if (output_->removed_bytes() > 0) {
     spdlog::warn("{}: the last lines were incomplete, after a power cut; {} bytes are removed",
                  directory_.string(), output_->removed_bytes());

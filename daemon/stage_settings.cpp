@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/stage_settings.hpp"
 
+#include "config/config_io.hpp"
 #include "core/errors.hpp"
 #include "core/map/grid.hpp"
 #include "core/printable_text.hpp"
+#include "core/version.hpp"
 
 namespace isobar {
 
@@ -74,6 +76,10 @@ Config with_sensors_of(const recording::Manifest& manifest, Config config) {
   }
   if (!manifest.wheel) config.wheel.source = WheelSource::kNone;
   return config;
+}
+
+std::string run_settings(const Config& config) {
+  return "# Of a run of " + version_line("isobar") + "\n" + show_config(config);
 }
 
 }  // namespace isobar

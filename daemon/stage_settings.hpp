@@ -50,4 +50,7 @@ TileStoreLimits map_limits(const Config& config);
 /// @throws DataError for a recording without lidar or IMU, or with a lidar model without a driver
 Config with_sensors_of(const recording::Manifest& manifest, Config config);
 
+/// Text of a run's settings.toml: every setting, and the version and commit that the run was made with.
+std::string run_settings(const Config& config);
+
 }  // namespace isobar

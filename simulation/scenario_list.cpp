@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
+#include <vector>
 
 #include "core/errors.hpp"
+#include "core/nearest_word.hpp"
 #include "simulation/simulate.hpp"
 
 namespace isobar::simulation {
@@ -45,9 +48,14 @@ const ScenarioEntry& find_scenario(const std::string& name) {
   const auto* found = std::find_if(kEntries.begin(), kEntries.end(),
                                    [&](const ScenarioEntry& entry) { return name == entry.name; });
   if (found != kEntries.end()) return *found;
-  std::string names;
-  for (const ScenarioEntry& entry : kEntries) names += (names.empty() ? "" : ", ") + std::string(entry.name);
-  throw UsageError("unknown scenario '" + name + "'; known scenarios: " + names);
+  std::string all;
+  std::vector<std::string> names;
+  for (const ScenarioEntry& entry : kEntries) {
+    names.emplace_back(entry.name);
+    all += (all.empty() ? "" : ", ") + names.back();
+  }
+  throw UsageError("unknown scenario '" + name + "'" + did_you_mean(name, names) +
+                   "; known scenarios: " + all);
 }
 
 std::vector<ScenarioInfo> scenarios() {

@@ -22,6 +22,8 @@
 #include "tools/commands.hpp"
 #include "tools/height_errors.hpp"
 #include "tools/inertial_heights.hpp"
+#include "tools/number_option.hpp"
+#include "tools/output_option.hpp"
 #include "tools/pressure_log.hpp"
 #include "tools/subcommand.hpp"
 
@@ -166,12 +168,13 @@ void add_altitude_command(CLI::App& app) {
   command.add_option("--base-columns", options.base_columns, "the same for the base");
   command.add_option("--lag", options.lag_s, "lag of the low-pass [s]; 0: no low-pass")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 600.0));
+      ->check(number_within(0.0, 600.0));
   add_air_option(command, options.air_c);
   command.add_option("--imu", options.imu,
                      "imu.csv of the moved barometer: vertical acceleration replaces the low-pass");
   command.add_option("--reference", options.reference, "trajectory (TUM format) to compare the heights with");
-  command.add_option("--out", options.out, "CSV file for the heights: t_ns,height_m");
+  command.add_option("--out", options.out, "CSV file for the heights: t_ns,height_m")
+      ->check(written_as({".csv"}));
 }
 
 }  // namespace isobar::tools

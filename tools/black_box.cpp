@@ -15,6 +15,7 @@
 #include "ipc/service_view.hpp"
 #include "ipc/shared_memory.hpp"
 #include "tools/commands.hpp"
+#include "tools/number_option.hpp"
 #include "tools/status/hang_limit.hpp"
 #include "tools/subcommand.hpp"
 
@@ -121,7 +122,7 @@ void add_black_box_command(CLI::App& app) {
       add_subcommand<SaveOptions>(*black_box, "save", "Write it to the disk as a recording", run_save);
   save.add_option("--reason", options.reason, "part of the folder's name")->capture_default_str();
   save.add_option("--timeout", options.timeout_s, "longest wait for the end of writing [s]")
-      ->check(CLI::Range(1.0, 3'600.0))
+      ->check(number_within(1.0, 3'600.0))
       ->capture_default_str();
   add_subcommand<StateOptions>(*black_box, "status", "What it holds, and what it has saved", run_state);
 }

@@ -14,6 +14,8 @@
 #include "core/errors.hpp"
 #include "tools/calibrate_logs.hpp"
 #include "tools/commands.hpp"
+#include "tools/number_option.hpp"
+#include "tools/output_option.hpp"
 #include "tools/progress.hpp"
 #include "tools/report/calibration_report.hpp"
 #include "tools/report/svg.hpp"
@@ -164,15 +166,17 @@ void add_calibrate_command(CLI::App& app) {
   auto* shift = command.add_option("--shift", options.logs.shift_s,
                                    "reference clock minus sensor clock [s] (default: searched)");
   command.add_option("--window", options.window_h, "search shifts up to this, in both directions [h]")
-      ->check(CLI::Range(0.01, 1000.0))
+      ->check(number_within(0.01, 1000.0))
       ->capture_default_str()
       ->excludes(shift);
   command.add_option("--model", options.model, "write this model instead of the recommended one")
       ->option_text("offset|A_p|A_simple|A_ind|A_m|A_full");
   command.add_flag("--pressure-only", options.pressure_only,
                    "accept a single temperature: fit offset and A_p only, which need no other");
-  command.add_option("--out", options.out, "TOML file for the compensation, which isobar.toml can name");
-  command.add_option("--report", options.report, "HTML file for the report; it opens without a network");
+  command.add_option("--out", options.out, "TOML file for the compensation, which isobar.toml can name")
+      ->check(written_as({".toml"}));
+  command.add_option("--report", options.report, "HTML file for the report; it opens without a network")
+      ->check(written_as({".html", ".htm"}));
   command.add_option("--title", options.title, "headline of the report");
 }
 

@@ -20,6 +20,8 @@
 #include "tools/commands.hpp"
 #include "tools/config_proposal.hpp"
 #include "tools/machine_survey.hpp"
+#include "tools/number_option.hpp"
+#include "tools/typed_words.hpp"
 
 namespace isobar::tools {
 namespace {
@@ -90,7 +92,7 @@ void add_init(CLI::App& command) {
   const auto options = std::make_shared<InitOptions>();
   init->add_option("FILE", options->file, "new file to write; without it the proposal is printed");
   init->add_option("--listen", options->listen_s, "time to listen for lidars [s]")
-      ->check(CLI::Range(0.0, 60.0))
+      ->check(number_within(0.0, 60.0))
       ->capture_default_str();
   init->add_option("--root", options->root, "folder with dev and sys, to look at another machine's")
       ->capture_default_str();
@@ -139,7 +141,7 @@ void add_show(CLI::App& command) {
                    "configuration whose values replace the defaults; each value then names its file");
   show->add_flag("--basic", options->basic, "print only the basic settings, those to set first on a robot");
   show->add_option("--role", options->role, "print the defaults of this role")
-      ->check(CLI::IsMember(role_choices()))
+      ->check(one_of(role_choices()))
       ->excludes("FILE");
   show->add_option("--sensors-of", options->recording,
                    "recording whose sensors and mounts replace the defaults");

@@ -11,6 +11,7 @@
 
 #include "core/errors.hpp"
 #include "run/text/number_text.hpp"
+#include "tools/number_option.hpp"
 
 namespace isobar::tools {
 
@@ -141,7 +142,7 @@ void add_barometer_options(CLI::App& command, Deviations& deviations) {
       });
   command
       .add_option("--base-rate", deviations.base_rate_hz, "samples a second that the base station sends [Hz]")
-      ->check(CLI::Range(0.01, Deviations::kFullBaseRateHz))
+      ->check(number_within(0.01, Deviations::kFullBaseRateHz))
       ->capture_default_str()
       ->type_name("HZ")
       ->group(kGroup);
@@ -155,7 +156,7 @@ void add_deviation_options(CLI::App& command, Deviations& deviations) {
           "--mount-error", deviations.mount_error_deg,
           "sd of further errors of roll, pitch and yaw of lidar and IMU [deg]; recording.toml keeps the "
           "mounts that the robot believes, its description the true ones")
-      ->check(CLI::Range(0.0, 20.0))
+      ->check(number_within(0.0, 20.0))
       ->type_name("DEG")
       ->group(kGroup);
   add_barometer_options(command, deviations);
@@ -170,7 +171,7 @@ void add_deviation_options(CLI::App& command, Deviations& deviations) {
   command
       .add_option("--start-at", deviations.start_at_s,
                   "leave out the run before this time [s]: the recording begins in motion")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_from_zero())
       ->type_name("S")
       ->group(kGroup);
   add(command, "without", "imu|wheels|base|barometer", "leaves a sensor out; may be given several times",

@@ -21,6 +21,8 @@
 #include "ipc/dds/library_log.hpp"
 #include "ipc/dds/messages.hpp"
 #include "tools/commands.hpp"
+#include "tools/number_option.hpp"
+#include "tools/typed_words.hpp"
 
 namespace isobar::tools {
 namespace {
@@ -247,12 +249,12 @@ void add_echo_command(CLI::App& app) {
   command
       ->add_option("TOPIC", options->topics,
                    "pose, odom, altitude, tf, tf_static, map, floor, floor_name, diagnostics; one or more")
-      ->check(CLI::IsMember(
+      ->check(one_of(
           {"pose", "odom", "altitude", "tf", "tf_static", "map", "floor", "floor_name", "diagnostics"}))
       ->capture_default_str();
   command->add_option("--domain", options->domain, "DDS domain")
       ->envname("ROS_DOMAIN_ID")
-      ->check(CLI::Range(0, 232))
+      ->check(number_within(0, 232))
       ->capture_default_str();
   command
       ->add_option(
@@ -264,13 +266,13 @@ void add_echo_command(CLI::App& app) {
                    "namespace of the robot, dds.ros_namespace of its configuration")
       ->type_name("NAME");
   command->add_option("--rate", options->rate_hz, "highest rate of lines per topic [Hz]")
-      ->check(CLI::Range(1e-3, 1e6))
+      ->check(number_within(1e-3, 1e6))
       ->capture_default_str();
   command->add_option("--count", options->count, "stop after this number of lines; 0: never")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_from_zero())
       ->capture_default_str();
   command->add_option("--timeout", options->timeout_s, "fail after this time without a message [s]; 0: never")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_within(0.0, 1e6))
       ->capture_default_str();
   command->callback([options] { run(*options); });
 }

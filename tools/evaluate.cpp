@@ -11,10 +11,13 @@
 #include "core/geometry.hpp"
 #include "run/evaluation/second_session.hpp"
 #include "tools/commands.hpp"
+#include "tools/number_option.hpp"
+#include "tools/output_option.hpp"
 #include "tools/report/figures_json.hpp"
 #include "tools/report/report.hpp"
 #include "tools/report/terminal_table.hpp"
 #include "tools/subcommand.hpp"
+#include "tools/typed_words.hpp"
 
 namespace isobar::tools {
 
@@ -110,7 +113,7 @@ void add_evaluate_command(CLI::App& app) {
           "--align", options.alignment,
           "alignment for the absolute error: first pose, best yaw and translation, or best rotation and "
           "translation")
-      ->check(CLI::IsMember({"start", "yaw", "rigid"}))
+      ->check(one_of({"start", "yaw", "rigid"}))
       ->capture_default_str()
       ->option_text("start|yaw|rigid");
   command
@@ -118,7 +121,7 @@ void add_evaluate_command(CLI::App& app) {
           "--max-gap", options.max_gap_s,
           "longest gap between two poses that is bridged [s] (0.5, or 1.5 usual intervals where these are "
           "longer)")
-      ->check(CLI::Range(0.001, 3600.0))
+      ->check(number_within(0.001, 3600.0))
       ->option_text("SECONDS");
   command.add_flag("--corrected", options.corrected,
                    "evaluate the trajectory of each run as its loops correct it as well");
@@ -128,9 +131,11 @@ void add_evaluate_command(CLI::App& app) {
       ->expected(2)
       ->option_text("REFERENCE RUN");
   command.add_option("--title", options.title, "headline of the report");
-  command.add_option("--report", options.report, "HTML file for the report; it opens without a network");
-  command.add_option("--picture", options.picture, "SVG file for the overview picture");
-  command.add_option("--json", options.json, "JSON file for all figures");
+  command.add_option("--report", options.report, "HTML file for the report; it opens without a network")
+      ->check(written_as({".html", ".htm"}));
+  command.add_option("--picture", options.picture, "SVG file for the overview picture")
+      ->check(written_as({".svg"}));
+  command.add_option("--json", options.json, "JSON file for all figures")->check(written_as({".json"}));
 }
 
 }  // namespace isobar::tools

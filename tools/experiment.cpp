@@ -25,6 +25,7 @@
 #include "tools/floor_comparison.hpp"
 #include "tools/lidar_option.hpp"
 #include "tools/method_option.hpp"
+#include "tools/number_option.hpp"
 #include "tools/progress.hpp"
 #include "tools/report/figures_json.hpp"
 #include "tools/report/report.hpp"
@@ -176,7 +177,7 @@ void add_experiment_command(CLI::App& app) {
                      "three-floors, elevator, moulin; `isobar simulate --list` shows all");
   command.add_option("--seed", options.request.seed, "random seed of world and sensor errors")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_from_zero());
   command.add_flag("--short", options.request.short_form, "the short form of the scenario");
   add_lidar_option(command, options.request);
   command.add_option(
@@ -188,7 +189,7 @@ void add_experiment_command(CLI::App& app) {
                    "evaluate the trajectory of each run as its loops correct it as well");
   command.add_option("--jobs", options.jobs, "replays at a time")
       ->capture_default_str()
-      ->check(CLI::Range(1, 64));
+      ->check(number_within(1, 64));
   add_deviation_options(command, options.request.deviations);
 }
 

@@ -22,6 +22,7 @@
 #include "tools/deviation_options.hpp"
 #include "tools/experiment_recording.hpp"
 #include "tools/method_option.hpp"
+#include "tools/number_option.hpp"
 #include "tools/report/experiment_table.hpp"
 #include "tools/report/figures_json.hpp"
 #include "tools/subcommand.hpp"
@@ -197,7 +198,7 @@ void add_experiment_all_command(CLI::App& experiment) {
       "delete recordings and runs after their figures are taken: a full recording has up to 500 MB");
   command.add_option("--jobs", options.jobs, "recordings at a time")
       ->capture_default_str()
-      ->check(CLI::Range(1, 64));
+      ->check(number_within(1, 64));
   add_deviation_options(command, options.deviations);
 }
 

@@ -3,6 +3,7 @@
 
 #include "core/errors.hpp"
 #include "core/names.hpp"
+#include "core/nearest_word.hpp"
 #include "run/recording/manifest.hpp"
 #include "tools/method_option.hpp"
 
@@ -23,7 +24,9 @@ std::vector<Method> chosen_methods(const std::vector<std::string>& names) {
   std::vector<Method> methods;
   for (const std::string& name : names) {
     const auto method = kMethodNames.value(name);
-    if (!method) throw UsageError("--methods: \"" + name + "\" is none of " + method_names());
+    if (!method)
+      throw UsageError("--methods: \"" + name + "\" is none of " + method_names() +
+                       did_you_mean(name, kMethodNames.names()));
     methods.push_back(*method);
   }
   return methods;

@@ -17,6 +17,7 @@
 #include "ipc/channel.hpp"
 #include "ipc/service_view.hpp"
 #include "tools/commands.hpp"
+#include "tools/number_option.hpp"
 #include "tools/status/hang_limit.hpp"
 #include "tools/subcommand.hpp"
 #include "tools/wait_until.hpp"
@@ -123,11 +124,11 @@ void add_initial_pose_command(CLI::App& app) {
   command
       .add_option("--sigma", options.sigma_m,
                   "error of X and Y, 1 sigma [m]; twice that is searched, 1 to 5 m")
-      ->check(CLI::Range(0.01, 10.0))
+      ->check(number_within(0.01, 10.0))
       ->capture_default_str();
   command
       .add_option("--sigma-yaw", options.sigma_deg, "error of YAW, 1 sigma [deg]; 90 and more: any heading")
-      ->check(CLI::Range(1.0, 180.0))
+      ->check(number_within(1.0, 180.0))
       ->capture_default_str();
   command.add_option("--timeout", options.timeout_s, "longest wait [s]")->capture_default_str();
 }

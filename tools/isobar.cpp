@@ -5,19 +5,18 @@
 #include <exception>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/errors.hpp"
 #include "tools/isobar_app.hpp"
+#include "tools/typed_words.hpp"
 
 namespace {
 
 int run(int argc, char** argv) {
   CLI::App app;
   isobar::tools::add_all_commands(app);
-  const auto named = [&](const CLI::App* command) { return command->get_name() == argv[1]; };
-  if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(named).empty()) {
-    throw isobar::UsageError(std::string(argv[1]) + ": no such command; `isobar --help` shows all");
-  }
+  isobar::tools::check_typed_words(app, std::vector<std::string>(argv + 1, argv + argc));
   try {
     app.parse(argc, argv);
     return 0;

@@ -10,6 +10,7 @@
 #include "ipc/keys/key_folder.hpp"
 #include "ipc/keys/key_store.hpp"
 #include "tools/commands.hpp"
+#include "tools/number_option.hpp"
 #include "tools/subcommand.hpp"
 
 namespace isobar::tools {
@@ -70,7 +71,7 @@ void run_show(const KeysOptions& options) {
 
 void add_years(Subcommand<KeysOptions>& subcommand) {
   subcommand.command.add_option("--years", subcommand.options.years, "validity, from today")
-      ->check(CLI::Range(1, 50))
+      ->check(number_within(1, 50))
       ->capture_default_str();
 }
 

@@ -11,6 +11,7 @@
 #include "run/floors/grid_file.hpp"
 #include "run/floors/stored_floors.hpp"
 #include "tools/map_parts.hpp"
+#include "tools/number_option.hpp"
 #include "tools/subcommand.hpp"
 
 namespace isobar::tools {
@@ -68,17 +69,17 @@ void add_map_grid_command(CLI::App& map) {
   command.add_option("--floor", options.floor, "number or name of a floor, or all")->capture_default_str();
   command.add_option("--resolution", options.grid.resolution_m, "edge of a cell [m]")
       ->capture_default_str()
-      ->check(CLI::Range(0.02, 1.0));
+      ->check(number_within(0.02, 1.0));
   command
       .add_option("--robot-height", options.grid.robot_height_m,
                   "surfaces higher than this above the ground are no obstacles [m]")
       ->capture_default_str()
-      ->check(CLI::Range(0.2, 10.0));
+      ->check(number_within(0.2, 10.0));
   command
       .add_option("--lowest-obstacle", options.grid.lowest_obstacle_m,
                   "surfaces lower than this above the ground are no obstacles [m]")
       ->capture_default_str()
-      ->check(CLI::Range(0.03, 1.0));
+      ->check(number_within(0.03, 1.0));
 }
 
 }  // namespace isobar::tools

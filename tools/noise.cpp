@@ -16,6 +16,8 @@
 #include "core/calibration/sensor_noise.hpp"
 #include "core/errors.hpp"
 #include "tools/commands.hpp"
+#include "tools/number_option.hpp"
+#include "tools/output_option.hpp"
 #include "tools/pressure_log.hpp"
 #include "tools/report/aligned_rows.hpp"
 #include "tools/report/noise_report.hpp"
@@ -215,18 +217,19 @@ void add_noise_command(CLI::App& app) {
   command.add_option("--from", options.from_s, "start of a period at rest [s since the first row]");
   command.add_option("--to", options.to_s, "its end (default: the longest still period is found)");
   auto* lag = command.add_option("--lag", options.lag_s, "allowed lag of the low-pass [s] (default: 1)")
-                  ->check(CLI::PositiveNumber);
+                  ->check(number_above_zero());
   auto* bandwidth =
       command.add_option("--bandwidth", options.bandwidth_hz, "motion up to this frequency must pass [Hz]")
-          ->check(CLI::PositiveNumber)
+          ->check(number_above_zero())
           ->excludes(lag);
   command
       .add_option("--noise", options.output_sigma_pa,
                   "allowed noise of the output [Pa]; the paper asks for 0.1")
-      ->check(CLI::PositiveNumber)
+      ->check(number_above_zero())
       ->excludes(lag)
       ->excludes(bandwidth);
-  command.add_option("--report", options.report, "HTML file for the report; it opens without a network");
+  command.add_option("--report", options.report, "HTML file for the report; it opens without a network")
+      ->check(written_as({".html", ".htm"}));
 }
 
 }  // namespace isobar::tools

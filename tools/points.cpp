@@ -20,6 +20,7 @@
 #include "run/files/text_file.hpp"
 #include "run/recording/pcap_packets.hpp"
 #include "tools/commands.hpp"
+#include "tools/number_option.hpp"
 #include "tools/subcommand.hpp"
 
 namespace isobar::tools {
@@ -178,11 +179,11 @@ void add_points_command(CLI::App& app) {
   command.add_option("--model", options.model, "model of the lidar: " + lidar_model_list())
       ->capture_default_str();
   command.add_option("--port", options.port, "UDP port of the data packets (default: the model's)")
-      ->check(CLI::Range(1, 65'535));
+      ->check(number_within(1, 65'535));
   command
       .add_option("--info-port", options.info_port,
                   "UDP port of position, device information and IMU packets (default: the model's)")
-      ->check(CLI::Range(1, 65'535));
+      ->check(number_within(1, 65'535));
   command.add_option("--calibration", options.calibration_file,
                      "calibration of this sensor: see lidar.calibration_file");
   command.add_option("--min-range", options.min_range_m, "drop nearer returns [m]")->capture_default_str();

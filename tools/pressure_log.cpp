@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/pressure_log.hpp"
+#include "tools/number_option.hpp"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -73,7 +74,7 @@ recording::PressureColumns parse_columns(const std::string& text) {
 
 void add_air_option(CLI::App& command, std::optional<double>& air_c) {
   command.add_option("--air", air_c, "air temperature [degC] (default: the coldest sensor's)")
-      ->check(CLI::Range(-60.0, 60.0));
+      ->check(number_within(-60.0, 60.0));
 }
 
 PressureLog read_new_values(const std::filesystem::path& file, const recording::PressureColumns& columns) {

@@ -22,6 +22,7 @@
 #include "run/recording/record_session.hpp"
 #include "run/tile_store/file_descriptor.hpp"
 #include "tools/commands.hpp"
+#include "tools/number_option.hpp"
 #include "tools/record_progress.hpp"
 #include "tools/record_source.hpp"
 #include "tools/subcommand.hpp"
@@ -245,14 +246,14 @@ void add_record_command(CLI::App& app) {
   command
       .add_option("--min-free", options.min_free_mb,
                   "free space on the disk at which the recording ends [MB]")
-      ->check(CLI::Range(0.0, 1e9))
+      ->check(number_within(0.0, 1e9))
       ->capture_default_str();
   command.add_option("--for", options.duration_s, "end after this time [s]; 0: at Ctrl-C or SIGTERM")
-      ->check(CLI::Range(0.0, 1e9))
+      ->check(number_within(0.0, 1e9))
       ->capture_default_str();
   command
       .add_option("--timeout", options.timeout_s, "fail when no isobard runs within this time [s]; 0: wait")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_within(0.0, 1e6))
       ->capture_default_str();
 }
 

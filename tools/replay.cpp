@@ -7,12 +7,18 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <vector>
 
-#include "config/config_io.hpp"
+#include "config/config_layer.hpp"
 #include "core/errors.hpp"
+#include "core/names.hpp"
+#include "core/nearest_word.hpp"
+#include "daemon/stage_settings.hpp"
 #include "run/files/run_layout.hpp"
+#include "run/recording/manifest.hpp"
 #include "tools/commands.hpp"
 #include "tools/method_option.hpp"
+#include "tools/overridden_settings.hpp"
 #include "tools/progress.hpp"
 #include "tools/subcommand.hpp"
 
@@ -84,12 +90,14 @@ void refuse_own_map(const ReplayOptions& options) {
   throw UsageError("--out: " + options.out.string() + " holds the stored map; name another folder");
 }
 
-void run_replay(const ReplayOptions& options) {
-  refuse_own_map(options);
-  Config config = options.config.empty() ? Config{} : load_config(options.config);
+/// The configuration with what the command line sets in it.
+/// @throws UsageError
+Config config_of(const ReplayOptions& options, Config config) {
   if (!options.method.empty()) {
     const auto method = kMethodNames.value(options.method);
-    if (!method) throw UsageError("--method: \"" + options.method + "\" is none of " + method_names());
+    if (!method)
+      throw UsageError("--method: \"" + options.method + "\" is none of " + method_names() +
+                       did_you_mean(options.method, kMethodNames.names()));
     config.method = *method;
   }
   if (!options.map.empty()) config.map_files.stored = options.map;
@@ -98,6 +106,18 @@ void run_replay(const ReplayOptions& options) {
     if (!use) throw UsageError("--map-use: \"" + options.map_use + "\" is none of extend, localise, new");
     config.map_files.use = *use;
   }
+  return config;
+}
+
+void run_replay(const ReplayOptions& options) {
+  refuse_own_map(options);
+  const LoadedConfig loaded = options.config.empty() ? LoadedConfig{} : load_layers(options.config);
+  const Config config = config_of(options, loaded.config);
+  // Before a run is removed: a recording that cannot be read must not cost it.
+  std::vector<std::string> warnings;
+  const recording::Manifest manifest = recording::read_manifest(options.recording, warnings);
+  for (const std::string& sentence : overridden_settings(loaded, with_sensors_of(manifest, loaded.config)))
+    std::printf("note: %s\n", sentence.c_str());
   prepare_folder(options);
   Progress progress("replaying");
   const ReplaySummary summary =

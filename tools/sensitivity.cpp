@@ -14,6 +14,7 @@
 #include "core/stamp.hpp"
 #include "simulation/sensitivity_rig.hpp"
 #include "tools/commands.hpp"
+#include "tools/number_option.hpp"
 #include "tools/pressure_log.hpp"
 #include "tools/report/aligned_rows.hpp"
 #include "tools/report/sensitivity_report.hpp"
@@ -212,18 +213,18 @@ void run_sensitivity(const SensitivityArguments& arguments, const std::string& c
 void add_simulation_options(CLI::App& command, SensitivityArguments& options) {
   command.add_option("--seed", options.seed, "random seed of the first simulated run")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_from_zero());
   command.add_option("--runs", options.runs, "simulated runs, each with the next seed")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
+      ->check(number_within(1, 1000));
   command.add_option("--dwell", options.dwell_s, "simulated time on each level [s]")
       ->capture_default_str()
-      ->check(CLI::Range(4.0, 600.0));
+      ->check(number_within(4.0, 600.0));
   command
       .add_option("--distance", options.distance_m,
                   "distance of the simulated rigs [m]; from 4 m on their turbulence is independent")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(number_within(0.0, 100.0));
 }
 
 /// Options of a recorded rig.
@@ -250,14 +251,14 @@ void add_sensitivity_command(CLI::App& experiment) {
   RecordedRigRequest& request = options.request;
   add_simulation_options(command, options);
   add_recording_options(command, request);
-  command.add_option("--step", request.step_m, "true height of a step [m]")->check(CLI::PositiveNumber);
+  command.add_option("--step", request.step_m, "true height of a step [m]")->check(number_above_zero());
   command.add_option("--steps", request.steps, "number of steps (default: all that are found)");
   command
       .add_option("--lag", request.lag_s,
                   "lag of the low-pass [s] (default: a tenth of the shortest level, at most 3)")
-      ->check(CLI::PositiveNumber);
+      ->check(number_above_zero());
   command.add_option("--settle", request.settle_s, "time left out before and after each step [s]")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_from_zero());
   command.add_option("--out", options.out, "folder for the report (default: below out/)");
 }
 

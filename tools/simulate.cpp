@@ -10,6 +10,7 @@
 #include "tools/commands.hpp"
 #include "tools/deviation_options.hpp"
 #include "tools/lidar_option.hpp"
+#include "tools/number_option.hpp"
 #include "tools/progress.hpp"
 #include "tools/subcommand.hpp"
 
@@ -47,7 +48,7 @@ void add_simulate_command(CLI::App& app) {
   command.add_option("SCENARIO", options.request.name, "name of a scenario; --list shows all");
   command.add_option("--seed", options.request.seed, "random seed of world, path and sensor errors")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_from_zero());
   command.add_option(
       "--session-seed", options.request.session_seed,
       "another session on the same site: other errors, weather and furniture; 0: the first one");

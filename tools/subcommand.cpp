@@ -18,13 +18,12 @@ std::string shell_quoted(const std::string& word) {
   return text + "'";
 }
 
-/// "isobar experiment sensitivity": the names of the command and those above it.
+}  // namespace
+
 std::string command_path(const CLI::App& command) {
   const CLI::App* parent = command.get_parent();
   return parent == nullptr ? "isobar" : command_path(*parent) + " " + command.get_name();
 }
-
-}  // namespace
 
 std::string typed_command(const CLI::App& command) {
   std::string text = command_path(command);

@@ -20,6 +20,9 @@ struct Subcommand {
   Options& options;
 };
 
+/// "isobar experiment sensitivity": the names of the command and those above it.
+std::string command_path(const CLI::App& command);
+
 /// The parsed command line as a shell takes it, with all options that were given: for reports.
 std::string typed_command(const CLI::App& command);
 

@@ -12,6 +12,7 @@
 #include "core/errors.hpp"
 #include "ipc/service_view.hpp"
 #include "tools/commands.hpp"
+#include "tools/number_option.hpp"
 #include "tools/status/hang_limit.hpp"
 #include "tools/status/health_reader.hpp"
 #include "tools/status/view.hpp"
@@ -100,7 +101,7 @@ void add_status_command(CLI::App& app) {
   command->add_flag("--watch", options->watch, "again at each report, once a second; waits for isobard");
   command->add_flag("--all", options->all, "all health entries, not only those that are not ok");
   command->add_option("--wait", options->wait_s, "longest wait for isobard to run [s]")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_within(0.0, 1e6))
       ->capture_default_str();
   command->callback([options] { run_status(*options); });
 }
