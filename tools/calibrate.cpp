@@ -16,6 +16,7 @@
 #include "tools/commands.hpp"
 #include "tools/number_option.hpp"
 #include "tools/output_option.hpp"
+#include "tools/pressure_log.hpp"
 #include "tools/progress.hpp"
 #include "tools/report/calibration_report.hpp"
 #include "tools/report/svg.hpp"
@@ -29,6 +30,8 @@ constexpr double kSecondsPerHour = 3600.0;
 
 struct CalibrateOptions {
   CalibrationLogs logs;
+  std::string sensor_columns;
+  std::string reference_columns;
   double window_h = 6.0;
   bool pressure_only = false;
   std::string model;
@@ -97,6 +100,10 @@ void run_calibrate(const CalibrateOptions& options, const std::string& command) 
   }
   CalibrationLogs request = options.logs;
   request.window_s = kSecondsPerHour * options.window_h;
+  request.sensor.columns = parse_columns(options.sensor_columns);
+  request.sensor.columns.needs_temperature = true;
+  request.reference.columns = parse_columns(options.reference_columns);
+  request.reference.columns.needs_temperature = false;
   Progress progress("reading and fitting");
   report::CalibrationReport page;
   AlignedLogs logs = align_logs(request);
@@ -120,33 +127,15 @@ void run_calibrate(const CalibrateOptions& options, const std::string& command) 
   write_output(options.report, report::render_calibration_report(page));
 }
 
-/// Adds the options that name columns and units of one role's logs.
-void add_columns(CLI::App& command, const std::string& role, recording::PressureColumns& columns) {
-  const std::string of = " of the " + role + "'s logs (default: the only one with such a name)";
-  command.add_option("--" + role + "-pressure", columns.pressure, "pressure column" + of);
-  command.add_option("--" + role + "-time", columns.time, "time column" + of);
-  command
-      .add_option("--" + role + "-unit", columns.pressure_unit,
-                  "unit of the pressure (default: from header or values)")
-      ->option_text("Pa|hPa|mbar|kPa");
-  command
-      .add_option("--" + role + "-time-unit", columns.time_unit,
-                  "unit of a numeric time (default: from header or values)")
-      ->option_text("ns|us|ms|s|min|h");
-}
-
 /// Adds the options that select logs and columns.
-void add_log_options(CLI::App& command, CalibrationLogs& logs) {
-  command.add_option("--sensor", logs.sensor.files, "logs of the sensor, each a recording of its own");
-  command.add_option("--reference", logs.reference.files, "logs of the reference, together one log");
-  command.add_flag("--paired", logs.paired,
+void add_log_options(CLI::App& command, CalibrateOptions& options) {
+  command.add_option("--sensor", options.logs.sensor.files,
+                     "logs of the sensor, each a recording of its own");
+  command.add_option("--reference", options.logs.reference.files, "logs of the reference, together one log");
+  command.add_flag("--paired", options.logs.paired,
                    "pair the n-th sensor log with the n-th reference log, each pair with its own clocks");
-  add_columns(command, "sensor", logs.sensor.columns);
-  command.add_option(
-      "--sensor-temperature", logs.sensor.columns.temperature,
-      "temperature column of the sensor's logs [degC] (default: the only one with such a name)");
-  add_columns(command, "reference", logs.reference.columns);
-  logs.reference.columns.needs_temperature = false;
+  command.add_option("--sensor-columns", options.sensor_columns, kColumnsHelp);
+  command.add_option("--reference-columns", options.reference_columns, "the same for the reference's logs");
 }
 
 }  // namespace
@@ -162,7 +151,7 @@ void add_calibrate_command(CLI::App& app) {
       "A recording's barometer.csv is one. The detected columns and units are printed first.\n\n"
       "  isobar calibrate --sensor cold.csv warm.csv --reference station.csv --out dps310.toml\n\n"
       "then, in isobar.toml:  barometer.compensation_file = \"dps310.toml\"");
-  add_log_options(command, options.logs);
+  add_log_options(command, options);
   auto* shift = command.add_option("--shift", options.logs.shift_s,
                                    "reference clock minus sensor clock [s] (default: searched)");
   command.add_option("--window", options.window_h, "search shifts up to this, in both directions [h]")

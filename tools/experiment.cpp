@@ -18,6 +18,7 @@
 #include "core/names.hpp"
 #include "daemon/replay.hpp"
 #include "run/evaluation/evaluated_run.hpp"
+#include "simulation/scenario_list.hpp"
 #include "simulation/simulate.hpp"
 #include "tools/commands.hpp"
 #include "tools/deviation_options.hpp"
@@ -158,6 +159,7 @@ void run_experiment(ExperimentOptions options, const std::string& command) {
   const std::string name = simulation::recording_name(options.request);
   if (options.out.empty()) options.out = "out/" + name;
   const std::vector<Method> methods = chosen_methods(options.methods);
+  (void)simulation::find_scenario(options.request.name);  // before a folder is made for an unknown one
   std::filesystem::create_directories(options.out);
   const std::filesystem::path recording = options.out / ("recording-" + name);
   simulate_with_progress(options, recording);

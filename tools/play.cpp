@@ -3,8 +3,11 @@
 // datagrams (drivers/datagram/datagram.hpp) to the input port.
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "core/errors.hpp"
+#include "core/stamp.hpp"
 #include "daemon/lidar_clock.hpp"
 #include "daemon/lidar_sender.hpp"
 #include "drivers/datagram/datagram.hpp"
@@ -14,6 +17,7 @@
 #include "run/recording/reference.hpp"
 #include "run/text/segments.hpp"
 #include "tools/commands.hpp"
+#include "tools/number_option.hpp"
 #include "tools/player.hpp"
 #include "tools/progress.hpp"
 #include "tools/subcommand.hpp"
@@ -29,6 +33,9 @@ struct PlayOptions {
   std::uint16_t info_port = 0;   ///< 0: the recording's
   std::uint16_t input_port = datagram::kDefaultPort;
   std::filesystem::path reference_out;
+  double start_s = 0.0;
+  std::optional<double> for_s;
+  bool loop = false;
 };
 
 /// Writes reference and segments with stamps of the robot clock, for the evaluation of the live run.
@@ -58,18 +65,33 @@ LidarPlan lidar_plan(const PlayOptions& options, const recording::LidarEntry& li
   return plan;
 }
 
-void play(const PlayOptions& options) {
-  recording::RecordingReader reader(options.recording);
-  if (!reader.manifest().lidar) throw DataError(options.recording.string() + ": has no [lidar] to play");
-  Player player(options.address, lidar_plan(options, *reader.manifest().lidar), options.input_port);
-
+LidarConfig lidar_of(const recording::LidarEntry& entry) {
   LidarConfig lidar;
-  lidar.model = reader.manifest().lidar->model;
-  lidar.calibration_file = reader.manifest().lidar->calibration_file;
+  lidar.model = entry.model;
+  lidar.calibration_file = entry.calibration_file;
+  return lidar;
+}
+
+/// Reads up to the first event of the part that is played.
+/// @throws DataError when the recording ends before it
+void move_to_start(recording::RecordingReader& reader, const PlayOptions& options, recording::Event& event) {
+  if (!reader.next(event)) throw DataError(options.recording.string() + ": holds no samples");
+  const std::int64_t first_ns = event.stamp_ns;
+  while (seconds_between(first_ns, event.stamp_ns) < options.start_s) {
+    if (reader.next(event)) continue;
+    throw UsageError("--start: " + options.recording.string() + " ends before this time");
+  }
+}
+
+/// Plays the part once; a loop begins with it anew.
+void play_once(const PlayOptions& options, Player& player) {
+  recording::RecordingReader reader(options.recording);
+  const LidarConfig lidar = lidar_of(*reader.manifest().lidar);
   reader.use_lidar_clock(lidar_clock(lidar));
   recording::Event event;
-  if (!reader.next(event)) throw DataError(options.recording.string() + ": holds no samples");
-  const std::int64_t shift_ns = player.start(event.stamp_ns);
+  move_to_start(reader, options, event);
+  const std::int64_t start_ns = event.stamp_ns;
+  const std::int64_t shift_ns = player.start(start_ns);
   if (!options.reference_out.empty()) write_shifted_reference(options, reader.manifest(), shift_ns);
 
   // Played packets all come from this program: a second lidar in the recording could not be told apart.
@@ -77,6 +99,7 @@ void play(const PlayOptions& options) {
   LidarSender sender(reader.manifest().lidar->sender);
   Progress progress("playing");
   do {
+    if (options.for_s && seconds_between(start_ns, event.stamp_ns) > *options.for_s) break;
     const bool is_packet = event.kind == recording::EventKind::kLidarPacket;
     const bool is_played =
         !is_packet || sender.admits(*decoder, event.packet, event.sender_ipv4, event.stamp_ns);
@@ -84,6 +107,16 @@ void play(const PlayOptions& options) {
     progress.update(reader.progress());
   } while (reader.next(event));
   progress.finish();
+}
+
+void play(const PlayOptions& options) {
+  if (options.loop && !options.reference_out.empty())
+    throw UsageError("--reference-out: a reference has one time, and --loop plays it again and again");
+  const recording::RecordingReader reader(options.recording);
+  if (!reader.manifest().lidar) throw DataError(options.recording.string() + ": has no [lidar] to play");
+  Player player(options.address, lidar_plan(options, *reader.manifest().lidar), options.input_port);
+  do play_once(options, player);
+  while (options.loop);
 }
 
 }  // namespace
@@ -102,6 +135,14 @@ void add_play_command(CLI::App& app) {
       ->capture_default_str();
   command.add_option("--reference-out", options.reference_out,
                      "folder for reference.tum and segments.csv, shifted to the time of playing");
+  command.add_option("--start", options.start_s, "time into the recording at which to begin [s]")
+      ->check(number_from_zero())
+      ->capture_default_str();
+  command.add_option("--for", options.for_s, "time to play [s] (default: to the end)")
+      ->check(number_above_zero());
+  command.add_flag(
+      "--loop", options.loop,
+      "begin anew at the end, until Ctrl-C; isobard sees clocks and robot jump back to the start");
 }
 
 }  // namespace isobar::tools

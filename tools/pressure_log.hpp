@@ -19,13 +19,15 @@ class App;
 namespace isobar::tools {
 
 /// Parses "TIME[:UNIT],PRESSURE[:UNIT][,TEMPERATURE[:UNIT]]". An empty text leaves columns and units to the file's
-/// header and values.
+/// header and values, an empty name or unit leaves that one to them: ",:kPa".
 /// @throws UsageError when the text has another form
 recording::PressureColumns parse_columns(const std::string& text);
 
 /// Help text of --columns.
 inline constexpr const char* kColumnsHelp =
     "TIME[:UNIT],PRESSURE[:UNIT][,TEMPERATURE[:UNIT]]: columns and units, if the header does not name them; "
+    "an empty "
+    "name is found in it; "
     "time in "
     "ns, us, ms, s, min or h, pressure in Pa, hPa, kPa, bar, mmHg, torr, inHg, psi or atm, temperature in C, "
     "K or F";

@@ -147,10 +147,10 @@ TEST_CASE("mistakes end with their exit code: usage 64, data 65") {
   CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--window", "-1"}) == 64);
   CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--model", "A_cubic"}) == 64);
   CHECK(calibrate_exit({"--sensor", day, path("day1.csv"), "--reference", station, "--paired"}) == 64);
-  CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--sensor-unit", "fathom"}) == 64);
+  CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--sensor-columns", ",:fathom"}) == 64);
   CHECK(calibrate_exit({"--sensor", day, "--reference", path("none.csv")}) == 65);
-  CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--sensor-pressure", "P"}) == 65);
-  CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--sensor-unit", "kPa"}) == 65);
+  CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--sensor-columns", ",P"}) == 65);
+  CHECK(calibrate_exit({"--sensor", day, "--reference", station, "--sensor-columns", ",:kPa"}) == 65);
   CHECK(calibrate_exit({"--sensor", day, "--reference", day}) == 65);
   CHECK(calibrate_exit({"--sensor", day, "--reference", station, station}) == 65);
   // The clocks are an hour apart: no shift within a minute aligns the logs.
