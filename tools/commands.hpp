@@ -24,6 +24,7 @@ void add_play_command(CLI::App& app);          ///< recording -> UDP in real tim
 void add_altitude_command(CLI::App& app);      ///< pressure logs -> heights
 void add_noise_command(CLI::App& app);         ///< pressure log -> sigma, Allan deviation, filter settings
 void add_export_command(CLI::App& app);        ///< a run as MCAP
+void add_foxglove_command(CLI::App& app);      ///< live topics for Foxglove
 void add_map_command(CLI::App& app);           ///< info, check and export of a run's map
 void add_status_command(CLI::App& app);        ///< health and figures of the running isobard
 void add_metrics_command(CLI::App& app);       ///< the same for Prometheus

@@ -39,6 +39,7 @@ void add_all_commands(CLI::App& app) {
   add_keys_command(app);
 #if ISOBAR_WITH_DDS
   add_echo_command(app);
+  add_foxglove_command(app);
 #endif
 }
 
