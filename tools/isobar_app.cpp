@@ -29,6 +29,7 @@ void add_all_commands(CLI::App& app) {
   add_map_command(app);
   add_status_command(app);
   add_metrics_command(app);
+  add_web_command(app);
   add_record_command(app);
   add_black_box_command(app);
   add_config_command(app);
