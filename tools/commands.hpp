@@ -28,6 +28,7 @@ void add_foxglove_command(CLI::App& app);      ///< live topics for Foxglove
 void add_map_command(CLI::App& app);           ///< info, check and export of a run's map
 void add_status_command(CLI::App& app);        ///< health and figures of the running isobard
 void add_metrics_command(CLI::App& app);       ///< the same for Prometheus
+void add_web_command(CLI::App& app);           ///< page of the running isobard, of a run or a recording
 void add_record_command(CLI::App& app);        ///< running isobard -> recording
 void add_black_box_command(CLI::App& app);     ///< orders to the black box of the running isobard
 void add_reset_command(CLI::App& app);         ///< asks the running isobard for a new map frame

@@ -30,6 +30,7 @@ void add_all_commands(CLI::App& app) {
   add_export_command(app);
   add_status_command(app);
   add_metrics_command(app);
+  add_web_command(app);
   add_record_command(app);
   add_black_box_command(app);
   add_config_command(app);

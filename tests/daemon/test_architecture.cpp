@@ -101,6 +101,7 @@ const std::map<std::string, Names> kNamedOnlyBy{
     {"pcap", {"run/recording/"}},
     {"toml++", {"config/", "run/"}},
     {"systemd/", {"daemon/"}},
+    {"httplib.h", {"tools/web/"}},
     {"openssl/", {"config/checksum", "ipc/keys/"}},
 };
 

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bundles src/main.ts into OUT/page.js and OUT/page.css, copies the files that need no bundling, and compresses all.
+// Usage: node build.mjs OUT
+import { build } from 'esbuild';
+import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { gzipSync } from 'node:zlib';
+
+const source = join(dirname(fileURLToPath(import.meta.url)), 'src');
+const out = process.argv[2];
+if (!out) throw new Error('usage: node build.mjs OUT');
+mkdirSync(out, { recursive: true });
+await build({
+  entryPoints: { page: join(source, 'main.ts') },
+  outdir: out,
+  bundle: true,
+  minify: true,
+  format: 'iife',
+  target: ['chrome109', 'firefox115', 'safari16'],
+  legalComments: 'eof', // licences of the bundled libraries
+  logLevel: 'warning',
+});
+for (const file of ['index.html', 'icon.svg']) copyFileSync(join(source, file), join(out, file));
+for (const file of ['index.html', 'icon.svg', 'page.js', 'page.css']) {
+  writeFileSync(join(out, `${file}.gz`), gzipSync(readFileSync(join(out, file)), { level: 9 }));
+}

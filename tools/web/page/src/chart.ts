@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A uPlot chart that fills its element, takes its colours from the style sheet, zooms by dragging and follows one time
+// with the other views. What is drawn is the caller's.
+import uPlot from 'uplot';
+import 'uplot/dist/uPlot.min.css';
+import { element, on_theme_change, style_value } from './dom';
+import { span } from './format';
+
+export interface ChartSeries {
+  label: string;
+  /** Name of a custom property of the style sheet: "--accent". */
+  colour: string;
+  unit: string;
+  decimals: number;
+  width?: number;
+  dash?: number[];
+  /** Drawn, but not in the legend: an edge of a band. */
+  hidden_label?: boolean;
+}
+
+export interface ChartOptions {
+  series: ChartSeries[];
+  /** Pairs of series between which the area is filled, and its colour. */
+  bands?: { between: [number, number]; colour: string }[];
+  y_label: string;
+  /** Smallest extent of the y axis, so that noise at rest does not fill the chart. */
+  least_extent?: number;
+  /** Charts of one name share cursor and zoom. */
+  sync?: string;
+}
+
+const kAxisFont = '11px system-ui, sans-serif';
+
+export class Chart {
+  readonly root = element('div', 'chart');
+  /** Called with the time under a click. */
+  on_pick: (t_s: number) => void = () => {};
+  private plot: uPlot | null = null;
+  private data: uPlot.AlignedData;
+  private is_zoomed = false;
+  private marked_s: number | null = null;
+
+  constructor(private readonly options: ChartOptions) {
+    this.data = [[], ...options.series.map(() => [])] as unknown as uPlot.AlignedData;
+    new ResizeObserver(() => this.resize()).observe(this.root);
+    on_theme_change(() => this.plot?.redraw());
+  }
+
+  /** Columns in the order of the series; the first one is the time [s]. A zoom stays. */
+  set(data: (readonly (number | null)[])[]): void {
+    this.data = data as unknown as uPlot.AlignedData;
+    if (!this.plot) return;
+    this.plot.setData(this.data, !this.is_zoomed);
+    if (this.is_zoomed) this.plot.redraw();
+  }
+
+  /** Marks a time by a line; null: none. */
+  mark(t_s: number | null): void {
+    if (t_s === this.marked_s) return;
+    this.marked_s = t_s;
+    this.plot?.redraw(false);
+  }
+
+  reset_zoom(): void {
+    this.is_zoomed = false;
+    this.plot?.setData(this.data, true);
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.root;
+    if (width < 50 || height < 50) return;
+    const size = { width, height: height - this.legend_px() };
+    if (this.plot) {
+      this.plot.setSize(size);
+    } else {
+      this.plot = new uPlot(this.plot_options(size), this.data, this.root);
+    }
+  }
+
+  private legend_px(): number {
+    return this.plot?.root.querySelector('.u-legend')?.getBoundingClientRect().height ?? 26;
+  }
+
+  private plot_options({ width, height }: { width: number; height: number }): uPlot.Options {
+    const { series, bands, y_label } = this.options;
+    const axis = { stroke: () => style_value('--muted'), font: kAxisFont, ticks: { show: false }, grid: { stroke: () => style_value('--line'), width: 1 } };
+    return {
+      width, height,
+      scales: { x: { time: false }, y: { range: (_, low, high) => this.padded(low, high) } },
+      cursor: {
+        drag: { x: true, y: false, dist: 6 },
+        points: { size: 6 },
+        sync: this.options.sync ? { key: this.options.sync, setSeries: false } : undefined,
+      },
+      legend: { live: true },
+      axes: [
+        { ...axis, values: (_, ticks) => ticks.map((tick) => span(tick, ticks.length > 1 && ticks[1] - ticks[0] < 1 ? 1 : 0)), size: 26 },
+        { ...axis, label: y_label, labelFont: kAxisFont, labelSize: 16, labelGap: 0, size: 48 },
+      ],
+      series: [
+        { label: 'time', value: (_, t_s) => (t_s === null || t_s === undefined ? '–' : span(t_s, 1)) },
+        ...series.map((one): uPlot.Series => ({
+          label: one.label,
+          stroke: () => style_value(one.colour),
+          width: one.width ?? 1.5,
+          dash: one.dash,
+          points: { show: false },
+          spanGaps: false,
+          class: one.hidden_label ? 'no-legend' : undefined,
+          value: (_, value) => (value === null || value === undefined ? '–' : `${value.toFixed(one.decimals).replace('-', '−')} ${one.unit}`),
+        })),
+      ],
+      bands: (bands ?? []).map((band) => ({ series: band.between, fill: () => style_value(band.colour) })),
+      hooks: {
+        setSelect: [(plot) => { if (plot.select.width > 0) this.is_zoomed = true; }],
+        draw: [(plot) => this.draw_mark(plot)],
+        ready: [(plot) => this.listen(plot)],
+      },
+    };
+  }
+
+  private padded(low: number | null, high: number | null): [number, number] {
+    if (low === null || high === null || !Number.isFinite(low)) return [0, 1];
+    const extent = Math.max(high - low, this.options.least_extent ?? 0) || 1;
+    const middle = (low + high) / 2;
+    return [middle - 0.56 * extent, middle + 0.56 * extent];
+  }
+
+  private listen(plot: uPlot): void {
+    plot.over.addEventListener('dblclick', () => this.reset_zoom());
+    let pressed_px = 0;
+    plot.over.addEventListener('mousedown', (event) => (pressed_px = event.clientX));
+    plot.over.addEventListener('click', (event) => {
+      if (Math.abs(event.clientX - pressed_px) > 5) return;
+      const { left } = plot.over.getBoundingClientRect();
+      this.on_pick(plot.posToVal(event.clientX - left, 'x'));
+    });
+  }
+
+  private draw_mark(plot: uPlot): void {
+    if (this.marked_s === null) return;
+    const x = plot.valToPos(this.marked_s, 'x', true);
+    const { left, top, width, height } = plot.bbox;
+    if (x < left || x > left + width) return;
+    const { ctx } = plot;
+    ctx.save();
+    ctx.strokeStyle = style_value('--ink');
+    ctx.globalAlpha = 0.75;
+    ctx.lineWidth = devicePixelRatio;
+    ctx.beginPath();
+    ctx.moveTo(x, top);
+    ctx.lineTo(x, top + height);
+    ctx.stroke();
+    ctx.restore();
+  }
+}

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The points of the map on the graphics card: one draw call a cube, coloured by height, cut by a slice of heights.
+import * as THREE from 'three';
+import { height_colours, kColours } from './colour_map';
+import type { MapPiece } from './map_chunks';
+
+const kVertex = `
+uniform float step_m;
+uniform vec2 slice_m;
+uniform vec2 range_m;
+uniform float pixels_per_m;
+uniform sampler2D colours;
+varying vec3 colour;
+void main() {
+  vec4 world = modelMatrix * vec4(position * step_m, 1.0);
+  vec4 seen = viewMatrix * world;
+  gl_Position = projectionMatrix * seen;
+  gl_PointSize = clamp(pixels_per_m / max(0.1, -seen.z), 1.0, 5.0);
+  if (world.z < slice_m.x || world.z > slice_m.y) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  float at = (world.z - range_m.x) / max(0.01, range_m.y - range_m.x);
+  colour = texture2D(colours, vec2(clamp(at, 0.002, 0.998), 0.5)).rgb;
+}`;
+const kFragment = `
+varying vec3 colour;
+void main() {
+  gl_FragColor = vec4(colour, 1.0);
+}`;
+
+/** Edge of a drawn point in space [m], while it is larger than a pixel. */
+const kPointM = 0.07;
+/** One of this many points is kept for the range of heights. */
+const kSampleStep = 61;
+
+interface Drawn {
+  points: THREE.Points;
+  heights_m: Float32Array;
+}
+
+export class MapPoints {
+  readonly group = new THREE.Group();
+  private readonly chunks = new Map<string, Drawn>();
+  private epoch = -1;
+  private total = 0;
+  private readonly material = new THREE.ShaderMaterial({
+    vertexShader: kVertex,
+    fragmentShader: kFragment,
+    uniforms: {
+      step_m: { value: 0.00025 },
+      slice_m: { value: new THREE.Vector2(-1e6, 1e6) },
+      range_m: { value: new THREE.Vector2(0, 1) },
+      pixels_per_m: { value: 50 },
+      colours: { value: null },
+    },
+  });
+
+  get count(): number {
+    return this.total;
+  }
+
+  /** Takes what has changed. */
+  apply(piece: MapPiece): void {
+    if (piece.epoch !== this.epoch) this.clear();
+    this.epoch = piece.epoch;
+    this.material.uniforms.step_m.value = piece.step_m;
+    for (const chunk of piece.chunks) {
+      this.remove(chunk.key);
+      if (chunk.points.length > 0) this.add(chunk.key, chunk.corner_m, chunk.points, piece.step_m);
+    }
+  }
+
+  clear(): void {
+    for (const key of [...this.chunks.keys()]) this.remove(key);
+  }
+
+  set_dark(dark: boolean): void {
+    const texture = new THREE.DataTexture(height_colours(dark), kColours, 1);
+    texture.needsUpdate = true;
+    this.material.uniforms.colours.value?.dispose();
+    this.material.uniforms.colours.value = texture;
+  }
+
+  set_slice(lowest_m: number, highest_m: number): void {
+    this.material.uniforms.slice_m.value.set(lowest_m, highest_m);
+  }
+
+  set_range(lowest_m: number, highest_m: number): void {
+    this.material.uniforms.range_m.value.set(lowest_m, highest_m);
+  }
+
+  /** @param height_px of the canvas in pixels of the screen */
+  set_view(height_px: number, field_of_view_deg: number): void {
+    this.material.uniforms.pixels_per_m.value =
+      (kPointM * height_px) / (2 * Math.tan((field_of_view_deg * Math.PI) / 360));
+  }
+
+  /** Heights between which nearly all points lie; null: none yet. */
+  height_range_m(): [number, number] | null {
+    const heights = [...this.chunks.values()].flatMap((drawn) => [...drawn.heights_m]).sort((a, b) => a - b);
+    if (heights.length === 0) return null;
+    const part = (share: number) => heights[Math.round(share * (heights.length - 1))];
+    return [part(0.005), part(0.995)];
+  }
+
+  /** Box around all cubes; null: none yet. */
+  box(): THREE.Box3 | null {
+    const box = new THREE.Box3();
+    for (const { points } of this.chunks.values()) {
+      box.union(points.geometry.boundingBox!.clone().translate(points.position));
+    }
+    return box.isEmpty() ? null : box;
+  }
+
+  private add(key: string, corner_m: [number, number, number], data: Uint16Array, step_m: number): void {
+    const geometry = new THREE.BufferGeometry();
+    const buffer = new THREE.InterleavedBuffer(data, 4);
+    geometry.setAttribute('position', new THREE.InterleavedBufferAttribute(buffer, 3, 0));
+    const box = new THREE.Box3();
+    const heights = new Float32Array(Math.ceil(data.length / 4 / kSampleStep));
+    for (let i = 0, sample = 0; i < data.length; i += 4 * kSampleStep, ++sample) {
+      box.expandByPoint(new THREE.Vector3(data[i], data[i + 1], data[i + 2]).multiplyScalar(step_m));
+      heights[sample] = corner_m[2] + data[i + 2] * step_m;
+    }
+    geometry.boundingBox = box;
+    const edge_m = 65_536 * step_m;
+    geometry.boundingSphere = new THREE.Sphere(new THREE.Vector3().setScalar(edge_m / 2), edge_m * 0.87);
+    const points = new THREE.Points(geometry, this.material);
+    points.position.set(...corner_m);
+    this.group.add(points);
+    this.chunks.set(key, { points, heights_m: heights });
+    this.total += data.length / 4;
+  }
+
+  private remove(key: string): void {
+    const drawn = this.chunks.get(key);
+    if (!drawn) return;
+    this.total -= drawn.points.geometry.getAttribute('position').count;
+    this.group.remove(drawn.points);
+    drawn.points.geometry.dispose();
+    this.chunks.delete(key);
+  }
+}

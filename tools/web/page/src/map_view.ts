@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The map in three dimensions: points, paths and robot. Draws only when something has changed. Knows nothing of where
+// the data come from: see MapPiece and Poses.
+import * as THREE from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { element, on_theme_change, style_value } from './dom';
+import type { MapPiece } from './map_chunks';
+import { MapPoints } from './map_points';
+import { PathLine, RobotMarker, type Line3 } from './map_tracks';
+
+const kFieldOfViewDeg = 50;
+const kDarkQuery = '(prefers-color-scheme: dark)';
+/** Of a screen with many pixels only so many are drawn per CSS pixel: points stay points, at half the work. */
+const kMostPixelRatio = 1.5;
+
+export class MapView {
+  readonly root = element('div', 'map-view');
+  /** Called when the range of heights has changed. */
+  on_range: (range_m: [number, number]) => void = () => {};
+  private readonly renderer: THREE.WebGLRenderer;
+  private readonly scene = new THREE.Scene();
+  private readonly camera = new THREE.PerspectiveCamera(kFieldOfViewDeg, 1, 0.1, 5000);
+  private readonly controls: OrbitControls;
+  private readonly points = new MapPoints();
+  private readonly planes = [new THREE.Plane(new THREE.Vector3(0, 0, 1), 1e6), new THREE.Plane(new THREE.Vector3(0, 0, -1), 1e6)];
+  private readonly whole_path = new PathLine(this.scene, 1.5, this.planes, 0.45);
+  private readonly path = new PathLine(this.scene, 3, this.planes);
+  private readonly other_path = new PathLine(this.scene, 1.5, this.planes, 0.8);
+  private readonly robot = new RobotMarker();
+  private range_m: [number, number] | null = null;
+  private touched = false;
+  private waiting = false;
+  private follows = false;
+  frames = 0;
+
+  /** @throws Error when the browser has no WebGL */
+  constructor() {
+    this.renderer = new THREE.WebGLRenderer({ antialias: false, powerPreference: 'high-performance' });
+    this.renderer.localClippingEnabled = true;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, kMostPixelRatio));
+    const canvas = this.renderer.domElement;
+    canvas.setAttribute('role', 'img');
+    canvas.setAttribute('aria-label', 'Map in three dimensions, coloured by height');
+    this.root.append(canvas);
+    this.camera.up.set(0, 0, 1);
+    this.camera.position.set(-12, -16, 18);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.maxPolarAngle = Math.PI * 0.49;
+    this.controls.zoomToCursor = true;
+    this.controls.addEventListener('change', () => this.draw_soon());
+    this.controls.addEventListener('start', () => (this.touched = true));
+    this.scene.add(this.points.group, this.robot.object);
+    this.take_theme();
+    on_theme_change(() => this.take_theme());
+    new ResizeObserver(() => this.resize()).observe(this.root);
+  }
+
+  /** Points that are drawn. */
+  get point_count(): number {
+    return this.points.count;
+  }
+
+  apply(piece: MapPiece): void {
+    this.points.apply(piece);
+    if (!piece.more) this.take_range();
+    if (!this.touched && !piece.more) this.fit();
+    this.draw_soon();
+  }
+
+  clear(): void {
+    this.points.clear();
+    this.range_m = null;
+    this.draw_soon();
+  }
+
+  /** The path that was driven; `whole`: the faint line beneath it, of the whole run. */
+  set_path(path: Line3, whole: Line3 | null = null): void {
+    this.path.set(path);
+    if (whole) this.whole_path.set(whole);
+    if (!this.touched && this.points.count === 0 && path.x_m.length > 1) this.fit_path(path);
+    this.draw_soon();
+  }
+
+  /** A second line: a reference, or the corrected path. */
+  set_other_path(path: Line3): void {
+    this.other_path.set(path);
+    this.draw_soon();
+  }
+
+  show_path_until(row: number): void {
+    this.path.show_until(row);
+    this.draw_soon();
+  }
+
+  set_robot(x_m: number, y_m: number, z_m: number, yaw_deg: number): void {
+    if (this.follows) {
+      const step = new THREE.Vector3(x_m, y_m, z_m).sub(this.controls.target);
+      this.camera.position.add(step);
+      this.controls.target.add(step);
+      this.controls.update();
+    }
+    this.robot.set(x_m, y_m, z_m, yaw_deg);
+    this.draw_soon();
+  }
+
+  hide_robot(): void {
+    this.robot.hide();
+    this.draw_soon();
+  }
+
+  /** Keeps the robot in the middle. */
+  set_follow(follows: boolean): void {
+    this.follows = follows;
+    this.touched ||= follows;
+  }
+
+  set_slice(lowest_m: number, highest_m: number): void {
+    this.points.set_slice(lowest_m, highest_m);
+    this.planes[0].constant = -lowest_m;
+    this.planes[1].constant = highest_m;
+    this.draw_soon();
+  }
+
+  /** The whole map, from obliquely above or from the top. */
+  fit(from_top = false): void {
+    const box = this.points.box();
+    if (box) this.fit_box(box, from_top);
+  }
+
+  private fit_path(path: Line3): void {
+    const box = new THREE.Box3();
+    for (let i = 0; i < path.x_m.length; i += 20) {
+      box.expandByPoint(new THREE.Vector3(path.x_m[i] ?? 0, path.y_m[i] ?? 0, path.z_m[i] ?? 0));
+    }
+    this.fit_box(box.expandByScalar(2), false);
+  }
+
+  private fit_box(box: THREE.Box3, from_top: boolean): void {
+    const sphere = box.getBoundingSphere(new THREE.Sphere());
+    const half = (kFieldOfViewDeg * Math.PI) / 360;
+    const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
+    const distance = (0.82 * sphere.radius) / Math.sin(narrow);
+    const direction = from_top ? new THREE.Vector3(0, -0.001, 1) : new THREE.Vector3(-0.45, -0.75, 0.8);
+    this.controls.target.copy(sphere.center);
+    this.camera.position.copy(sphere.center).addScaledVector(direction.normalize(), distance);
+    this.camera.far = Math.max(2000, 20 * distance);
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.draw_soon();
+  }
+
+  private take_range(): void {
+    const range = this.points.height_range_m();
+    if (!range) return;
+    const known = this.range_m;
+    if (known && Math.abs(known[0] - range[0]) < 0.2 && Math.abs(known[1] - range[1]) < 0.2) return;
+    this.range_m = range;
+    this.points.set_range(range[0], range[1]);
+    this.on_range(range);
+  }
+
+  private take_theme(): void {
+    this.scene.background = new THREE.Color(style_value('--map-ground'));
+    this.points.set_dark(matchMedia(kDarkQuery).matches);
+    for (const line of [this.path, this.whole_path]) line.set_colour(style_value('--accent'));
+    this.other_path.set_colour(style_value('--ink'));
+    this.robot.set_colours(style_value('--accent'), style_value('--map-rim'));
+    this.draw_soon();
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.root;
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.points.set_view(height * this.renderer.getPixelRatio(), kFieldOfViewDeg);
+    if (!this.touched) this.fit();
+    this.draw_soon();
+  }
+
+  private draw_soon(): void {
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.robot.scale_to(this.camera);
+      this.renderer.render(this.scene, this.camera);
+      ++this.frames;
+    });
+  }
+}
