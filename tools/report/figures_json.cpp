@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "tools/report/figure_rows.hpp"
+#include "tools/report/provenance.hpp"
 
 namespace isobar::report {
 
@@ -55,12 +56,15 @@ Json method_json(const evaluation::EvaluatedMethod& method) {
 
 std::string figures_json(const evaluation::EvaluatedRun& run) {
   const auto& poses = run.reference.trajectory.poses;
-  Json json{{"reference", run.reference.source.string()},
+  Json json{{"made_by", provenance_line()},
+            {"reference", run.reference.source.string()},
             {"duration_s", json_number(run.reference.trajectory.duration_s())},
             {"travelled_m", json_number(evaluation::travelled_distance_m(poses).back())},
             {"methods", Json::array()}};
   for (const evaluation::EvaluatedMethod& method : run.methods)
     json["methods"].push_back(method_json(method));
+  for (const DifferingSetting& setting : differing_settings(run))
+    json["differing_settings"][setting.key] = setting.values;
   // Invalid UTF-8 in a name or path is replaced, so that it does not stop the report.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -6,40 +6,48 @@ namespace isobar::report {
 namespace {
 
 constexpr const char* kStyle = R"css(
-:root { color-scheme: light; }
+:root { color-scheme: light dark; --ground: #fff; --panel: #fff; --raised: #f3f4f6; --ink: #1f2937; --muted: #4b5563;
+  --line: #d1d5db; --soft-line: #e5e7eb; --strong-line: #6b7280; --error: #b91c1c; --accent: #c4185c; --map-ground: #f7f8fa;
+  --map-rim: #fff; }
+@media (prefers-color-scheme: dark) { :root { --ground: #0e1114; --panel: #161a1f; --raised: #1f252c; --ink: #e7ebef;
+  --muted: #a3afbb; --line: #323b45; --soft-line: #272e36; --strong-line: #93a0ad; --error: #ff6369; --accent: #ff5c93;
+  --map-ground: #0b0d10; --map-rim: #0b0d10; }
+  figure svg { background: #fff; border-radius: 6px; } }
 * { box-sizing: border-box; }
-body { margin: 0; background: #fff; color: #1f2937;
+body { margin: 0; background: var(--ground); color: var(--ink);
   font: 16px/1.55 system-ui, "Segoe UI", Roboto, "DejaVu Sans", Helvetica, Arial, sans-serif; }
 main { max-width: 1104px; margin: 0 auto; padding: 40px 32px 64px; }
 h1 { font-size: 30px; line-height: 1.2; margin: 0 0 8px; letter-spacing: -0.01em; }
 h2 { font-size: 20px; margin: 48px 0 6px; }
 p { margin: 6px 0; max-width: 78ch; }
-.lead { color: #374151; font-size: 17px; }
-.command { margin: 16px 0 0; padding: 10px 14px; background: #f3f4f6; border-radius: 6px; font: 13.5px/1.5 ui-monospace,
+.lead { color: var(--muted); font-size: 17px; }
+.command { margin: 16px 0 0; padding: 10px 14px; background: var(--raised); border-radius: 6px; font: 13.5px/1.5 ui-monospace,
   "DejaVu Sans Mono", Menlo, Consolas, monospace; white-space: pre-wrap; overflow-wrap: anywhere; }
 .tiles { display: flex; flex-wrap: wrap; gap: 14px; margin: 26px 0 0; padding: 0; list-style: none; }
-.tiles li { flex: 1 1 200px; border: 1px solid #d1d5db; border-radius: 8px; padding: 12px 16px; }
-.tiles .label { font-size: 13.5px; color: #4b5563; }
+.tiles li { flex: 1 1 200px; border: 1px solid var(--line); border-radius: 8px; padding: 12px 16px; }
+.tiles .label { font-size: 13.5px; color: var(--muted); }
 .tiles .value { font-size: 26px; font-weight: 600; font-variant-numeric: tabular-nums; line-height: 1.35; }
-.tiles .more { font-size: 13.5px; color: #4b5563; }
+.tiles .more { font-size: 13.5px; color: var(--muted); }
 figure { margin: 14px 0 0; break-inside: avoid; }
 figure svg { display: block; max-width: 100%; height: auto; }
-figcaption { font-size: 14px; color: #4b5563; margin-top: 4px; max-width: 92ch; }
+figcaption { font-size: 14px; color: var(--muted); margin-top: 4px; max-width: 92ch; }
 .pair { display: flex; flex-wrap: wrap; gap: 14px; }
 .pair > div { flex: 1 1 100%; }
 .pair > .half { flex: 1 1 480px; }
 .pair h3 { font-size: 15px; margin: 10px 0 4px; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 14.5px; font-variant-numeric: tabular-nums; margin-top: 12px; }
-th, td { padding: 5px 14px 5px 0; text-align: right; border-bottom: 1px solid #e5e7eb; white-space: nowrap; }
+th, td { padding: 5px 14px 5px 0; text-align: right; border-bottom: 1px solid var(--soft-line); white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; }
-thead th { border-bottom: 2px solid #6b7280; vertical-align: bottom; }
-td.group { padding-top: 16px; font-weight: 700; color: #374151; border-bottom: 1px solid #9ca3af; }
-td.unit { text-align: left; color: #4b5563; }
+thead th { border-bottom: 2px solid var(--strong-line); vertical-align: bottom; }
+td.group { padding-top: 16px; font-weight: 700; color: var(--muted); border-bottom: 1px solid var(--line); }
+td.unit { text-align: left; color: var(--muted); }
 td.best { font-weight: 700; }
-td.lost { color: #b91c1c; font-weight: 700; }
+td.lost { color: var(--error); font-weight: 700; }
 .notes li { margin: 3px 0; max-width: 92ch; }
 dl { max-width: 92ch; font-size: 15px; } dt { font-weight: 600; margin-top: 10px; } dd { margin: 0; }
+@media (max-width: 560px) { main { padding: 20px 14px 40px; } h1 { font-size: 24px; } .lead { font-size: 16px; }
+  .tiles li { flex-basis: 44%; padding: 8px 10px; } .tiles .value { font-size: 20px; } }
 @page { size: A4; margin: 14mm; }
 @media print { main { padding: 0; max-width: none; } h2, .before-table { break-after: avoid; } body { font-size: 11pt; }
   table { font-size: 8pt; } th, td { padding: 3px 9px 3px 0; } th { white-space: normal; } .scroll { overflow: visible; }

@@ -7,6 +7,8 @@
 
 #include "tools/report/altimeter_section.hpp"
 #include "tools/report/html_page.hpp"
+#include "tools/report/provenance.hpp"
+#include "tools/report/report_data.hpp"
 #include "tools/report/report_pictures.hpp"
 #include "tools/report/report_tables.hpp"
 #include "tools/report/svg.hpp"
@@ -125,9 +127,10 @@ std::string time_section(const evaluation::EvaluatedRun& run) {
 std::string render_report(const ReportInput& input) {
   const evaluation::EvaluatedRun& run = input.run;
   std::string html = page_head(input.title, input.description, input.command) + paragraph(run_summary(run)) +
-                     tiles(run) + z_rpe_section(run) + height_section(run) + altimeter_section(run) +
-                     side_section(run) + top_section(run) + mounts_section(run) + time_section(run) +
-                     heading("All figures") + figures_table(run);
+                     paragraph(provenance_line()) + tiles(run) +
+                     live_parts(run, height_section(run) + side_section(run) + top_section(run)) +
+                     z_rpe_section(run) + altimeter_section(run) + mounts_section(run) + time_section(run) +
+                     heading("All figures") + figures_table(run) + settings_section(run);
   const std::string floors = floors_table(run);
   if (!floors.empty()) html += heading("Height of each floor") + floors;
   if (!run.notes.empty()) html += heading("Notes") + bullet_list(run.notes);

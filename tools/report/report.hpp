@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The report: one HTML file that needs neither network nor scripts.
+// The report: one HTML file that needs no network. Curves and map move with its script; without it pictures stand there.
 #pragma once
 
 #include <string>

@@ -109,14 +109,15 @@ MapState MapTiles::state() const {
   return state_;
 }
 
-std::string MapTiles::changes_since(std::uint32_t epoch, std::uint32_t since) const {
+std::string MapTiles::changes_since(std::uint32_t epoch, std::uint32_t since,
+                                    std::size_t answer_bytes) const {
   const std::lock_guard lock(mutex_);
   const std::uint32_t from = epoch == state_.epoch ? since : 0;
   std::string tiles;
   std::uint32_t count = 0;
   std::uint32_t reached = from;
   auto next = by_change_.upper_bound(from);
-  for (; next != by_change_.end() && tiles.size() < kAnswerBytes; ++next, ++count) {
+  for (; next != by_change_.end() && tiles.size() < answer_bytes; ++next, ++count) {
     const Tile& tile = tiles_.at(next->second);
     append_tile(next->second, tile.change, tile.points, tiles);
     reached = next->first;

@@ -72,7 +72,8 @@ class MapTiles {
 
   /// The binary answer of /api/map (docs/web.md): cubes with changes after `since` in the order of their changes, as many
   /// as fit; of another epoch, from the beginning. A cube that is empty now has no points.
-  [[nodiscard]] std::string changes_since(std::uint32_t epoch, std::uint32_t since) const;
+  [[nodiscard]] std::string changes_since(std::uint32_t epoch, std::uint32_t since,
+                                          std::size_t answer_bytes = kAnswerBytes) const;
 
  private:
   struct Tile {

@@ -3,13 +3,17 @@
 
 #include <array>
 
+#include "tools/web/inline_text.hpp"
+
 #if ISOBAR_WITH_PAGE
 // Begin and end of each file, see embedded_page.S.in.
 extern "C" {
-extern const char isobar_page_html[], isobar_page_html_end[];  // NOLINT(modernize-avoid-c-arrays)
-extern const char isobar_page_js[], isobar_page_js_end[];      // NOLINT(modernize-avoid-c-arrays)
-extern const char isobar_page_css[], isobar_page_css_end[];    // NOLINT(modernize-avoid-c-arrays)
-extern const char isobar_page_icon[], isobar_page_icon_end[];  // NOLINT(modernize-avoid-c-arrays)
+extern const char isobar_page_html[], isobar_page_html_end[];              // NOLINT(modernize-avoid-c-arrays)
+extern const char isobar_page_js[], isobar_page_js_end[];                  // NOLINT(modernize-avoid-c-arrays)
+extern const char isobar_page_css[], isobar_page_css_end[];                // NOLINT(modernize-avoid-c-arrays)
+extern const char isobar_page_icon[], isobar_page_icon_end[];              // NOLINT(modernize-avoid-c-arrays)
+extern const char isobar_page_report_js[], isobar_page_report_js_end[];    // NOLINT(modernize-avoid-c-arrays)
+extern const char isobar_page_report_css[], isobar_page_report_css_end[];  // NOLINT(modernize-avoid-c-arrays)
 }
 #endif
 
@@ -25,6 +29,21 @@ std::span<const PageFile> page_files() {
   return files;
 #else
   return {};
+#endif
+}
+
+std::optional<InlineParts> inline_parts(InlinePage page) {
+#if ISOBAR_WITH_PAGE
+  const bool is_run = page == InlinePage::kRun;
+  const std::string_view script = is_run ? std::string_view{isobar_page_js, isobar_page_js_end}
+                                         : std::string_view{isobar_page_report_js, isobar_page_report_js_end};
+  const std::string_view style = is_run
+                                     ? std::string_view{isobar_page_css, isobar_page_css_end}
+                                     : std::string_view{isobar_page_report_css, isobar_page_report_css_end};
+  return InlineParts{unpacked(script), unpacked(style)};
+#else
+  (void)page;
+  return std::nullopt;
 #endif
 }
 

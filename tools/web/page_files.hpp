@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace isobar::web {
@@ -20,5 +23,15 @@ inline constexpr const char* kPageMissing =
 
 /// The files of the page; none when the program was built without npm.
 [[nodiscard]] std::span<const PageFile> page_files();
+
+/// What a file that holds its own data needs: the page of `isobar web`, or the parts of a report (page/src/report.ts).
+struct InlineParts {
+  std::string script;
+  std::string style;
+};
+enum class InlinePage : std::uint8_t { kRun, kReport };
+
+/// Empty when the program was built without npm.
+[[nodiscard]] std::optional<InlineParts> inline_parts(InlinePage page);
 
 }  // namespace isobar::web

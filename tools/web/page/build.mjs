@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bundles src/main.ts into OUT/page.js and OUT/page.css, copies the files that need no bundling, and compresses all.
+// Bundles src/main.ts into OUT/page.js and OUT/page.css, src/report.ts into OUT/report.*, copies the files that need no bundling, and compresses all.
 // Usage: node build.mjs OUT
 import { build } from 'esbuild';
 import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -12,7 +12,7 @@ const out = process.argv[2];
 if (!out) throw new Error('usage: node build.mjs OUT');
 mkdirSync(out, { recursive: true });
 await build({
-  entryPoints: { page: join(source, 'main.ts') },
+  entryPoints: { page: join(source, 'main.ts'), report: join(source, 'report.ts') },
   outdir: out,
   bundle: true,
   minify: true,
@@ -22,6 +22,6 @@ await build({
   logLevel: 'warning',
 });
 for (const file of ['index.html', 'icon.svg']) copyFileSync(join(source, file), join(out, file));
-for (const file of ['index.html', 'icon.svg', 'page.js', 'page.css']) {
+for (const file of ['index.html', 'icon.svg', 'page.js', 'page.css', 'report.js', 'report.css']) {
   writeFileSync(join(out, `${file}.gz`), gzipSync(readFileSync(join(out, file)), { level: 9 }));
 }
