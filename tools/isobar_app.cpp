@@ -28,6 +28,7 @@ void add_all_commands(CLI::App& app) {
   add_play_command(app);
   add_map_command(app);
   add_export_command(app);
+  add_report_command(app);
   add_status_command(app);
   add_metrics_command(app);
   add_web_command(app);

@@ -97,6 +97,20 @@ void MapTiles::replace(MapDraft&& draft) {
   }
 }
 
+void MapTiles::thin_to(std::size_t points) {
+  const std::lock_guard lock(mutex_);
+  const std::size_t step = (state_.points + points - 1) / std::max<std::size_t>(points, 1);
+  if (step <= 1) return;
+  const std::uint64_t before = state_.points;
+  state_.points = 0;
+  std::size_t number = 0;
+  for (auto& [index, tile] : tiles_) {
+    std::erase_if(tile.points, [&](const TilePoint&) { return number++ % step != 0; });
+    state_.points += tile.points.size();
+  }
+  state_.left_out += before - state_.points;
+}
+
 void MapTiles::start_over() {
   const std::lock_guard lock(mutex_);
   tiles_.clear();

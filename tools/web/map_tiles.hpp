@@ -66,6 +66,8 @@ class MapTiles {
 
   /// Replaces the map. Cubes with equal points keep their change.
   void replace(MapDraft&& draft);
+  /// Keeps every n-th point, so that no more than this many remain. The rest counts as left out.
+  void thin_to(std::size_t points);
   /// Another map frame: forgets everything.
   void start_over();
   [[nodiscard]] MapState state() const;

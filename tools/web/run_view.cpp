@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -207,6 +208,25 @@ Json read_map(const fs::path& folder, std::uint32_t session, MapTiles& map, std:
   return floors;
 }
 
+/// Processing time of each scan, as a curve.
+void add_scan_time(const RunFolder& run, std::int64_t origin_ns, Json& signals) {
+  ThinnedRows<const StatusRow*> rows(kMostPoseRows);
+  for (const StatusRow& row : run.status) {
+    if (std::isfinite(row.scan_ms)) rows.add(&row);
+  }
+  if (rows.rows().empty()) return;
+  Json times = Json::array();
+  Json values = Json::array();
+  for (const StatusRow* row : rows.rows()) {
+    times.push_back(seconds_after(row->stamp_ns, origin_ns));
+    values.push_back(rounded(row->scan_ms, 3));
+  }
+  signals.push_back({{"name", "Time per scan"},
+                     {"unit", "ms"},
+                     {"t_s", std::move(times)},
+                     {"series", Json::array({{{"name", "registration"}, {"values", std::move(values)}}})}});
+}
+
 /// The files of a run of which only the trajectory is required.
 RunFolder read_files(const fs::path& folder, std::uint32_t session) {
   RunFolder run;
@@ -241,6 +261,7 @@ FileView read_run(const fs::path& folder, MapTiles& map) {
         track_json("corrected by loops",
                    evaluation::parse_tum(files::read_text_file(corrected), corrected.string()), origin_ns));
   }
+  add_scan_time(run, origin_ns, json["signals"]);
   const std::vector<Counted> counters = read_counters(folder / files::kCountersFile);
   for (const Counted& counter : counters) {
     json["counters"].push_back(

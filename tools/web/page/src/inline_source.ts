@@ -16,8 +16,10 @@ export function has_inline_view(): boolean {
 
 export class InlineSource implements Source {
   start(listener: Listener): void {
-    listener.on_view(JSON.parse(text_of('isobar-view') ?? '') as ViewData);
+    // Both before the page is laid out, which replaces what stands in it.
+    const view = JSON.parse(text_of('isobar-view') ?? '') as ViewData;
     const map = text_of('isobar-map');
+    listener.on_view(view);
     if (map) listener.on_map(decode_map(Uint8Array.from(atob(map.trim()), (byte) => byte.charCodeAt(0)).buffer));
   }
 }
