@@ -23,6 +23,7 @@ void add_config_command(CLI::App& app);        ///< check and show a configurati
 void add_play_command(CLI::App& app);          ///< recording -> UDP in real time
 void add_altitude_command(CLI::App& app);      ///< pressure logs -> heights
 void add_noise_command(CLI::App& app);         ///< pressure log -> sigma, Allan deviation, filter settings
+void add_compare_command(CLI::App& app);       ///< two runs or configurations
 void add_report_command(CLI::App& app);        ///< a run as one page
 void add_export_command(CLI::App& app);        ///< a run as MCAP
 void add_foxglove_command(CLI::App& app);      ///< live topics for Foxglove

@@ -21,6 +21,7 @@ void add_all_commands(CLI::App& app) {
   add_check_command(app);
   add_replay_command(app);
   add_evaluate_command(app);
+  add_compare_command(app);
   add_experiment_command(app);
   add_noise_command(app);
   add_altitude_command(app);

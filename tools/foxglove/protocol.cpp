@@ -15,7 +15,7 @@ constexpr std::uint8_t kDataOpcode = 1;
 
 static_assert(std::endian::native == std::endian::little, "numbers are sent as their bytes in memory");
 
-Request refused(std::string reason) { return {Request::Kind::kRefused, {}, std::move(reason)}; }
+ViewerRequest refused(std::string reason) { return {ViewerRequest::Kind::kRefused, {}, std::move(reason)}; }
 
 /// A number of 32 bits; false for anything else.
 bool take_number(const Json& from, std::uint32_t& to) {
@@ -24,12 +24,12 @@ bool take_number(const Json& from, std::uint32_t& to) {
   return true;
 }
 
-Request subscribe_request(const Json& json) {
-  Request request{Request::Kind::kSubscribe};
+ViewerRequest subscribe_request(const Json& json) {
+  ViewerRequest request{ViewerRequest::Kind::kSubscribe};
   const auto list = json.find("subscriptions");
   if (list == json.end() || !list->is_array()) return refused("subscribe: \"subscriptions\" must be a list");
   for (const Json& entry : *list) {
-    Request::Subscription one;
+    ViewerRequest::Subscription one;
     if (!entry.is_object() || !take_number(entry.value("id", Json()), one.id) ||
         !take_number(entry.value("channelId", Json()), one.channel))
       return refused("subscribe: a subscription must have the numbers \"id\" and \"channelId\"");
@@ -38,13 +38,13 @@ Request subscribe_request(const Json& json) {
   return request;
 }
 
-Request unsubscribe_request(const Json& json) {
-  Request request{Request::Kind::kUnsubscribe};
+ViewerRequest unsubscribe_request(const Json& json) {
+  ViewerRequest request{ViewerRequest::Kind::kUnsubscribe};
   const auto list = json.find("subscriptionIds");
   if (list == json.end() || !list->is_array())
     return refused("unsubscribe: \"subscriptionIds\" must be a list");
   for (const Json& entry : *list) {
-    Request::Subscription one;
+    ViewerRequest::Subscription one;
     if (!take_number(entry, one.id)) return refused("unsubscribe: \"subscriptionIds\" must hold numbers");
     request.subscriptions.push_back(one);
   }
@@ -81,7 +81,7 @@ std::string status(int level, std::string_view message) {
                                                                              Json::error_handler_t::replace);
 }
 
-Request parse_request(std::string_view text) {
+ViewerRequest parse_request(std::string_view text) {
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) return refused("a request must be a JSON object");
   const auto op = json.find("op");

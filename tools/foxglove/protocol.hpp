@@ -20,7 +20,7 @@ struct Channel {
 };
 
 /// What a client asks for. Other operations of the protocol, such as publishing, are not offered and are refused.
-struct Request {
+struct ViewerRequest {
   enum class Kind : std::uint8_t { kSubscribe, kUnsubscribe, kRefused };
   struct Subscription {
     std::uint32_t id = 0;  ///< chosen by the client
@@ -41,7 +41,7 @@ std::string advertisement(std::span<const Channel> channels);
 std::string status(int level, std::string_view message);
 
 /// A text of a client. Never throws: what is no request is kRefused with its reason.
-Request parse_request(std::string_view text);
+ViewerRequest parse_request(std::string_view text);
 
 /// Bytes before the payload of a data message: opcode, subscription, time of reception.
 inline constexpr std::size_t kDataHeaderBytes = 1 + 4 + 8;

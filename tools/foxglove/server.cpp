@@ -106,31 +106,32 @@ int Server::receive(lws* connection, std::string_view piece) {
   client.request += piece;
   if (lws_is_final_fragment(connection) == 0 || lws_remaining_packet_payload(connection) > 0) return 0;
   const std::string text = std::exchange(client.request, {});
-  answer(connection, lws_frame_is_binary(connection) != 0
-                         ? Request{Request::Kind::kRefused, {}, "binary messages of clients are not taken"}
-                         : parse_request(text));
+  answer(connection,
+         lws_frame_is_binary(connection) != 0
+             ? ViewerRequest{ViewerRequest::Kind::kRefused, {}, "binary messages of clients are not taken"}
+             : parse_request(text));
   return 0;
 }
 
-void Server::answer(lws* connection, const Request& request) {
+void Server::answer(lws* connection, const ViewerRequest& request) {
   Client& client = clients_.at(connection);
   switch (request.kind) {
-    case Request::Kind::kSubscribe:
-      for (const Request::Subscription& one : request.subscriptions) subscribe(connection, client, one);
+    case ViewerRequest::Kind::kSubscribe:
+      for (const ViewerRequest::Subscription& one : request.subscriptions) subscribe(connection, client, one);
       return;
-    case Request::Kind::kUnsubscribe:
-      for (const Request::Subscription& one : request.subscriptions) {
+    case ViewerRequest::Kind::kUnsubscribe:
+      for (const ViewerRequest::Subscription& one : request.subscriptions) {
         client.channels.erase(one.id);
         client.queue.forget(one.id);
       }
       return;
-    case Request::Kind::kRefused:
+    case ViewerRequest::Kind::kRefused:
       send(connection, {.text = status(2, request.reason)});
       return;
   }
 }
 
-void Server::subscribe(lws* connection, Client& client, const Request::Subscription& wanted) {
+void Server::subscribe(lws* connection, Client& client, const ViewerRequest::Subscription& wanted) {
   const bool exists = std::any_of(channels_.begin(), channels_.end(),
                                   [&](const Channel& channel) { return channel.id == wanted.channel; });
   if (!exists || client.channels.size() >= 4 * channels_.size()) {

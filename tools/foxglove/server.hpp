@@ -63,8 +63,8 @@ class Server {
 
   void welcome(lws* connection);
   int receive(lws* connection, std::string_view piece);
-  void answer(lws* connection, const Request& request);
-  void subscribe(lws* connection, Client& client, const Request::Subscription& wanted);
+  void answer(lws* connection, const ViewerRequest& request);
+  void subscribe(lws* connection, Client& client, const ViewerRequest::Subscription& wanted);
   void send(lws* connection, Outgoing message);
   int write_next(lws* connection);
   void tell_dropped(Client& client);

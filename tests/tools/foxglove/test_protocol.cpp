@@ -11,16 +11,16 @@
 namespace isobar::test::test_protocol {
 
 using namespace isobar::tools::foxglove;
-using Kind = Request::Kind;
+using Kind = ViewerRequest::Kind;
 
 TEST_CASE("subscriptions and their ends are read with their numbers") {
-  const Request subscribe =
+  const ViewerRequest subscribe =
       parse_request(R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":3},{"id":7,"channelId":1}]})");
   REQUIRE(subscribe.kind == Kind::kSubscribe);
   REQUIRE(subscribe.subscriptions.size() == 2);
   CHECK(subscribe.subscriptions[1].id == 7);
   CHECK(subscribe.subscriptions[1].channel == 1);
-  const Request unsubscribe = parse_request(R"({"op":"unsubscribe","subscriptionIds":[7]})");
+  const ViewerRequest unsubscribe = parse_request(R"({"op":"unsubscribe","subscriptionIds":[7]})");
   REQUIRE(unsubscribe.kind == Kind::kUnsubscribe);
   CHECK(unsubscribe.subscriptions.at(0).id == 7);
 }
@@ -34,7 +34,7 @@ TEST_CASE("what is no request is refused with its reason, whatever it is") {
         R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":4294967296}]})",
         R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1.5}]})",
         R"({"op":"unsubscribe","subscriptionIds":["x"]})", "\xff\xfe"}) {
-    const Request request = parse_request(text);
+    const ViewerRequest request = parse_request(text);
     CHECK_MESSAGE(request.kind == Kind::kRefused, text);
     CHECK_FALSE(request.reason.empty());
   }
