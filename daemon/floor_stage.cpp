@@ -13,6 +13,7 @@ namespace isobar {
 namespace {
 
 constexpr double kSameFloorM = 1.0;
+constexpr double kSureHeightM = 0.3;  // sigma of a height by which a floor is opened
 
 double height_sigma_m(const PoseEstimate& pose) { return std::sqrt(std::max(pose.covariance(2, 2), 0.0)); }
 
@@ -37,7 +38,12 @@ void FloorStage::add_pose(const PoseEstimate& pose) {
   if (pose.map_moves != map_moves_) map_.forget_tiles();
   map_moves_ = pose.map_moves;
   pose_ = pose;
-  if (has_place(pose)) map_.drive_to(pose.T_map_base.translation());
+  if (!has_place(pose)) return;
+  if (height_sigma_m(pose) <= kSureHeightM) {
+    map_.arrive_at(pose.stamp_ns, pose.T_map_base.translation());
+  } else {
+    map_.drive_to(pose.T_map_base.translation());
+  }
 }
 
 void FloorStage::add_tiles(const FloorTiles& tiles) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/floors/floor_levels.hpp"
+#include "core/floors/floor_numbers.hpp"
 #include "core/floors/level_drive.hpp"
 #include "core/map/grid.hpp"
 
@@ -142,47 +143,6 @@ double certainty_of(const FloorLevel& level, bool has_path) {
   return by_area * by_drive;
 }
 
-// Numbers from the floor nearest to the start.
-/// Height of a storey, from two floors that lie one above the other: the smallest distance that a storey can have; 0 where
-/// there is none.
-double storey_m(const std::vector<Floor>& floors) {
-  constexpr double kLowestM = 2.6;
-  constexpr double kHighestM = 5.5;
-  double storey = 0.0;
-  for (std::size_t i = 1; i < floors.size(); ++i) {
-    const double gap_m = floors[i].height_m - floors[i - 1].height_m;
-    if (gap_m >= kLowestM && gap_m <= kHighestM && (storey == 0.0 || gap_m < storey)) storey = gap_m;
-  }
-  return storey;
-}
-
-/// Storeys between two floors: more than one where an elevator has passed floors that were never driven.
-int storeys_between(const Floor& lower, const Floor& upper, double storey) {
-  constexpr double kSlack = 0.2;  // of a storey: storeys of one building differ
-  if (storey == 0.0) return 1;
-  const double count = (upper.height_m - lower.height_m) / storey;
-  const double whole = std::round(count);
-  return whole >= 2.0 && std::abs(count - whole) <= kSlack ? static_cast<int>(whole) : 1;
-}
-
-void number_floors(std::vector<Floor>& floors, double start_m) {
-  const auto distance = [start_m](const Floor& floor) {
-    return std::max({floor.lowest_m - start_m, start_m - floor.highest_m, 0.0});
-  };
-  const auto zero = std::min_element(floors.begin(), floors.end(), [&](const Floor& a, const Floor& b) {
-    return distance(a) < distance(b);
-  });
-  if (zero == floors.end()) return;
-  const double storey = storey_m(floors);
-  zero->number = 0;
-  for (auto at = zero; at + 1 != floors.end(); ++at) {
-    (at + 1)->number = at->number + storeys_between(*at, *(at + 1), storey);
-  }
-  for (auto at = zero; at != floors.begin(); --at) {
-    (at - 1)->number = at->number - storeys_between(*(at - 1), *at, storey);
-  }
-}
-
 Floor floor_of(const FloorLevel& level, bool has_path) {
   Floor floor;
   floor.height_m = level.height_m;
@@ -223,7 +183,8 @@ Floors find_floors(const GroundColumns& ground, std::span<const Eigen::Vector3d>
   for (const FloorLevel& level : choice.others) {
     result.half_levels.push_back({level.height_m, level.driven_m, level.area_m2});
   }
-  number_floors(result.floors, has_path ? places.front().p_map.z() - result.base_height_m : 0.0);
+  if (has_path) result.start_m = places.front().p_map.z() - result.base_height_m;
+  number_floors(result.floors, result.start_m);
   return result;
 }
 

@@ -15,6 +15,8 @@ constexpr double kBesideM = 5.0;          // the map ends about this far beyond 
 constexpr double kBesideWeight = 0.3;     // of a floor that is not known at this place in plan
 constexpr double kPerRootTwoPi = 0.3989;  // 1 / sqrt(2 pi)
 
+constexpr double kProvisional = 0.6;  // most certainty of a floor that is not driven enough yet
+
 constexpr double kHalfLevelM = 0.4;  // to its height
 
 double distance_m(const Floor& floor, double ground_m) {
@@ -79,6 +81,7 @@ FloorGuess floor_at(const Floors& floors, const Eigen::Vector3d& p_map_base, dou
   }
   const bool usable = guess.floor != nullptr && std::isfinite(ground_m) && std::isfinite(s);
   guess.certainty = usable ? std::max(best, 0.0) / sum : 0.0;
+  if (usable && guess.floor->is_provisional) guess.certainty = std::min(guess.certainty, kProvisional);
   if (usable) guess.place = place_of(floors, ground_m, guess.certainty, 1.0 - kBetweenPerM / sum);
   return guess;
 }

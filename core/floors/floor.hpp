@@ -22,6 +22,7 @@ struct Floor {
   double area_m2 = 0.0;          ///< of the ground that the map holds
   double driven_m = 0.0;         ///< level drive on it; 0 without a path
   double certainty = 0.0;        ///< that this is a floor, 0 … 1
+  bool is_provisional = false;   ///< the robot has just arrived on it, see FirstArrival
   bool is_terrain = false;       ///< slopes of open country, where no place lies above another
 };
 
@@ -38,6 +39,7 @@ struct Floors {
   std::vector<Floor> floors;           ///< ascending in height and number
   std::vector<HalfLevel> half_levels;  ///< ascending in height
   double base_height_m = 0.0;          ///< of base_link above the ground, from path and map
+  double start_m = 0.0;                ///< height of the ground where the run began
 
   /// The floor of a number; null if there is none.
   [[nodiscard]] const Floor* find(int number) const;

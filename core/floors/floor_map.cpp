@@ -60,12 +60,19 @@ void FloorMap::drive_to(const Eigen::Vector3d& p_map_base) {
   if (path_.size() > limits_.places) thin_path();
 }
 
-// The first place stays: the floors are counted from it.
+bool FloorMap::arrive_at(std::int64_t stamp_ns, const Eigen::Vector3d& p_map_base) {
+  if (!p_map_base.allFinite()) return false;
+  drive_to(p_map_base);
+  arrival_.drive_to(stamp_ns, p_map_base);
+  return arrival_.open(ground_, floors_);
+}
+
 void FloorMap::forget_tiles() {
   tiles_.clear();
   points_ = 0;
 }
 
+// The first place stays: the floors are counted from it.
 void FloorMap::thin_path() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < path_.size(); i += 2) path_[kept++] = path_[i];
@@ -107,6 +114,7 @@ void FloorMap::find() {
   ground_.finish();
   extent_m_ = extent_of(ground_, path_);
   floors_ = find_floors(ground_, path_);
+  arrival_.renew(floors_);
 }
 
 OccupancyGrid FloorMap::grid(const Floor& floor) const {

@@ -4,11 +4,13 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "core/floors/find_floors.hpp"
+#include "core/floors/first_arrival.hpp"
 #include "core/floors/floor_grid.hpp"
 #include "core/floors/packed_points.hpp"
 #include "core/map/map_point.hpp"
@@ -41,9 +43,13 @@ class FloorMap {
   /// The robot has driven on, to a place of base_link in the map frame [m].
   void drive_to(const Eigen::Vector3d& p_map_base);
 
+  /// As drive_to(), of a height that tells floors apart: on a floor that is not known, a provisional one is opened, see
+  /// FirstArrival. True if floors() has one more.
+  bool arrive_at(std::int64_t stamp_ns, const Eigen::Vector3d& p_map_base);
+
   /// Finds the floors anew, in all tiles and the whole path.
   void find();
-  /// Of the last find().
+  /// Of the last find(), and of arrive_at() since.
   [[nodiscard]] const Floors& floors() const { return floors_; }
   /// Grid of a floor of floors(), with the tiles as they are, and the ground of the last find().
   /// @throws DataError when it is too large
@@ -73,6 +79,7 @@ class FloorMap {
   GroundColumns ground_;
   Eigen::AlignedBox2d extent_m_;  ///< of ground_ and path
   Floors floors_;
+  FirstArrival arrival_;
 };
 
 }  // namespace isobar

@@ -11,10 +11,10 @@ namespace {
 
 constexpr double kSteps = 32'767.0;
 constexpr float kNormalSteps = 127.0F;
-constexpr double kFarthestM = 1e7;
+constexpr double kFarthestPackedM = 1e7;
 
 bool is_sound(const MapPoint& point) {
-  return point.p_map.allFinite() && point.p_map.cwiseAbs().maxCoeff() < kFarthestM &&
+  return point.p_map.allFinite() && point.p_map.cwiseAbs().maxCoeff() < kFarthestPackedM &&
          point.normal_map.allFinite();
 }
 

@@ -53,17 +53,48 @@ std::unique_ptr<BuildingStore> BuildingStore::open_to_continue(const fs::path& m
   const fs::path folder = map_folder / kBuildingFolder;
   std::unique_ptr<BuildingStore> store(new BuildingStore(folder));
   store->max_bytes_ = max_bytes;
-  store->lock_ = std::make_unique<MapLock>(folder);
-  const fs::path log = folder / kLogFile;
-  store->log_ = FileDescriptor(::open(log.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644));
-  if (!store->log_) throw ServiceError(log.string() + ": cannot be opened: " + errno_message());
-  store->load();
+  std::error_code error;
+  if (store->make_files()) {
+    store->load();
+  } else if (fs::exists(folder / kLogFile, error)) {
+    throw ServiceError(store->counters_.first_refusal);
+  }
   if (store->log_bytes_ == 0) {
     store->record_.clear();
     building_log::append_format(store->record_);
     store->append_log();
   }
   return store;
+}
+
+// @throws ServiceError where another process holds the lock
+bool BuildingStore::make_files() {
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  const FileDescriptor lock(::open((folder_ / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
+  if (!lock) {
+    refuse(folder_.string() + ": cannot be begun: " + errno_message());
+    return false;
+  }
+  if (!lock_) lock_ = std::make_unique<MapLock>(folder_);
+  const fs::path log = folder_ / kLogFile;
+  log_ = FileDescriptor(::open(log.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644));
+  if (!log_) refuse(log.string() + ": cannot be opened: " + errno_message());
+  return static_cast<bool>(log_);
+}
+
+// The log that could not be made at first. Records of others in it would belong to another building.
+bool BuildingStore::begin_late() {
+  try {
+    if (!make_files()) return false;
+  } catch (const Error& error) {
+    refuse(error.what());
+    return false;
+  }
+  if (size_of(log_) == 0) return true;
+  refuse(folder_.string() + ": another process has begun a building there");
+  log_ = FileDescriptor();
+  return false;
 }
 
 std::unique_ptr<BuildingStore> BuildingStore::open_to_read(const fs::path& map_folder) {
@@ -128,6 +159,7 @@ bool BuildingStore::append(const FileDescriptor& file, std::uint64_t& size,
 void BuildingStore::append_log() {
   if (waiting_.size() > kMostWaitingBytes) return;
   waiting_.insert(waiting_.end(), record_.begin(), record_.end());
+  if (!log_ && !begin_late()) return;
   if (append(log_, log_bytes_, waiting_)) waiting_.clear();
 }
 

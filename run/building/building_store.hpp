@@ -33,7 +33,8 @@ class BuildingStore final : public BuildingStorage {
  public:
   static constexpr std::uint64_t kPartBytes = 32U << 20;
 
-  /// Opens or begins the building of a map, and cuts what a crash left incomplete. What was stored is in stored().
+  /// Opens or begins the building of a map, and cuts what a crash left incomplete. What was stored is in stored(). A building
+  /// that cannot be begun, as on a full disk, is tried again with each record: see counters().refused.
   /// @param map_folder its folder kBuildingFolder is made where it is missing
   /// @param max_bytes of all parts; beyond it the oldest is removed
   /// @throws DataError for a log of another format, or a file that is not a log
@@ -59,6 +60,8 @@ class BuildingStore final : public BuildingStorage {
 
  private:
   explicit BuildingStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  bool make_files();
+  [[nodiscard]] bool begin_late();
   void load();
   void append_log();
   bool append(const FileDescriptor& file, std::uint64_t& size, const std::vector<std::byte>& bytes);
@@ -77,7 +80,7 @@ class BuildingStore final : public BuildingStorage {
   std::uint32_t reading_number_ = 0;
   StoredBuilding stored_;
   BuildingStoreCounters counters_;
-  std::vector<std::byte> waiting_;        // for the log, since the disk has refused it
+  std::vector<std::byte> waiting_;        // for the log, format included, since the disk has refused it
   std::vector<std::byte> record_;         // scratch
   std::vector<std::byte> reading_bytes_;  // scratch
 };

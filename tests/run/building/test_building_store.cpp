@@ -219,6 +219,34 @@ TEST_CASE(
   CHECK(store->read_scan(store->stored().submaps[0].keys[1].scan, *scan));
 }
 
+TEST_CASE("a building that cannot be begun is begun when the disk takes it, with all that came before") {
+  const TemporaryFolder folder;
+  const fs::path in_the_way = folder.path() / kBuildingFolder;  // as a full disk: no folder can be made
+  write_content(in_the_way, "");
+  {
+    const auto store = BuildingStore::open_to_continue(folder.path(), kPlenty);
+    CHECK(store->stored().submaps.empty());
+    store->add_submap(Submap());
+    KeyScan lost = key_number(1);
+    store->add_key(0, lost, *scan_number(1));
+    CHECK(lost.scan == kNoScanHandle);
+    CHECK(store->counters().first_refusal.find("cannot be begun") != std::string::npos);
+    CHECK(!store->sync());
+    fs::remove(in_the_way);
+    store->add_move(5);
+    KeyScan kept = key_number(2);
+    store->add_key(0, kept, *scan_number(2));
+    CHECK(kept.scan != kNoScanHandle);
+    CHECK(store->sync());
+  }
+  const auto store = BuildingStore::open_to_continue(folder.path(), kPlenty);
+  REQUIRE(store->stored().submaps.size() == 1);
+  CHECK(store->stored().submaps[0].keys.size() == 2);
+  CHECK(store->stored().moved_ns == std::vector<std::int64_t>{5});
+  const auto scan = std::make_unique<RegisteredScan>();
+  CHECK(store->read_scan(store->stored().submaps[0].keys[1].scan, *scan));
+}
+
 TEST_CASE("beyond the limit the oldest scans go, and the log stays") {
   const TemporaryFolder folder;
   // Scans of 80 kB: a part holds 420.
