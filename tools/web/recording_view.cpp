@@ -117,7 +117,7 @@ void add_signals(const Content& content, std::int64_t origin_ns, Json& signals) 
 Json sensors_json(const Content& content, const recording::Manifest& manifest) {
   const auto file_of = [](const auto& entry) { return entry ? entry->file : std::string(); };
   const std::array<std::pair<const char*, std::string>, kKinds> kNames{
-      {{"lidar", file_of(manifest.lidar)},
+      {{"lidar_packets", file_of(manifest.lidar)},
        {"imu", file_of(manifest.imu)},
        {"barometer", file_of(manifest.barometer)},
        {"base_barometer", file_of(manifest.base_barometer)},
@@ -166,6 +166,21 @@ void add_settings(const fs::path& folder, Json& json) {
   }
 }
 
+/// "a recording of 5 sensors, 81 s".
+std::string summary_of(const Content& content) {
+  std::int64_t last_ns = content.origin_ns();
+  std::size_t sensors = 0;
+  for (const Stream& stream : content.streams) {
+    if (stream.samples == 0) continue;
+    ++sensors;
+    last_ns = std::max(last_ns, stream.last_ns);
+  }
+  std::array<char, 80> text{};
+  std::snprintf(text.data(), text.size(), "a recording of %zu sensors, %.0f s", sensors,
+                static_cast<double>(last_ns - content.origin_ns()) * 1e-9);
+  return text.data();
+}
+
 }  // namespace
 
 FileView read_recording(const fs::path& folder, const ReadProgress& progress) {
@@ -184,9 +199,10 @@ FileView read_recording(const fs::path& folder, const ReadProgress& progress) {
   const recording::Manifest& manifest = reader.manifest();
   Json json = empty_view("recording", fs::canonical(folder).filename().string(), origin_ns);
   json["sensors"] = sensors_json(content, manifest);
-  json["health"].push_back(
-      note_json("recording", "ok",
-                manifest.description.empty() ? "complete as far as it can be read" : manifest.description));
+  json["health"].push_back(note_json("recording", "ok", summary_of(content)));
+  if (!manifest.description.empty()) {
+    json["health"].push_back(note_json("description", "ok", manifest.description));
+  }
   for (const std::string& warning : reader.warnings()) {
     json["health"].push_back(note_json("recording.toml", "warning", warning));
   }
@@ -200,7 +216,7 @@ FileView read_recording(const fs::path& folder, const ReadProgress& progress) {
   add_signals(content, origin_ns, json["signals"]);
   add_reference(folder, manifest, origin_ns, json);
   add_settings(folder, json);
-  return {text_of(json), std::to_string(json["sensors"].size()) + " sensors"};
+  return {text_of(json), summary_of(content)};
 }
 
 }  // namespace isobar::web

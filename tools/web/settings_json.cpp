@@ -28,7 +28,8 @@ std::string source_of(const std::string& key, const std::string& value, bool is_
     if (origin != from->origins.end()) {
       const std::string place = origin->second.file + ":" + std::to_string(origin->second.line);
       if (in_files.at(key) == value) return place;
-      return place + " says " + in_files.at(key) + ", which is not in force yet";
+      return place + " says " + in_files.at(key) +
+             ": replaced on the command line, or changed since the start";
     }
   }
   return is_default ? "default" : unknown_source;

@@ -109,12 +109,23 @@ struct WebServer::Impl {
                 "application/octet-stream");
     });
     if (served.live != nullptr) add_live();
-    if (!server.bind_to_port(address.address, address.port)) {
+    listen();
+    thread = std::thread([this] { server.listen_after_bind(); });
+    // httplib's stop() does nothing before the server runs.
+    while (!server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+
+  /// @throws ServiceError when the address cannot be listened on
+  void listen() {
+    const int port = address.port == 0 ? server.bind_to_any_port(address.address)
+                     : server.bind_to_port(address.address, address.port) ? address.port
+                                                                          : -1;
+    if (port < 0) {
       throw ServiceError(
           address.address + ":" + std::to_string(address.port) +
           ": cannot be listened on; the address does not exist or another program uses the port");
     }
-    thread = std::thread([this] { server.listen_after_bind(); });
+    address.port = static_cast<std::uint16_t>(port);
   }
 
   void set_limits() {
@@ -229,6 +240,8 @@ WebServer::~WebServer() {
   impl_->server.stop();
   impl_->thread.join();
 }
+
+std::uint16_t WebServer::port() const { return impl_->address.port; }
 
 std::size_t WebServer::viewers() const { return impl_->viewers; }
 

@@ -18,7 +18,7 @@ namespace isobar::web {
 /// Where to listen.
 struct WebAddress {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 8080;
+  std::uint16_t port = 8080;     ///< 0: a free one
   std::size_t most_viewers = 8;  ///< open pages with live events
 };
 
@@ -42,6 +42,8 @@ class WebServer {
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
+  /// Port that is listened on.
+  [[nodiscard]] std::uint16_t port() const;
   /// Pages that get live events now.
   [[nodiscard]] std::size_t viewers() const;
 

@@ -24,7 +24,10 @@ export class Actions {
     this.token.type = 'password';
     this.token.autocomplete = 'off';
     this.answer.setAttribute('role', 'status');
-    body.append(
+    const form = element('form', '');
+    form.addEventListener('submit', (event) => event.preventDefault());
+    body.append(form);
+    form.append(
       element('label', '', 'Token', this.token),
       button('Save the black box', 'action', () => void this.send('/api/save-black-box', {})),
       element('div', 'row', this.x.root, this.y.root, this.yaw.root),

@@ -29,6 +29,7 @@ export interface ChartOptions {
   sync?: string;
 }
 
+const kNarrowPx = 560;
 const kAxisFont = '11px system-ui, sans-serif';
 
 export class Chart {
@@ -77,8 +78,11 @@ export class Chart {
     }
   }
 
+  /** As in the style sheet: a legend that grew with its values would move the chart. */
   private legend_px(): number {
-    return this.plot?.root.querySelector('.u-legend')?.getBoundingClientRect().height ?? 26;
+    const is_narrow = this.root.clientWidth < kNarrowPx;
+    this.root.classList.toggle('narrow', is_narrow);
+    return is_narrow ? 46 : 26;
   }
 
   private plot_options({ width, height }: { width: number; height: number }): uPlot.Options {
@@ -95,7 +99,7 @@ export class Chart {
       legend: { live: true },
       axes: [
         { ...axis, values: (_, ticks) => ticks.map((tick) => span(tick, ticks.length > 1 && ticks[1] - ticks[0] < 1 ? 1 : 0)), size: 26 },
-        { ...axis, label: y_label, labelFont: kAxisFont, labelSize: 16, labelGap: 0, size: 48 },
+        { ...axis, label: y_label, labelFont: kAxisFont, labelSize: 16, labelGap: 0, size: 56 },
       ],
       series: [
         { label: 'time', value: (_, t_s) => (t_s === null || t_s === undefined ? '–' : span(t_s, 1)) },

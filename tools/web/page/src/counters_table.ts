@@ -1,16 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The counters of a run: what was received, lost and refused.
-import { element, panel } from './dom';
+// The counters of a run: what was received, lost and refused. Those at zero come only when asked for.
+import { button, element, panel, set_text } from './dom';
 import { count } from './format';
 import type { ViewData } from './view_data';
 
 export function counters_table(counters: ViewData['counters']): HTMLElement {
-  const { root, body } = panel('Counters', 'counters');
-  const rows = counters.map((counter) => {
-    const name = element('th', '', counter.name);
-    name.scope = 'row';
-    return element('tr', '', name, element('td', '', count(counter.count)), element('td', 'sentence', counter.message));
+  const { root, head, body } = panel('Counters', 'counters');
+  const rows = element('tbody', '');
+  let all = false;
+  const show = () => {
+    const shown = counters.filter((counter) => all || counter.count > 0);
+    rows.replaceChildren(...shown.map((counter) => {
+      const name = element('th', '', counter.name, counter.message ? element('span', 'message', counter.message) : null);
+      name.scope = 'row';
+      return element('tr', '', name, element('td', '', count(counter.count)));
+    }));
+    set_text(toggle, all ? 'Show less' : `Show all ${counters.length}`);
+  };
+  const toggle = button('', 'quiet', () => {
+    all = !all;
+    show();
   });
-  body.append(element('div', 'scroll', element('table', 'figures', element('tbody', '', ...rows))));
+  show();
+  head.append(toggle);
+  body.append(element('div', 'scroll', element('table', 'figures', rows)));
   return root;
 }

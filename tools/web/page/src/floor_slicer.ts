@@ -12,7 +12,10 @@ const kSteps = 200;
 
 export class FloorSlicer {
   readonly root = element('div', 'slicer');
-  on_slice: (lowest_m: number, highest_m: number) => void = () => {};
+  /** null: all heights. */
+  on_slice: (slice_m: [number, number] | null) => void = () => {};
+  /** Grounds of the floors whose ceilings are left out. */
+  on_cut: (floors_m: number[]) => void = () => {};
   private readonly buttons = element('div', 'floor-buttons');
   private readonly bar = element('div', 'slice-bar');
   private readonly low = this.handle('lowest height shown');
@@ -23,6 +26,12 @@ export class FloorSlicer {
   private slice_m: [number, number] | null = null;
   private floors: Floor[] = [];
   private chosen: number | null = null;
+  private has_ceilings = false;
+  private readonly ceilings = button('Ceilings', 'chip', () => {
+    this.has_ceilings = !this.has_ceilings;
+    this.mark();
+    this.tell();
+  });
 
   constructor() {
     this.low.value = '0';
@@ -46,7 +55,10 @@ export class FloorSlicer {
     const ordered = [...floors].sort((a, b) => a.z_m - b.z_m);
     const is_same = JSON.stringify(ordered) === JSON.stringify(this.floors) && this.buttons.childElementCount > 0;
     this.floors = ordered;
-    if (!is_same) this.make_buttons();
+    if (!is_same) {
+      this.make_buttons();
+      this.tell();
+    }
     for (const child of this.buttons.children) child.classList.toggle('here', (child as HTMLElement).dataset.floor === String(current));
   }
 
@@ -68,7 +80,7 @@ export class FloorSlicer {
       made.dataset.floor = String(floor.number);
       return made;
     });
-    this.buttons.replaceChildren(all, ...rest);
+    this.buttons.replaceChildren(...(rest.length ? [all, ...rest, this.ceilings] : []));
     this.mark();
   }
 
@@ -97,10 +109,9 @@ export class FloorSlicer {
   }
 
   private tell(): void {
-    const [low, high] = this.slice_m ?? [-1e6, 1e6];
-    // A handle at the end of its way leaves nothing out at that end.
-    const is_open = (value: number, end: number) => Math.abs(value - end) < 1e-6;
-    this.on_slice(is_open(low, this.range_m[0]) ? -1e6 : low, is_open(high, this.range_m[1]) ? 1e6 : high);
+    this.on_slice(this.slice_m);
+    const is_cut = this.slice_m === null && !this.has_ceilings;
+    this.on_cut(is_cut ? this.floors.map((floor) => floor.z_m) : []);
   }
 
   private show(): void {
@@ -108,14 +119,19 @@ export class FloorSlicer {
     const share = (value: number) => Math.min(1, Math.max(0, (value - this.range_m[0]) / Math.max(0.01, this.range_m[1] - this.range_m[0])));
     this.low.value = String(Math.round(share(low) * kSteps));
     this.high.value = String(Math.round(share(high) * kSteps));
-    this.bar.style.setProperty('clip-path', `inset(0 ${100 * (1 - share(high))}% 0 ${100 * share(low)}% round 3px)`);
+    // All colours between the handles, as the map is drawn.
+    this.bar.style.setProperty('left', `${100 * share(low)}%`);
+    this.bar.style.setProperty('right', `${100 * (1 - share(high))}%`);
     set_text(this.low_text, `${fixed(low, 1)} m`);
     set_text(this.high_text, `${fixed(high, 1)} m`);
     this.mark();
   }
 
   private mark(): void {
+    this.ceilings.setAttribute('aria-pressed', String(this.has_ceilings && this.slice_m === null));
+    this.ceilings.disabled = this.slice_m !== null;
     for (const child of this.buttons.children) {
+      if (child === this.ceilings) continue;
       const floor = (child as HTMLElement).dataset.floor;
       const is_chosen = floor === undefined ? this.slice_m === null : floor === String(this.chosen);
       child.setAttribute('aria-pressed', String(is_chosen));

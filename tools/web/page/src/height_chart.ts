@@ -65,6 +65,11 @@ export class HeightChart {
     this.bias.set(of_bias.map((column) => column.slice(Math.max(0, first))));
   }
 
+  /** Leaves out the lower chart, where no bias is estimated. */
+  hide_bias(): void {
+    this.bias.root.hidden = true;
+  }
+
   /** Marks a time in both; null: none. */
   mark(t_s: number | null): void {
     this.height.mark(t_s);

@@ -46,7 +46,8 @@ function map_panel(layout: Layout, is_live: boolean): HTMLElement {
         button('Top', 'quiet', () => map.fit(true)),
         is_live ? follow_button(map) : null));
     map.on_range = (range) => slicer.set_range(range);
-    slicer.on_slice = (low, high) => map.set_slice(low, high);
+    slicer.on_slice = (slice_m) => map.set_slice(slice_m);
+    slicer.on_cut = (floors_m) => map.cut_above(floors_m);
     body.append(map.root);
   } else {
     body.append(element('div', 'map-view'));
@@ -92,11 +93,10 @@ export function make_layout(view: ViewData): Layout {
   height.body.append(layout.height.root);
   layout.side.append(layout.health.root, layout.rates.root);
   layout.below.append(layout.settings.root);
-  const kinds = { live: 'live', run: 'run', recording: 'recording' };
   document.title = `${view.title} – Isobar`;
   document.body.className = view.kind;
   document.body.replaceChildren(
-    element('header', 'top', element('div', 'brand', element('b', '', 'isobar'), element('span', 'kind', kinds[view.kind]), element('span', 'title', view.title)), layout.summary.root),
+    element('header', 'top', element('div', 'brand', element('b', '', 'isobar'), element('span', 'kind', view.kind), element('span', 'title', view.title)), layout.summary.root),
     layout.pose.root,
     element('main', '', map_panel(layout, is_live), layout.side, height.root, layout.below),
     element('footer', '', `Isobar ${view.version}`),

@@ -10,6 +10,8 @@ import type { Link, Listener, LivePose } from './source';
 import type { Floor, Setting, Status, ViewData } from './view_data';
 
 const kSpans: [string, number][] = [['1 min', 60], ['10 min', 600], ['all', 0]];
+/** Where a robot is that is on no floor, in short. */
+const kPlaces: Record<string, string> = { 'on a half level': 'half level', 'between floors': 'between' };
 /** Charts and path are drawn anew this often; the robot moves with every pose [ms]. */
 const kRedrawMs = 500;
 
@@ -74,7 +76,7 @@ export class LivePage implements Listener {
     this.layout.rates.set(status.sensors);
     const { floor } = status;
     const number = floor && (floor.name || fixed(floor.number, 0));
-    this.layout.pose.set_floor(!floor ? '' : floor.known ? String(number) : floor.place);
+    this.layout.pose.set_floor(!floor ? '' : floor.known ? String(number) : kPlaces[floor.place] ?? '');
   }
 
   on_floors(floors: Floor[], current: number | null): void {

@@ -8,6 +8,9 @@ const kVertex = `
 uniform float step_m;
 uniform vec2 slice_m;
 uniform vec2 range_m;
+uniform vec2 slab_m;
+uniform float floors_m[FLOORS];
+uniform int floor_count;
 uniform float pixels_per_m;
 uniform sampler2D colours;
 varying vec3 colour;
@@ -16,7 +19,13 @@ void main() {
   vec4 seen = viewMatrix * world;
   gl_Position = projectionMatrix * seen;
   gl_PointSize = clamp(pixels_per_m / max(0.1, -seen.z), 1.0, 5.0);
-  if (world.z < slice_m.x || world.z > slice_m.y) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  bool shown = world.z >= slice_m.x && world.z <= slice_m.y;
+  bool in_slab = floor_count == 0;
+  for (int i = 0; i < FLOORS; ++i) {
+    float above = world.z - floors_m[i];
+    if (i < floor_count && above > slab_m.x && above < slab_m.y) in_slab = true;
+  }
+  if (!shown || !in_slab) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   float at = (world.z - range_m.x) / max(0.01, range_m.y - range_m.x);
   colour = texture2D(colours, vec2(clamp(at, 0.002, 0.998), 0.5)).rgb;
 }`;
@@ -28,12 +37,16 @@ void main() {
 
 /** Edge of a drawn point in space [m], while it is larger than a pixel. */
 const kPointM = 0.07;
-/** One of this many points is kept for the range of heights. */
+/** One of this many points is kept for the extent of the map. */
 const kSampleStep = 61;
+/** Floors without their ceilings are shown between these heights above the ground [m]. */
+const kSlabM = [-0.5, 1.9];
+const kMostFloors = 32;
 
 interface Drawn {
   points: THREE.Points;
-  heights_m: Float32Array;
+  /** x, y, z in the map frame. */
+  samples_m: Float32Array;
 }
 
 export class MapPoints {
@@ -44,10 +57,14 @@ export class MapPoints {
   private readonly material = new THREE.ShaderMaterial({
     vertexShader: kVertex,
     fragmentShader: kFragment,
+    defines: { FLOORS: kMostFloors },
     uniforms: {
       step_m: { value: 0.00025 },
       slice_m: { value: new THREE.Vector2(-1e6, 1e6) },
       range_m: { value: new THREE.Vector2(0, 1) },
+      slab_m: { value: new THREE.Vector2(...kSlabM) },
+      floors_m: { value: new Array(kMostFloors).fill(0) },
+      floor_count: { value: 0 },
       pixels_per_m: { value: 50 },
       colours: { value: null },
     },
@@ -83,6 +100,13 @@ export class MapPoints {
     this.material.uniforms.slice_m.value.set(lowest_m, highest_m);
   }
 
+  /** Leaves out what is above a person on these floors: ceilings hide what is below; none: shows all. */
+  cut_above(floors_m: number[]): void {
+    const told = floors_m.slice(0, kMostFloors);
+    this.material.uniforms.floors_m.value = [...told, ...new Array(kMostFloors - told.length).fill(0)];
+    this.material.uniforms.floor_count.value = told.length;
+  }
+
   set_range(lowest_m: number, highest_m: number): void {
     this.material.uniforms.range_m.value.set(lowest_m, highest_m);
   }
@@ -95,38 +119,35 @@ export class MapPoints {
 
   /** Heights between which nearly all points lie; null: none yet. */
   height_range_m(): [number, number] | null {
-    const heights = [...this.chunks.values()].flatMap((drawn) => [...drawn.heights_m]).sort((a, b) => a - b);
+    const heights: number[] = [];
+    for (const { samples_m } of this.chunks.values()) for (let i = 2; i < samples_m.length; i += 3) heights.push(samples_m[i]);
+    heights.sort((a, b) => a - b);
     if (heights.length === 0) return null;
     const part = (share: number) => heights[Math.round(share * (heights.length - 1))];
     return [part(0.005), part(0.995)];
   }
 
-  /** Box around all cubes; null: none yet. */
-  box(): THREE.Box3 | null {
-    const box = new THREE.Box3();
-    for (const { points } of this.chunks.values()) {
-      box.union(points.geometry.boundingBox!.clone().translate(points.position));
+  /** Some points of the whole map. */
+  *samples(): Generator<THREE.Vector3> {
+    for (const { samples_m } of this.chunks.values()) {
+      for (let i = 0; i < samples_m.length; i += 3) yield new THREE.Vector3(samples_m[i], samples_m[i + 1], samples_m[i + 2]);
     }
-    return box.isEmpty() ? null : box;
   }
 
   private add(key: string, corner_m: [number, number, number], data: Uint16Array, step_m: number): void {
     const geometry = new THREE.BufferGeometry();
     const buffer = new THREE.InterleavedBuffer(data, 4);
     geometry.setAttribute('position', new THREE.InterleavedBufferAttribute(buffer, 3, 0));
-    const box = new THREE.Box3();
-    const heights = new Float32Array(Math.ceil(data.length / 4 / kSampleStep));
-    for (let i = 0, sample = 0; i < data.length; i += 4 * kSampleStep, ++sample) {
-      box.expandByPoint(new THREE.Vector3(data[i], data[i + 1], data[i + 2]).multiplyScalar(step_m));
-      heights[sample] = corner_m[2] + data[i + 2] * step_m;
+    const samples = new Float32Array(3 * Math.ceil(data.length / 4 / kSampleStep));
+    for (let from = 0, to = 0; from < data.length; from += 4 * kSampleStep, to += 3) {
+      for (let axis = 0; axis < 3; ++axis) samples[to + axis] = corner_m[axis] + data[from + axis] * step_m;
     }
-    geometry.boundingBox = box;
     const edge_m = 65_536 * step_m;
     geometry.boundingSphere = new THREE.Sphere(new THREE.Vector3().setScalar(edge_m / 2), edge_m * 0.87);
     const points = new THREE.Points(geometry, this.material);
     points.position.set(...corner_m);
     this.group.add(points);
-    this.chunks.set(key, { points, heights_m: heights });
+    this.chunks.set(key, { points, samples_m: samples });
     this.total += data.length / 4;
   }
 

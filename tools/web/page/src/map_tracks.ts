@@ -20,7 +20,8 @@ export class PathLine {
   private step = 1;
 
   constructor(private readonly parent: THREE.Object3D, width_px: number, planes: THREE.Plane[], opacity = 1) {
-    this.material = new LineMaterial({ linewidth: width_px, clippingPlanes: planes, transparent: opacity < 1, opacity });
+    // Above the points: a path inside a building would be hidden by its ceilings.
+    this.material = new LineMaterial({ linewidth: width_px, clippingPlanes: planes, transparent: true, opacity, depthTest: false });
   }
 
   set_colour(colour: string): void {

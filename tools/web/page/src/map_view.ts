@@ -3,6 +3,7 @@
 // the data come from: see MapPiece and Poses.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { DepthShading } from './depth_shading';
 import { element, on_theme_change, style_value } from './dom';
 import type { MapPiece } from './map_chunks';
 import { MapPoints } from './map_points';
@@ -19,15 +20,19 @@ export class MapView {
   on_range: (range_m: [number, number]) => void = () => {};
   private readonly renderer: THREE.WebGLRenderer;
   private readonly scene = new THREE.Scene();
-  private readonly camera = new THREE.PerspectiveCamera(kFieldOfViewDeg, 1, 0.1, 5000);
+  private readonly overlay = new THREE.Scene();
+  private readonly shading: DepthShading;
+  private readonly camera = new THREE.PerspectiveCamera(kFieldOfViewDeg, 1, 0.2, 5000);
   private readonly controls: OrbitControls;
   private readonly points = new MapPoints();
   private readonly planes = [new THREE.Plane(new THREE.Vector3(0, 0, 1), 1e6), new THREE.Plane(new THREE.Vector3(0, 0, -1), 1e6)];
-  private readonly whole_path = new PathLine(this.scene, 1.5, this.planes, 0.45);
-  private readonly path = new PathLine(this.scene, 3, this.planes);
-  private readonly other_path = new PathLine(this.scene, 1.5, this.planes, 0.8);
+  private readonly whole_path = new PathLine(this.overlay, 1.5, this.planes, 0.45);
+  private readonly path = new PathLine(this.overlay, 3, this.planes);
+  private readonly other_path = new PathLine(this.overlay, 1.5, this.planes, 0.8);
   private readonly robot = new RobotMarker();
   private range_m: [number, number] | null = null;
+  private slice_m: [number, number] | null = null;
+  private fitted: THREE.Vector3[] = [];
   private touched = false;
   private waiting = false;
   private follows = false;
@@ -37,6 +42,7 @@ export class MapView {
   constructor() {
     this.renderer = new THREE.WebGLRenderer({ antialias: false, powerPreference: 'high-performance' });
     this.renderer.localClippingEnabled = true;
+    this.renderer.autoClear = false;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, kMostPixelRatio));
     const canvas = this.renderer.domElement;
     canvas.setAttribute('role', 'img');
@@ -49,7 +55,9 @@ export class MapView {
     this.controls.zoomToCursor = true;
     this.controls.addEventListener('change', () => this.draw_soon());
     this.controls.addEventListener('start', () => (this.touched = true));
-    this.scene.add(this.points.group, this.robot.object);
+    this.shading = new DepthShading(this.renderer);
+    this.scene.add(this.points.group);
+    this.overlay.add(this.robot.object);
     this.take_theme();
     on_theme_change(() => this.take_theme());
     new ResizeObserver(() => this.resize()).observe(this.root);
@@ -114,39 +122,59 @@ export class MapView {
     this.touched ||= follows;
   }
 
-  set_slice(lowest_m: number, highest_m: number): void {
-    this.points.set_slice(lowest_m, highest_m);
-    this.planes[0].constant = -lowest_m;
-    this.planes[1].constant = highest_m;
+  /** Shows heights between these only, in all colours; null: all. */
+  set_slice(slice_m: [number, number] | null): void {
+    const [low, high] = slice_m ?? [-1e6, 1e6];
+    this.slice_m = slice_m;
+    this.points.set_slice(low, high);
+    this.planes[0].constant = -low;
+    this.planes[1].constant = high;
+    this.colour();
+  }
+
+  /** Leaves out the ceilings over these floors; none: shows all. */
+  cut_above(floors_m: number[]): void {
+    this.points.cut_above(floors_m);
     this.draw_soon();
   }
 
   /** The whole map, from obliquely above or from the top. */
   fit(from_top = false): void {
-    const box = this.points.box();
-    if (box) this.fit_box(box, from_top);
+    this.fit_places([...this.points.samples()], from_top);
   }
 
   private fit_path(path: Line3): void {
-    const box = new THREE.Box3();
-    for (let i = 0; i < path.x_m.length; i += 20) {
-      box.expandByPoint(new THREE.Vector3(path.x_m[i] ?? 0, path.y_m[i] ?? 0, path.z_m[i] ?? 0));
-    }
-    this.fit_box(box.expandByScalar(2), false);
+    const step = Math.max(1, Math.floor(path.x_m.length / 2000));
+    const places: THREE.Vector3[] = [];
+    for (let i = 0; i < path.x_m.length; i += step) places.push(new THREE.Vector3(path.x_m[i] ?? 0, path.y_m[i] ?? 0, path.z_m[i] ?? 0));
+    this.fit_places(places, false);
   }
 
-  private fit_box(box: THREE.Box3, from_top: boolean): void {
-    const sphere = box.getBoundingSphere(new THREE.Sphere());
-    const half = (kFieldOfViewDeg * Math.PI) / 360;
-    const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
-    const distance = (0.82 * sphere.radius) / Math.sin(narrow);
-    const direction = from_top ? new THREE.Vector3(0, -0.001, 1) : new THREE.Vector3(-0.45, -0.75, 0.8);
-    this.controls.target.copy(sphere.center);
-    this.camera.position.copy(sphere.center).addScaledVector(direction.normalize(), distance);
-    this.camera.far = Math.max(2000, 20 * distance);
+  private fit_places(places: THREE.Vector3[], from_top: boolean): void {
+    if (places.length === 0) return;
+    this.fitted = places;
+    const box = new THREE.Box3().setFromPoints(places);
+    const centre = box.getCenter(new THREE.Vector3());
+    const direction = (from_top ? new THREE.Vector3(0, -0.001, 1) : new THREE.Vector3(-0.45, -0.75, 0.8)).normalize();
+    const distance = Math.max(3, 1.08 * this.distance_for(places, centre, direction));
+    this.controls.target.copy(centre);
+    this.camera.position.copy(centre).addScaledVector(direction, distance);
+    this.camera.far = Math.max(1000, 10 * distance);
     this.camera.updateProjectionMatrix();
     this.controls.update();
     this.draw_soon();
+  }
+
+  /** Distance from the centre at which all places are in view. */
+  private distance_for(places: THREE.Vector3[], centre: THREE.Vector3, direction: THREE.Vector3): number {
+    const right = new THREE.Vector3().crossVectors(new THREE.Vector3(0, 0, 1), direction).normalize();
+    const up = new THREE.Vector3().crossVectors(direction, right);
+    const half = Math.tan((kFieldOfViewDeg * Math.PI) / 360);
+    return places.reduce((distance, place) => {
+      const from_centre = place.clone().sub(centre);
+      const across = Math.max(Math.abs(from_centre.dot(right)) / (half * this.camera.aspect), Math.abs(from_centre.dot(up)) / half);
+      return Math.max(distance, from_centre.dot(direction) + across);
+    }, 0);
   }
 
   private take_range(): void {
@@ -155,12 +183,18 @@ export class MapView {
     const known = this.range_m;
     if (known && Math.abs(known[0] - range[0]) < 0.2 && Math.abs(known[1] - range[1]) < 0.2) return;
     this.range_m = range;
-    this.points.set_range(range[0], range[1]);
+    this.colour();
     this.on_range(range);
   }
 
+  private colour(): void {
+    const range = this.slice_m ?? this.range_m;
+    if (range) this.points.set_range(range[0], range[1]);
+    this.draw_soon();
+  }
+
   private take_theme(): void {
-    this.scene.background = new THREE.Color(style_value('--map-ground'));
+    this.shading.set_ground(style_value('--map-ground'));
     this.points.set_dark(matchMedia(kDarkQuery).matches);
     for (const line of [this.path, this.whole_path]) line.set_colour(style_value('--accent'));
     this.other_path.set_colour(style_value('--ink'));
@@ -174,8 +208,10 @@ export class MapView {
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.points.set_view(height * this.renderer.getPixelRatio(), kFieldOfViewDeg);
-    if (!this.touched) this.fit();
+    const ratio = this.renderer.getPixelRatio();
+    this.points.set_view(height * ratio, kFieldOfViewDeg);
+    this.shading.resize(Math.floor(width * ratio), Math.floor(height * ratio));
+    if (!this.touched) this.fit_places(this.fitted, false);
     this.draw_soon();
   }
 
@@ -185,7 +221,8 @@ export class MapView {
     requestAnimationFrame(() => {
       this.waiting = false;
       this.robot.scale_to(this.camera);
-      this.renderer.render(this.scene, this.camera);
+      this.shading.render(this.scene, this.camera);
+      this.renderer.render(this.overlay, this.camera);
       ++this.frames;
     });
   }

@@ -7,7 +7,7 @@ const kFields = [['x', 'm'], ['y', 'm'], ['z', 'm'], ['yaw', '°'], ['σ z', 'm'
 type Field = (typeof kFields)[number][0];
 
 const kModes: Record<string, string> = {
-  registered: 'on scan', prior: 'dead reckoning', initializing: 'starting',
+  registered: 'on scan', prior: 'no scan', initializing: 'starting',
 };
 
 export class PoseReadout {

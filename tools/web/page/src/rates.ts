@@ -5,12 +5,13 @@ import { count, fixed } from './format';
 import type { Sensor } from './view_data';
 
 const kTitles: Record<string, string> = {
-  lidar: 'Lidar', imu: 'IMU', barometer: 'Barometer', base_barometer: 'Base station', wheel: 'Wheels', wheels: 'Wheels',
+  lidar: 'Lidar', lidar_packets: 'Lidar packets', imu: 'IMU', barometer: 'Barometer', base_barometer: 'Base station', wheel: 'Wheels', wheels: 'Wheels',
   base_station: 'Base station', base: 'Base station',
 };
 
 /** A sensor that should be heard, and has not been for this long, is marked [s]. */
 const kSilentS = 2;
+const kPlaces = 5;
 
 export class Rates {
   readonly root: HTMLElement;
@@ -39,10 +40,9 @@ export class Rates {
       if (sensor.file) name.title = sensor.file;
       return element('tr', '', name, ...Array.from({ length: 4 }, () => element('td', '')));
     }));
-    if (sensors.length === 0) {
-      const cell = element('td', 'nothing', 'No sensor is told.');
-      cell.colSpan = 5;
-      this.rows.append(element('tr', '', cell));
+    // Places for the sensors that come, so that nothing moves then.
+    for (let i = sensors.length; this.is_live && i < kPlaces; ++i) {
+      this.rows.append(element('tr', '', element('th', '', '\u00a0'), ...Array.from({ length: 4 }, () => element('td', ''))));
     }
   }
 

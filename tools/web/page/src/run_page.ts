@@ -51,7 +51,7 @@ export class RunPage implements Listener {
     layout.slicer.set_floors(view.floors);
     layout.settings.set(view.settings);
     layout.height.on_pick = (t_s) => this.slider.go_to(t_s);
-    if (view.counters.length > 0) layout.below.prepend(counters_table(view.counters));
+    if (view.counters.length > 0) layout.side.append(counters_table(view.counters));
     if (view.signals.length > 0) {
       this.signals = new SignalsPanel(view.signals, (t_s) => this.slider.go_to(t_s));
       document.querySelector('main')!.insertBefore(this.signals.root, layout.below);
@@ -89,6 +89,7 @@ export class RunPage implements Listener {
         ? 'A recording has no map yet. Make one: isobar replay RECORDING --out RUN, then isobar web RUN.'
         : 'This run has no map: neither map.ply nor the folder map.');
     }
+    if (!poses.bias_sd_m.some((sd) => sd !== null && sd > 0)) this.layout.height.hide_bias();
     if (has_poses) this.layout.height.set_poses(poses);
     else if (path) this.layout.height.set_poses({ ...poses, ...path, yaw_deg: [], altimeter_m: nulls(path), bias_m: nulls(path), bias_sd_m: nulls(path), z_sd_m: nulls(path) });
   }

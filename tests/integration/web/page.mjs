@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page as a person sees it. Orders what shall happen to isobard by the FIFO of test_page.sh.
+//   node page.mjs URL ECHO.txt ORDERS
+import assert from 'node:assert/strict';
+import { appendFileSync, readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import net from 'node:net';
+
+const puppeteer = createRequire(new URL('./npm/', import.meta.url))('puppeteer-core');
+const [url, echo_file, orders] = process.argv.slice(2);
+const order = (word) => appendFileSync(orders, `${word}\n`);
+const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+const ok = (text) => console.log(`ok: ${text}`);
+
+const browser = await puppeteer.launch({
+  executablePath: '/usr/bin/chromium',
+  args: ['--no-sandbox', '--disable-dev-shm-usage', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
+    '--disable-background-networking'],
+});
+const requests = [];
+const errors = [];
+
+async function open(width, height) {
+  const page = await browser.newPage();
+  await page.setViewport({ width, height });
+  page.on('request', (request) => requests.push(request.url()));
+  page.on('console', (message) => { if (message.type() === 'error') errors.push(message.text()); });
+  page.on('pageerror', (error) => errors.push(`uncaught: ${error.message}`));
+  await page.goto(url);
+  await page.evaluate(() => (window.not_reloaded = true));
+  return page;
+}
+
+/** Waits for words in the summary of the page's health. */
+async function summary(page, level, words, within_ms) {
+  try {
+    await page.waitForFunction((level, words) => document.querySelector(`.summary.${level}`)?.textContent.includes(words),
+      { timeout: within_ms, polling: 100 }, level, words);
+  } catch {
+    assert.fail(`no ${level} with "${words}": ${await page.$eval('.summary', (element) => `${element.className} ${element.textContent}`)}`);
+  }
+}
+
+const shown_pose = (page) => page.$eval('.pose', (pose) =>
+  ['x', 'y', 'z'].map((axis) => Number(pose.querySelector(`.pose-${axis} dd`).textContent.replace('−', '-'))));
+
+/** Poses that DDS has delivered: [x, y, z]. */
+function dds_poses() {
+  return [...readFileSync(echo_file, 'utf8').matchAll(/ x +(\S+) +y +(\S+) +z +(\S+) m/g)].map((match) => match.slice(1, 4).map(Number));
+}
+
+try {
+  const page = await open(1000, 800);
+  await summary(page, 'error', 'isobard is not running', 5000);
+  ok('without isobard the page says so');
+  order('start');
+  await summary(page, 'stale', 'nothing received yet', 8000);
+  ok('it follows isobard without being loaded again');
+
+  order('play');
+  const seen = [];
+  for (const end = Date.now() + 6800; Date.now() < end; await sleep(150)) {
+    const pose = await shown_pose(page);
+    if (pose.every(Number.isFinite)) seen.push(pose);
+  }
+  const sent = dds_poses();
+  const moved = seen.filter(([x, y]) => Math.hypot(x, y) > 0.02);
+  assert.ok(moved.length > 5, `only ${moved.length} poses away from the start were shown, of ${seen.length}`);
+  // Rounded to 0.01, 0.01 and 0.001 m.
+  const agreeing = moved.filter(([x, y, z]) => sent.some((pose) => Math.abs(pose[0] - x) < 0.0065 && Math.abs(pose[1] - y) < 0.0065 && Math.abs(pose[2] - z) < 0.0015));
+  assert.ok(agreeing.length > 0.8 * moved.length, `${agreeing.length} of ${moved.length} shown poses are among the ${sent.length} that DDS delivered`);
+  ok(`${agreeing.length} of ${moved.length} poses shown are among those that DDS delivered`);
+  const points = await page.$eval('.map-foot', (foot) => foot.textContent);
+  assert.match(points, /[1-9].* points/);
+  ok(`the map is there: ${points}`);
+
+  await summary(page, 'error', 'silent for', 5000);
+  assert.ok(await page.$$eval('.lights li.error', (entries) => entries.some((entry) => entry.textContent.startsWith('lidar'))));
+  ok('an unplugged lidar is red, with the sentence that explains it');
+
+  const narrow = await open(390, 844);
+  await summary(narrow, 'error', 'silent for', 5000);
+  assert.ok(await narrow.evaluate(() => document.documentElement.scrollWidth) <= 390, 'the page scrolls sideways at 390 px');
+  ok('a second viewer sees the same, at 390 px without scrolling sideways');
+  const answer = await narrow.evaluate(async () => (await fetch('/api/save-black-box', { method: 'POST', headers: { Authorization: 'Bearer wrong' } })).status);
+  assert.equal(answer, 401);
+  assert.equal(errors.filter((error) => !error.includes('401')).join('\n'), '');
+  await narrow.close();
+  ok('a wrong token is refused, and until here there was no error on the console');
+  const deaf = net.connect(18080, 'localhost', () => deaf.write('GET /api/events HTTP/1.1\r\nHost: localhost\r\n\r\n'));
+  deaf.on('error', () => {});
+  deaf.pause();
+
+  order('kill');
+  await summary(page, 'error', 'not running', 8000);
+  order('start');
+  await page.waitForFunction(() => !document.body.classList.contains('cut-off'), { timeout: 10_000, polling: 100 });
+  await summary(page, 'stale', '', 5000);
+  assert.equal(await page.evaluate(() => window.not_reloaded), true);
+  ok('it survives a restart of isobard, with a viewer that does not read beside it');
+  deaf.destroy();
+
+  const foreign = requests.filter((request) => !request.startsWith(url));
+  assert.deepEqual(foreign, []);
+  // While isobar web starts again, its events cannot be loaded.
+  assert.equal(errors.filter((error) => !/401|ERR_|Failed to load resource/.test(error)).join('\n'), '');
+  ok(`nothing of ${requests.length} requests went elsewhere, and no script failed`);
+} catch (error) {
+  console.log(`FAILED: ${error.message}`);
+  process.exitCode = 1;
+} finally {
+  await browser.close();
+}
