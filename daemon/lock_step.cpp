@@ -18,6 +18,7 @@ LockStep::LockStep(const StageSettings& settings, EstimateSink& sink, TileStorag
                    std::unique_ptr<LoopFiles> loop_files, MapExchange exchange)
     : sender_(settings.lidar_sender),
       assembler_(make_lidar_decoder(settings.lidar), settings.lidar.time),
+      clouds_(settings.lidar.limits),
       prior_estimator_(settings.prior),
       registration_(settings.registration, settings.method, settings.T_base_lidar, sink),
       map_config_(settings.map),
@@ -67,6 +68,9 @@ void LockStep::handle(const recording::Event& event) {
     case recording::EventKind::kLidarPacket:
       take_packet(event);
       break;
+    case recording::EventKind::kCloud:
+      take_cloud(*event.cloud);
+      break;
     case recording::EventKind::kImu:
       if (!imu_of_lidar_) take_imu(event.imu);
       break;
@@ -99,6 +103,12 @@ void LockStep::take_packet(const recording::Event& event) {
   }
   ImuSample sample;
   while (imu_of_lidar_ && assembler_.take_imu(sample)) take_imu(sample);
+}
+
+void LockStep::take_cloud(const recording::CloudRecord& cloud) {
+  if (!clouds_.decode(cloud, *filling_)) return;
+  queue_scan();
+  register_admissible();
 }
 
 void LockStep::take_imu(const ImuSample& sample) {

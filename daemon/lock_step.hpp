@@ -19,6 +19,7 @@
 #include "core/map/local_map.hpp"
 #include "core/prior/prior_estimator.hpp"
 #include "core/prior/prior_pace.hpp"
+#include "daemon/cloud_scans.hpp"
 #include "daemon/lidar_sender.hpp"
 #include "daemon/loop_stage.hpp"
 #include "daemon/place_stage.hpp"
@@ -62,6 +63,7 @@ class LockStep {
   void finish();
 
   [[nodiscard]] const ScanAssembler& assembler() const { return assembler_; }
+  [[nodiscard]] const CloudScans& clouds() const { return clouds_; }
   [[nodiscard]] const SenderStatus& lidar_sender() const { return sender_.status(); }
   [[nodiscard]] const PriorEstimator& prior_estimator() const { return prior_estimator_; }
   [[nodiscard]] LocalMap& map() { return *map_; }
@@ -76,6 +78,7 @@ class LockStep {
 
  private:
   void take_packet(const recording::Event& event);
+  void take_cloud(const recording::CloudRecord& cloud);
   void take_imu(const ImuSample& sample);
   void advance(std::int64_t now_ns);
   void use_prior(const Prior& prior);
@@ -88,6 +91,7 @@ class LockStep {
 
   LidarSender sender_;
   ScanAssembler assembler_;
+  CloudScans clouds_;
   PriorEstimator prior_estimator_;
   RegistrationStage registration_;
   MapConfig map_config_;

@@ -8,6 +8,7 @@
 #include "core/contradictions/finding_text.hpp"
 #include "core/contradictions/input_check.hpp"
 #include "core/errors.hpp"
+#include "daemon/cloud_scans.hpp"
 #include "daemon/lidar_clock.hpp"
 #include "daemon/lidar_sender.hpp"
 #include "daemon/silent_lidar.hpp"
@@ -27,6 +28,7 @@ class CheckedInputs {
   explicit CheckedInputs(const Config& used)
       : sender_(used.lidar.sender),
         assembler_(make_lidar_decoder(stage_settings(used).lidar), used.lidar.time),
+        clouds_(stage_settings(used).lidar.limits),
         check_({.imu = imu_mount(used), .lidar = used.lidar.mount}),
         scan_(std::make_unique<Scan>()),
         has_imu_(used.imu.present()),
@@ -41,6 +43,9 @@ class CheckedInputs {
           check_.add_scan(*scan_);
         }
         take_imu_of_lidar();
+        break;
+      case EventKind::kCloud:
+        if (clouds_.decode(*event.cloud, *scan_)) check_.add_scan(*scan_);
         break;
       case EventKind::kImu:
         if (has_imu_ && !imu_of_lidar_) check_.add_imu(event.imu);
@@ -61,6 +66,7 @@ class CheckedInputs {
   }
   [[nodiscard]] const InputCheck& check() const { return check_; }
   [[nodiscard]] const ScanAssembler& assembler() const { return assembler_; }
+  [[nodiscard]] std::uint64_t scans() const { return assembler_.counters().scans + clouds_.scans(); }
 
  private:
   void take_imu_of_lidar() {
@@ -70,6 +76,7 @@ class CheckedInputs {
 
   LidarSender sender_;
   ScanAssembler assembler_;
+  CloudScans clouds_;
   InputCheck check_;
   std::unique_ptr<Scan> scan_;
   bool has_imu_;
@@ -116,9 +123,10 @@ void add_shifted_files(const RecordingCheck& check, std::vector<std::string>& no
 }
 
 /// What a capture without a scan holds instead, and why a file ends early.
-void add_what_was_found(const recording::RecordingReader& reader, const ScanAssembler& assembler,
+void add_what_was_found(const recording::RecordingReader& reader, const CheckedInputs& inputs,
                         RecordingCheck& out) {
-  if (reader.manifest().lidar && assembler.counters().scans == 0) {
+  const ScanAssembler& assembler = inputs.assembler();
+  if (reader.manifest().lidar && inputs.scans() == 0) {
     out.silent_lidar = "no lidar scan could be decoded: " + silent_lidar_text(reader, assembler);
     return;
   }
@@ -169,7 +177,7 @@ RecordingCheck check_recording(const std::filesystem::path& recording, const Con
     out.times[i] = inputs.check().times(static_cast<CheckedSensor>(i));
   }
   if (out.findings.empty()) add_shifted_files(out, out.notes);
-  add_what_was_found(reader, inputs.assembler(), out);
+  add_what_was_found(reader, inputs, out);
   out.warnings = reader.warnings();
   if (reader.manifest().base_barometer) out.base_clock = reader.base_clock().reason;
   return out;
@@ -186,6 +194,7 @@ recording::Manifest without_unusable(recording::Manifest manifest, const UsableS
 bool is_used(EventKind kind, const UsableSensors& usable) {
   switch (kind) {
     case EventKind::kLidarPacket:
+    case EventKind::kCloud:
       return true;
     case EventKind::kImu:
       return usable.imu;

@@ -108,6 +108,7 @@ std::vector<files::RunCount> collect_counts(const recording::RecordingReader& re
   }
   run_counts::append(counts,
                      counts_of(pipeline.assembler().counters(), pipeline.assembler().decoder().mismatch()));
+  run_counts::append(counts, pipeline.clouds().counts());
   counts.push_back({"lidar packets of another sender", pipeline.lidar_sender().refused, ""});
   run_counts::append(counts, counts_of(pipeline.prior_estimator().counters()));
   counts.push_back({"map cells seen through", pipeline.map().seen_through_count(), ""});
@@ -273,6 +274,9 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   add_contradictions(contradictions, summary.counts);
   warn_of_scans_without(manifest, used.imu.present(), sink, summary);
   describe_place(pipeline, sink, summary);
+  if (const std::string clouds = pipeline.clouds().sentence(); !clouds.empty()) {
+    summary.warnings.push_back("lidar clouds: " + clouds);
+  }
   warn_of_two_lidars(pipeline, used.lidar.port, summary);
   warn_of_unusable_sensors(manifest, used, pipeline, summary);
   output.write_counters(summary.counts);

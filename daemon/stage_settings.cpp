@@ -50,12 +50,15 @@ TileStoreLimits map_limits(const Config& config) {
 
 Config with_sensors_of(const recording::Manifest& manifest, Config config) {
   if (!manifest.lidar) throw DataError("recording.toml: no [lidar]: there is nothing to register");
-  if (find_lidar_model(manifest.lidar->model) == nullptr) {
+  const bool has_clouds = manifest.lidar->holds_clouds();
+  if (!has_clouds && find_lidar_model(manifest.lidar->model) == nullptr) {
     throw DataError("recording.toml: lidar.model: \"" + printable(manifest.lidar->model) +
                     "\" has no driver; there are " + lidar_model_list());
   }
-  config.lidar.source = LidarSource::kDriver;
-  config.lidar.model = manifest.lidar->model;
+  config.lidar.source = has_clouds ? LidarSource::kDds : LidarSource::kDriver;
+  // Of clouds no packet is decoded: any model does, best one that needs no calibration.
+  config.lidar.model = has_clouds ? LidarSettings{}.model : manifest.lidar->model;
+  if (has_clouds) config.lidar.calibration_file.clear();
   config.lidar.port = manifest.lidar->port;
   config.lidar.info_port = manifest.lidar->info_port;
   if (!manifest.lidar->calibration_file.empty()) {
@@ -66,7 +69,7 @@ Config with_sensors_of(const recording::Manifest& manifest, Config config) {
   if (manifest.imu) {
     config.imu.mount = manifest.imu->mount;
   } else {
-    const bool has_imu = find_lidar_model(manifest.lidar->model)->has_imu && manifest.lidar->info_port != 0;
+    const bool has_imu = !has_clouds && find_lidar_model(manifest.lidar->model)->has_imu && manifest.lidar->info_port != 0;
     config.imu.source = has_imu && config.imu.present() ? ImuSource::kLidar : ImuSource::kNone;
   }
   if (manifest.barometer) {

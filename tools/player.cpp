@@ -27,6 +27,7 @@ datagram::Sample sample_of(const recording::Event& event) {
       sample.wheel = event.wheel;
       break;
     case recording::EventKind::kLidarPacket:
+    case recording::EventKind::kCloud:
       break;
   }
   return sample;

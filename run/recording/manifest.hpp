@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/geometry.hpp"
+#include "run/recording/cloud_file.hpp"
 
 namespace isobar::recording {
 
@@ -26,6 +27,9 @@ struct LidarEntry {
   /// starts at the recording's folder.
   std::string calibration_file;
   Mount mount;
+
+  /// The file holds clouds instead of packets (cloud_file.hpp): ports, sender and calibration say nothing.
+  [[nodiscard]] bool holds_clouds() const { return model == kCloudModel; }
 };
 
 /// A sensor with a CSV file. A barometer has no rotation; wheels, base station and reference have no mount.

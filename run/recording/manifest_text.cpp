@@ -27,6 +27,11 @@ std::string sender_text(const LidarEntry& lidar) {
   return lidar.sender.empty() ? std::string() : "\nsender  = " + quoted_toml(lidar.sender);
 }
 
+std::string packets_text(const LidarEntry& lidar) {
+  return "\nport    = " + std::to_string(lidar.port) + info_port_text(lidar) + sender_text(lidar) +
+         calibration_text(lidar);
+}
+
 std::string sensor_text(const char* name, const std::optional<SensorEntry>& sensor, bool position,
                         bool rotation) {
   if (!sensor) {
@@ -52,8 +57,7 @@ std::string manifest_text(const Manifest& manifest) {
   if (manifest.lidar) {
     out += "\n[lidar]\nmodel   = " + quoted_toml(manifest.lidar->model) +
            "\nfile    = " + quoted_toml(manifest.lidar->file) +
-           "\nport    = " + std::to_string(manifest.lidar->port) + info_port_text(*manifest.lidar) +
-           sender_text(*manifest.lidar) + calibration_text(*manifest.lidar) +
+           (manifest.lidar->holds_clouds() ? std::string() : packets_text(*manifest.lidar)) +
            "\nxyz_m   = " + triple_text(manifest.lidar->mount.xyz_m) +
            "\nrpy_deg = " + triple_text(manifest.lidar->mount.rpy_deg) + "\n";
   }

@@ -106,7 +106,9 @@ void RecordingReader::Impl::open_all(const ReaderOptions& options) {
     open<SampleStream<WheelSample>>(manifest.wheel->file, true, "wheel", EventKind::kWheel,
                                     open_wheel_csv(folder / manifest.wheel->file), 0, guard);
   }
-  if (manifest.lidar) {
+  if (manifest.lidar && manifest.lidar->holds_clouds()) {
+    open<CloudStream>(manifest.lidar->file, true, folder / manifest.lidar->file);
+  } else if (manifest.lidar) {
     open<LidarStream>(manifest.lidar->file, true, folder / manifest.lidar->file,
                       LidarPorts{manifest.lidar->port, manifest.lidar->info_port}, guard);
   }

@@ -11,12 +11,13 @@
 #include <vector>
 
 #include "core/samples.hpp"
+#include "run/recording/cloud_file.hpp"
 #include "run/recording/manifest.hpp"
 #include "run/recording/ports_seen.hpp"
 
 namespace isobar::recording {
 
-enum class EventKind : std::uint8_t { kLidarPacket, kImu, kPressure, kBasePressure, kWheel };
+enum class EventKind : std::uint8_t { kLidarPacket, kImu, kPressure, kBasePressure, kWheel, kCloud };
 
 /// One sample or packet. Only the member named by `kind` is valid.
 struct Event {
@@ -28,6 +29,7 @@ struct Event {
   ImuSample imu;
   PressureSample pressure;  ///< of kPressure and kBasePressure, both on the robot clock
   WheelSample wheel;
+  const CloudRecord* cloud = nullptr;  ///< of kCloud; valid until the next call of next()
 };
 
 /// Counter of the reader, for the status.

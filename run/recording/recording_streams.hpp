@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/plausibility.hpp"
+#include "run/recording/cloud_file.hpp"
 #include "run/recording/pcap_packets.hpp"
 #include "run/recording/recording_reader.hpp"
 #include "run/recording/sample_csv.hpp"
@@ -106,6 +107,49 @@ class SampleStream : public Stream {
   std::uint64_t rows_ = 0;
   Tally malformed_;
   Tally implausible_;
+};
+
+class CloudStream : public Stream {
+ public:
+  explicit CloudStream(const std::filesystem::path& file) : clouds_(file) {}
+
+  bool advance() override {
+    while (clouds_.next(next_)) {
+      // The sum of two foreign numbers must not overflow.
+      const bool plausible = implausible_stamp(next_.stamp_ns) == nullptr &&
+                             next_.shift_ns > -kPlausibleStampHighestNs &&
+                             next_.shift_ns < kPlausibleStampHighestNs &&
+                             implausible_stamp(next_.stamp_ns + next_.shift_ns) == nullptr;
+      count_ += plausible ? 1 : 0;
+      absurd_ += plausible ? 0 : 1;
+      if (plausible) return true;
+    }
+    return false;
+  }
+  [[nodiscard]] std::int64_t stamp_ns() const override { return next_.stamp_ns + next_.shift_ns; }
+  void give(std::int64_t shift_ns, Event& event) override {
+    std::swap(given_, next_);  // the event's cloud stays valid during the advance() that follows
+    given_.shift_ns += shift_ns;
+    event.kind = EventKind::kCloud;
+    event.stamp_ns = given_.stamp_ns + given_.shift_ns;
+    event.packet = {};
+    event.cloud = &given_;
+  }
+  void count(std::vector<Count>& counts) const override {
+    const CloudFileReader::Tallies& tallies = clouds_.tallies();
+    add_count(counts, "lidar: clouds", count_);
+    add_count(counts, "lidar: absurd stamps", absurd_);
+    add_count(counts, "lidar: damaged clouds", tallies.damaged.count, tallies.damaged.first_message);
+    add_count(counts, "lidar: file truncated", tallies.truncated.count, tallies.truncated.first_message);
+  }
+  [[nodiscard]] std::uint64_t bytes_read() const override { return clouds_.bytes_read(); }
+
+ private:
+  CloudFileReader clouds_;
+  CloudRecord next_;
+  CloudRecord given_;
+  std::uint64_t count_ = 0;
+  std::uint64_t absurd_ = 0;
 };
 
 class LidarStream : public Stream {

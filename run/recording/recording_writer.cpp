@@ -48,6 +48,7 @@ struct RecordingWriter::Files {
   Manifest manifest;
   bool every_column = false;
   std::optional<PcapFile> lidar;
+  std::optional<CloudFileWriter> clouds;
   std::optional<TextFile> imu;
   std::optional<TextFile> barometer;
   std::optional<TextFile> base_barometer;
@@ -86,7 +87,9 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& folder, const Mani
   files_->manifest = manifest;
   files_->every_column = options.every_column;
   write_manifest(folder, manifest);
-  if (manifest.lidar) {
+  if (manifest.lidar && manifest.lidar->holds_clouds()) {
+    files_->clouds.emplace(folder / manifest.lidar->file);
+  } else if (manifest.lidar) {
     files_->lidar.emplace(folder / manifest.lidar->file);
   }
   const char* pressure_header = options.every_column ? "t_ns,pressure_pa,temperature_c,variance_pa2,station\n"
@@ -127,6 +130,11 @@ void RecordingWriter::add_packet(std::int64_t stamp_ns, std::span<const std::uin
     build_fragment(files_->frame, i, files_->fragment);
     files_->lidar->write(stamp_ns, files_->fragment);
   }
+}
+
+bool RecordingWriter::add_cloud(const CloudRecord& cloud) {
+  if (!files_->clouds) throw std::logic_error("RecordingWriter: the manifest has no lidar of clouds");
+  return files_->clouds->write(cloud);
 }
 
 void RecordingWriter::add_imu(const ImuSample& sample) {
@@ -198,6 +206,7 @@ void RecordingWriter::flush() {
   if (files_->lidar) {
     files_->lidar->flush();
   }
+  if (files_->clouds) files_->clouds->flush();
   for (std::optional<TextFile>* file : files_->text_files()) {
     if (*file) {
       (*file)->flush();
@@ -219,6 +228,7 @@ void RecordingWriter::close() {
   if (files_->lidar) {
     files_->lidar->close();
   }
+  if (files_->clouds) files_->clouds->close();
   for (std::optional<TextFile>* file : files_->text_files()) {
     if (*file) {
       (*file)->close();

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/samples.hpp"
+#include "run/recording/cloud_file.hpp"
 #include "run/recording/manifest.hpp"
 #include "run/recording/udp_frame.hpp"
 #include "run/text/segments.hpp"
@@ -41,6 +42,9 @@ class RecordingWriter {
   /// @param sender_ipv4 host byte order
   void add_packet(std::int64_t stamp_ns, std::span<const std::uint8_t> payload, std::uint16_t port,
                   std::uint32_t sender_ipv4 = kVelodyneIpv4);
+  /// A cloud, where the manifest's lidar holds clouds.
+  /// @return false for a cloud beyond the limits of the format: it is left out
+  bool add_cloud(const CloudRecord& cloud);
   void add_imu(const ImuSample& sample);
   void add_pressure(const PressureSample& sample);
   void add_base_pressure(const PressureSample& sample);  ///< stamp on the base station's own clock

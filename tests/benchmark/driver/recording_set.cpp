@@ -100,6 +100,8 @@ class RecordingPass {
       case recording::EventKind::kWheel:
         priors_.add_wheel(buffered.event.wheel);
         break;
+      case recording::EventKind::kCloud:
+        break;
     }
   }
 

@@ -77,6 +77,9 @@ void write_event(const recording::Event& event, const recording::Manifest& manif
     case recording::EventKind::kWheel:
       if (manifest.wheel) writer.add_wheel(event.wheel);
       break;
+    case recording::EventKind::kCloud:
+      writer.add_cloud(*event.cloud);
+      break;
   }
 }
 

@@ -51,6 +51,8 @@ TEST_CASE("after start-up decoder, prior and registration allocate nothing") {
       case recording::EventKind::kWheel:
         prior_estimator.add_wheel(event.wheel);
         break;
+      case recording::EventKind::kCloud:
+        break;
     }
     if (complete) registration.register_scan(*scan, *map.snapshot(), *registered);
     const std::uint64_t spent = allocation_count() - before;

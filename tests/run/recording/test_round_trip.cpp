@@ -115,6 +115,8 @@ TEST_CASE("A written recording reads back bit for bit, merged in order of time")
         REQUIRE(event.wheel.vy_m_s == wheel[i].vy_m_s);
         REQUIRE(event.wheel.wz_rad_s == wheel[i].wz_rad_s);
         break;
+      case EventKind::kCloud:
+        break;
       case EventKind::kLidarPacket:
         REQUIRE(std::vector<std::uint8_t>(event.packet.begin(), event.packet.end()) == packets.at(i));
         break;

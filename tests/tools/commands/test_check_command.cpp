@@ -56,6 +56,9 @@ void write_moved(recording::Event& event, std::int64_t by_ns, recording::Recordi
     case recording::EventKind::kWheel:
       writer.add_wheel(event.wheel);
       break;
+    case recording::EventKind::kCloud:
+      writer.add_cloud(*event.cloud);
+      break;
   }
 }
 
