@@ -16,7 +16,9 @@ void add_evaluate_command(CLI::App& app);               ///< reference and estim
 void add_experiment_command(CLI::App& app);             ///< simulate, replay with all methods, evaluate
 void add_sensitivity_command(CLI::App& experiment);     ///< subcommand of experiment: steps of two barometers
 void add_experiment_all_command(CLI::App& experiment);  ///< subcommand of experiment: every scenario
-void add_calibrate_command(CLI::App& app);              ///< sensor and reference logs -> compensation, report
+void add_experiment_sessions_command(
+    CLI::App& experiment);                  ///< subcommand of experiment: sessions in a stored map
+void add_calibrate_command(CLI::App& app);  ///< sensor and reference logs -> compensation, report
 void add_calibrate_mounts_command(
     CLI::App& calibrate);                      ///< subcommand of calibrate: recordings -> mount of the lidar
 void add_config_command(CLI::App& app);        ///< check and show a configuration

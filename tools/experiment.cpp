@@ -175,6 +175,7 @@ void add_experiment_command(CLI::App& app) {
       run_experiment);
   add_sensitivity_command(command);
   add_experiment_all_command(command);
+  add_experiment_sessions_command(command);
   command.add_option("SCENARIO", options.request.name,
                      "three-floors, elevator, moulin; `isobar simulate --list` shows all");
   command.add_option("--seed", options.request.seed, "random seed of world and sensor errors")

@@ -26,6 +26,8 @@ constexpr double kWheelYawFloorRad = 0.07 * kRadPerDeg;
 constexpr double kScaleFloor = 0.002;
 // Standard deviation at which an angle counts as found.
 constexpr double kFoundRad = 0.4 * kRadPerDeg;
+// The same of yaw where wheels will tell it better: that of turns that tilt was off by 0.5 deg, as much as hands are.
+constexpr double kFoundByWheelsRad = 0.2 * kRadPerDeg;
 // Straight stretches from which on their mean is used.
 constexpr std::uint32_t kLeastStretches = 4;
 
@@ -84,6 +86,7 @@ void MountEstimator::compare_wheels(const ScanMotionEvidence& scan, const Prior&
   motion.gyro_turn_z_rad = gyro_turn_z_rad;
   motion.wheel_turn_rad = scan.wheel_turn_rad;
   motion.wheels_valid = prior.velocity_valid;
+  has_wheels_ = has_wheels_ || motion.wheels_valid;
   wheels_.add(motion);
 }
 
@@ -104,7 +107,7 @@ MountEstimate MountEstimator::estimate() const {
   out.wheel_distance = scale_of(wheels_.distance_scale(), kScaleFloor);
   out.wheel_turn = scale_of(wheels_.turn_scale(), kScaleFloor);
   const Eigen::Vector3d sigma = out.sigma_rad();
-  out.yaw_found = sigma.z() < kFoundRad;
+  out.yaw_found = sigma.z() < (has_wheels_ ? kFoundByWheelsRad : kFoundRad);
   if (sigma.head<2>().maxCoeff() < kFoundRad) out.verdict = MountVerdict::kFound;
   if (!filter_.consistent()) out.verdict = MountVerdict::kInconsistent;
   return out;

@@ -37,10 +37,10 @@ struct MountEstimate {
   Eigen::Vector3d error_rad =
       Eigen::Vector3d::Zero();  ///< rotation vector, axes of base_link: roll, pitch, yaw
   Eigen::Matrix3d covariance_rad2 = Eigen::Matrix3d::Zero();  ///< of error_rad, systematic errors included
-  bool yaw_found = false;                                     ///< sigma of yaw is below 0.4 deg
-  double outlier_share = 0.0;                                 ///< scans that contradict the gyro, 0 … 1
-  ScaleEstimate wheel_distance;                               ///< true distance = scale x the wheels'
-  ScaleEstimate wheel_turn;  ///< true turn = scale x the wheels': nominal over effective track width
+  bool yaw_found = false;        ///< sigma of yaw is below 0.4 deg, with wheels below 0.2 deg
+  double outlier_share = 0.0;    ///< scans that contradict the gyro, 0 … 1
+  ScaleEstimate wheel_distance;  ///< true distance = scale x the wheels'
+  ScaleEstimate wheel_turn;      ///< true turn = scale x the wheels': nominal over effective track width
 
   /// Standard deviation of each component of error_rad.
   [[nodiscard]] Eigen::Vector3d sigma_rad() const { return covariance_rad2.diagonal().cwiseSqrt(); }
@@ -73,6 +73,7 @@ class MountEstimator {
   WheelComparison wheels_;
   bool level_used_ = false;
   bool started_ = false;
+  bool has_wheels_ = false;
   ScanMotionEvidence last_;
 };
 

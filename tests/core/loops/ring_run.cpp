@@ -100,7 +100,7 @@ const RegisteredScan& RingRun::next() {
     point.z_m += static_cast<float>(lidar_mount().translation().z());
     out_->points[i] = point;
   }
-  way_m_ += kStepM;
+  way_m_ += step_m;
   return *out_;
 }
 

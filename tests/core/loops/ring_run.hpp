@@ -29,7 +29,7 @@ Eigen::Isometry3d ring_pose(double way_m);
 /// Error of the live pose after a way: the live pose is error * truth.
 using LiveError = std::function<Eigen::Isometry3d(double way_m)>;
 
-/// Makes the scans of a drive along the ring at 1 m/s, four a second.
+/// Makes the scans of a drive along the ring at 1 m/s.
 class RingRun {
  public:
   explicit RingRun(LiveError error = {}, World world = ring_of_corridors())
@@ -39,8 +39,10 @@ class RingRun {
   const RegisteredScan& next();
   /// The live pose counts as on known ground from here on [m]: from the start, so that the chain registers every key scan.
   double known_from_m = 0.0;
+  /// Way between two scans.
+  double step_m = 0.4;
   /// Way of the last scan.
-  [[nodiscard]] double way_m() const { return way_m_ - kStepM; }
+  [[nodiscard]] double way_m() const { return way_m_ - step_m; }
   /// The robot is carried on by `way_m`, without scans.
   void carry(double way_m) { way_m_ += way_m; }
   [[nodiscard]] static Eigen::Isometry3d lidar_mount() {
@@ -48,8 +50,6 @@ class RingRun {
   }
 
  private:
-  static constexpr double kStepM = 0.25;
-
   LiveError error_;
   World world_;
   double way_m_ = 0.0;

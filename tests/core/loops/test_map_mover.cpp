@@ -87,7 +87,7 @@ TEST_CASE("poses and chain go on in the moved map: what is corrected stays, and 
   REQUIRE(round.building.moved_ns().size() == 1);
   const PoseCorrections corrections(round.building.corrections(), round.building.moved_ns());
   // Before, at and after the jump of the live poses.
-  for (const double way_m : {20.0, moved_way_m - 0.25, moved_way_m, moved_way_m + 0.25, moved_way_m + 10.0}) {
+  for (const double way_m : {20.0, moved_way_m - 0.4, moved_way_m, moved_way_m + 0.4, moved_way_m + 10.0}) {
     CAPTURE(way_m);
     const bool jumped = way_m > moved_way_m;
     const Eigen::Isometry3d live =
@@ -115,7 +115,7 @@ TEST_CASE("a map whose scans are lost is not moved, and says why") {
   round.storage.lost = false;
   round.drive(29.0);
   round.run.carry(9.0);
-  while (!round.mover.active() && round.run.way_m() < 70.0) round.drive(round.run.way_m() + 0.25);
+  while (!round.mover.active() && round.run.way_m() < 70.0) round.drive(round.run.way_m() + 0.4);
   REQUIRE(round.mover.active());
   round.storage.lost = true;
   round.drive(75.0);

@@ -33,6 +33,7 @@ Eigen::Isometry3d shift(double x_m, double y_m) {
 TEST_CASE("submaps follow each other after their spacing, overlap by half and hold every key scan once") {
   auto chain = test_submap_chain::chain();
   RingRun run;
+  run.step_m = 0.25;  // half of the spacing of key scans
   std::size_t keys = 0;
   while (run.way_m() < 35.0) keys += chain.add(run.next(), std::nullopt).key ? 1 : 0;
   REQUIRE(chain.submaps().size() == 4);

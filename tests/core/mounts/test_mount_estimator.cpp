@@ -93,6 +93,24 @@ TEST_CASE("yaw is found without wheels by turns about an axis that is not vertic
   CHECK(robot.estimate().sigma_rad().z() < 0.5 * kRadPerDeg);
 }
 
+TEST_CASE("yaw of turns that tilt is not used where straight drives will tell it better") {
+  for (const bool wheels : {false, true}) {
+    CAPTURE(wheels);
+    DriveErrors errors = usual({0.5, -0.8, 0.6});
+    errors.wheels = wheels;
+    SyntheticDrive robot(kConfigured, errors, 4);
+    for (int i = 0; i < 9; ++i) {
+      robot.drive(2.0, 0.5, {0.0, -15.0, 0.0});
+      robot.drive(2.0, 0.5, {0.0, 15.0, 0.0});
+      robot.drive(2.0, 0.5, kLeft);
+    }
+    REQUIRE(robot.estimate().sigma_rad().z() < 0.4 * kRadPerDeg);
+    CHECK(robot.estimate().yaw_found != wheels);
+    robot.drive(40.0, 1.0, kNoTurn);
+    CHECK(robot.estimate().yaw_found);
+  }
+}
+
 TEST_CASE("without wheels yaw needs turns that tilt, and roll and pitch are less certain") {
   DriveErrors hanging = usual({0.5, -0.8, 0.6});
   hanging.wheels = false;

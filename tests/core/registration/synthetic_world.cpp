@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/core/registration/synthetic_world.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -19,8 +21,12 @@ void World::add_box(const Eigen::Vector3d& lowest, const Eigen::Vector3d& highes
     const int v = (axis + 2) % 3;
     for (int side = 0; side < 2; ++side) {
       if ((open_faces >> static_cast<unsigned>(2 * axis + side) & 1U) == 0U) {
-        faces_[static_cast<std::size_t>(axis)].push_back(
-            {side == 0 ? lowest[axis] : highest[axis], lowest[u], highest[u], lowest[v], highest[v]});
+        const Face face{side == 0 ? lowest[axis] : highest[axis], lowest[u], highest[u], lowest[v],
+                        highest[v]};
+        std::vector<Face>& faces = faces_[static_cast<std::size_t>(axis)];
+        const auto next = std::upper_bound(faces.begin(), faces.end(), face,
+                                           [](const Face& a, const Face& b) { return a.place < b.place; });
+        faces.insert(next, face);
       }
     }
   }
@@ -37,14 +43,24 @@ double World::range(const Eigen::Vector3d& origin, const Eigen::Vector3d& direct
     const double along = direction[axis];
     const double along_u = direction[u];
     const double along_v = direction[v];
-    for (const Face& face : faces_[static_cast<std::size_t>(axis)]) {
+    // In the order in which the ray comes to them, up to the nearest face so far.
+    const auto passes = [&](const Face& face) {
       const double t = (face.place - from) / along;
-      if (!(t > 1e-6 && t < nearest)) continue;
+      if (!(t < nearest)) return false;
       const double at_u = from_u + t * along_u;
       const double at_v = from_v + t * along_v;
       const bool inside =
           at_u >= face.lowest_u && at_u <= face.highest_u && at_v >= face.lowest_v && at_v <= face.highest_v;
-      if (inside) nearest = t;
+      if (inside && t > 1e-6) nearest = t;
+      return true;
+    };
+    const std::vector<Face>& faces = faces_[static_cast<std::size_t>(axis)];
+    const auto ahead = std::partition_point(faces.begin(), faces.end(),
+                                            [&](const Face& face) { return face.place <= from; });
+    if (along > 0.0) {
+      for (auto face = ahead; face != faces.end() && passes(*face);) ++face;
+    } else if (along < 0.0) {
+      for (auto face = ahead; face != faces.begin() && passes(*std::prev(face));) --face;
     }
   }
   return nearest;

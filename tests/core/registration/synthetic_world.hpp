@@ -35,7 +35,7 @@ class World {
     double lowest_v;
     double highest_v;
   };
-  std::array<std::vector<Face>, 3> faces_;  // by axis
+  std::array<std::vector<Face>, 3> faces_;  // by axis, in order of their places
 };
 
 /// A room of 10 x 8 x 3 m with a few boxes.
