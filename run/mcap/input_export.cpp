@@ -68,6 +68,7 @@ void export_inputs(const std::filesystem::path& recording, McapWriter& out,
       case recording::EventKind::kWheel:
         wheels.write(event.stamp_ns, twist_message(event.wheel, kBaseFrame));
         break;
+      case recording::EventKind::kCloud:
       case recording::EventKind::kLidarPacket:
         break;
     }
