@@ -23,7 +23,7 @@ using recording::EventKind;
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr std::size_t kKinds = 5;
+constexpr std::size_t kKinds = 6;
 /// Rows of a curve in the page.
 constexpr std::size_t kMostSignalRows = 6'000;
 
@@ -60,6 +60,7 @@ struct Content {
     streams[static_cast<std::size_t>(event.kind)].add(event.stamp_ns);
     switch (event.kind) {
       case EventKind::kLidarPacket:
+      case EventKind::kCloud:
         break;
       case EventKind::kImu: {
         const Eigen::Vector3d& gyro_now = event.imu.gyro_rad_s;
@@ -116,12 +117,14 @@ void add_signals(const Content& content, std::int64_t origin_ns, Json& signals) 
 
 Json sensors_json(const Content& content, const recording::Manifest& manifest) {
   const auto file_of = [](const auto& entry) { return entry ? entry->file : std::string(); };
+  const bool has_clouds = manifest.lidar && manifest.lidar->holds_clouds();
   const std::array<std::pair<const char*, std::string>, kKinds> kNames{
-      {{"lidar_packets", file_of(manifest.lidar)},
+      {{"lidar_packets", has_clouds ? std::string() : file_of(manifest.lidar)},
        {"imu", file_of(manifest.imu)},
        {"barometer", file_of(manifest.barometer)},
        {"base_barometer", file_of(manifest.base_barometer)},
-       {"wheel", file_of(manifest.wheel)}}};
+       {"wheel", file_of(manifest.wheel)},
+       {"lidar_clouds", has_clouds ? file_of(manifest.lidar) : std::string()}}};
   Json sensors = Json::array();
   for (std::size_t i = 0; i < kKinds; ++i) {
     const Stream& stream = content.streams[i];
