@@ -107,6 +107,19 @@ void print(const char* topic, const dds::GridMessage& message) {
               static_cast<long>(known));
 }
 
+void print(const char* topic, const dds::CloudMessage& message) {
+  std::printf("%s  t %.3f s  %u points of %u bytes in %s  ", topic, seconds(message.header),
+              message.width * message.height, message.point_step, shown(message.header.frame_id));
+  for (std::uint32_t i = 0; i < message.fields._length; ++i)
+    std::printf("%s%s", i == 0 ? "" : ", ", shown(message.fields._buffer[i].name));
+  std::printf("\n");
+}
+
+void print(const char* topic, const dds::PressureMessage& message) {
+  std::printf("%s  t %.3f s  %.2f Pa (+-%.2f)  %s\n", topic, seconds(message.header), message.fluid_pressure,
+              std::sqrt(std::max(0.0, message.variance)), shown(message.header.frame_id));
+}
+
 void print(const char* topic, const dds::Int32Message& message) {
   std::printf("%s  %d\n", topic, message.data);
 }
@@ -199,6 +212,9 @@ std::vector<std::unique_ptr<Echo>> make_echoes(dds_entity_t participant, const E
     add_if(wanted, dds::topics::kTf, participant, options, echoes);
     add_if(wanted, dds::topics::kTfStatic, participant, options, echoes);
     add_if(wanted, dds::topics::kMap, participant, options, echoes);
+    add_if(wanted, dds::topics::kRegisteredScan, participant, options, echoes);
+    add_if(wanted, dds::topics::kMapCloud, participant, options, echoes);
+    add_if(wanted, dds::topics::kPressure, participant, options, echoes);
     add_if(wanted, dds::topics::kFloor, participant, options, echoes);
     add_if(wanted, dds::topics::kFloorName, participant, options, echoes);
     add_if(wanted, dds::topics::kDiagnostics, participant, options, echoes);
@@ -248,9 +264,11 @@ void add_echo_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("echo", "Print received DDS messages, one line each");
   command
       ->add_option("TOPIC", options->topics,
-                   "pose, odom, altitude, tf, tf_static, map, floor, floor_name, diagnostics; one or more")
-      ->check(one_of(
-          {"pose", "odom", "altitude", "tf", "tf_static", "map", "floor", "floor_name", "diagnostics"}))
+                   "pose, odom, altitude, tf, tf_static, registered_scan, map_cloud, map, floor, floor_name, "
+                   "diagnostics, "
+                   "fluid_pressure (--namespace base: of a base station); one or more")
+      ->check(one_of({"pose", "odom", "altitude", "tf", "tf_static", "registered_scan", "map_cloud", "map",
+                      "floor", "floor_name", "diagnostics", "fluid_pressure"}))
       ->capture_default_str();
   command->add_option("--domain", options->domain, "DDS domain")
       ->envname("ROS_DOMAIN_ID")
