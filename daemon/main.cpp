@@ -22,6 +22,7 @@
 #include "core/errors.hpp"
 #include "daemon/barometer_source.hpp"
 #include "daemon/base_station.hpp"
+#include "daemon/base_station_names.hpp"
 #include "daemon/black_box.hpp"
 #include "daemon/broker_patience.hpp"
 #include "daemon/check_thread.hpp"
@@ -93,10 +94,10 @@ class RobotGraph final : public Graph {
         floors_(config.floors.enabled ? std::make_unique<FloorThread>(config.floors, floor_feed_,
                                                                       files_.map_folder(), scheduling_.floors)
                                       : nullptr),
-        output_(files_.checkpoint_file().empty()
-                    ? nullptr
-                    : std::make_unique<OutputThread>(
-                          files_, [this] { return prior_.status().datum; }, scheduling_.output)),
+        output_(files_.checkpoint_file().empty() ? nullptr
+                                                 : std::make_unique<OutputThread>(
+                                                       files_, [this] { return prior_.status().datum; },
+                                                       station_names(config), scheduling_.output)),
         monitor_(config) {
     registration_.begin_at(files_.start());
     registration_.wait_for_place();
@@ -148,7 +149,8 @@ class RobotGraph final : public Graph {
             lidar_ ? lidar_->info_waiting_for() : std::string{},
             samples_.waiting_for(),
             check_.findings(),
-            place_.status()};
+            place_.status(),
+            files_.start().other_station};
   }
 
   [[nodiscard]] WorkerGroup& workers() override { return workers_; }

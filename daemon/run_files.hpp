@@ -58,6 +58,7 @@ class RunFiles {
   [[nodiscard]] bool awaits_first_pose(std::uint32_t newest) const;
   void localise_in(const std::string& folder, const MapHeader& header);
   [[nodiscard]] std::optional<files::Checkpoint> read_own_checkpoint() const;
+  void continue_from(files::Checkpoint checkpoint);
   void start_in(const StoredMap& stored);
   [[nodiscard]] bool begun(std::uint32_t session);
   [[nodiscard]] bool open_map(std::uint32_t session);
@@ -66,6 +67,7 @@ class RunFiles {
 
   std::filesystem::path directory_;
   Eigen::Vector3d configured_rpy_deg_;
+  files::StationNames stations_;
   MapStores maps_;
   RunStart start_;
   std::optional<files::RunOutput> output_;
