@@ -22,7 +22,6 @@
 #include "core/errors.hpp"
 #include "daemon/barometer_source.hpp"
 #include "daemon/base_station.hpp"
-#include "daemon/base_station_names.hpp"
 #include "daemon/black_box.hpp"
 #include "daemon/broker_patience.hpp"
 #include "daemon/check_thread.hpp"
@@ -94,10 +93,10 @@ class RobotGraph final : public Graph {
         floors_(config.floors.enabled ? std::make_unique<FloorThread>(config.floors, floor_feed_,
                                                                       files_.map_folder(), scheduling_.floors)
                                       : nullptr),
-        output_(files_.checkpoint_file().empty() ? nullptr
-                                                 : std::make_unique<OutputThread>(
-                                                       files_, [this] { return prior_.status().datum; },
-                                                       station_names(config), scheduling_.output)),
+        output_(files_.checkpoint_file().empty()
+                    ? nullptr
+                    : std::make_unique<OutputThread>(
+                          files_, [this] { return prior_.status().datum; }, scheduling_.output)),
         monitor_(config) {
     registration_.begin_at(files_.start());
     registration_.wait_for_place();
@@ -115,8 +114,7 @@ class RobotGraph final : public Graph {
     workers_.add(registration_.worker());
     workers_.add(prior_.worker());
     workers_.add(samples_.worker());
-    // Not watched: they can hang only in the kernel, which a restart does not cure, and poses continue without
-    // them.
+    // Not watched: they can hang only in the kernel, which a restart does not cure. Poses continue.
     if (imu_) workers_.add(imu_->worker(), Watch::kNo);
     if (barometer_) workers_.add(barometer_->worker(), Watch::kNo);
     if (wheels_) workers_.add(wheels_->worker(), Watch::kNo);

@@ -22,15 +22,14 @@ constexpr std::int64_t kMapIntervalNs = 10'000'000'000;
 
 }  // namespace
 
-OutputThread::OutputThread(RunFiles& files, std::function<HeightDatum()> datum, files::StationNames stations,
-                           ThreadSettings settings)
+OutputThread::OutputThread(RunFiles& files, std::function<HeightDatum()> datum, ThreadSettings settings)
     : files_(files),
       datum_(std::move(datum)),
       checkpoint_file_(files.checkpoint_file()),
       poses_(ipc::topics::kPose),
       priors_(ipc::topics::kPrior),
       waiter_({&poses_.raw()}),
-      checkpoint_(std::move(stations)),
+      checkpoint_(files.stations()),
       worker_(std::move(settings), waiter_, [this] { loop(); }) {
   draft_status_.present = true;
   status_.put(draft_status_);

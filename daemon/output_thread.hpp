@@ -19,9 +19,7 @@ namespace isobar {
 class OutputThread {
  public:
   /// @param datum the present height datum; any thread may call it
-  /// @param stations names of its base stations
-  OutputThread(RunFiles& files, std::function<HeightDatum()> datum, files::StationNames stations,
-               ThreadSettings settings);
+  OutputThread(RunFiles& files, std::function<HeightDatum()> datum, ThreadSettings settings);
 
   /// Once stopped, every waiting pose is written.
   [[nodiscard]] Worker& worker() noexcept { return worker_; }

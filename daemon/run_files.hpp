@@ -33,6 +33,8 @@ class RunFiles {
     return output_ ? &*output_ : nullptr;
   }  ///< null: none configured
   [[nodiscard]] MapStores& maps() noexcept { return maps_; }
+  /// Names of the base stations that the run listens to.
+  [[nodiscard]] const files::StationNames& stations() const noexcept { return stations_; }
   /// Folder of the map of a map frame; may be asked by any thread.
   [[nodiscard]] LoopFiles::MapFolder map_folder() const {
     return [this](std::uint32_t session) { return maps_.folder_of(session); };
