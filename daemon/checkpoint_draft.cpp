@@ -54,6 +54,9 @@ files::Checkpoint CheckpointDraft::at(std::int64_t now_ns, const HeightDatum& da
   files::Checkpoint checkpoint = checkpoint_;
   checkpoint.clock_ns = now_ns;
   checkpoint.datum = datum;
+  for (std::size_t i = 0; i < HeightDatum::kStations; ++i) {
+    if (datum.station_known[i]) checkpoint.stations[i] = stations_[i];
+  }
   return checkpoint;
 }
 

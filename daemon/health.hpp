@@ -39,6 +39,7 @@ struct StatusSnapshot {
   std::string samples_wait_for{};
   Findings contradictions{};
   PlaceStatus place{};
+  std::string other_station{};  ///< see RunStart
 };
 
 class StageTimes;

@@ -114,8 +114,7 @@ class RobotGraph final : public Graph {
     workers_.add(registration_.worker());
     workers_.add(prior_.worker());
     workers_.add(samples_.worker());
-    // Not watched: they can hang only in the kernel, which a restart does not cure, and poses continue without
-    // them.
+    // Not watched: they can hang only in the kernel, which a restart does not cure. Poses continue.
     if (imu_) workers_.add(imu_->worker(), Watch::kNo);
     if (barometer_) workers_.add(barometer_->worker(), Watch::kNo);
     if (wheels_) workers_.add(wheels_->worker(), Watch::kNo);
@@ -148,7 +147,8 @@ class RobotGraph final : public Graph {
             lidar_ ? lidar_->info_waiting_for() : std::string{},
             samples_.waiting_for(),
             check_.findings(),
-            place_.status()};
+            place_.status(),
+            files_.start().other_station};
   }
 
   [[nodiscard]] WorkerGroup& workers() override { return workers_; }

@@ -29,6 +29,7 @@ OutputThread::OutputThread(RunFiles& files, std::function<HeightDatum()> datum, 
       poses_(ipc::topics::kPose),
       priors_(ipc::topics::kPrior),
       waiter_({&poses_.raw()}),
+      checkpoint_(files.stations()),
       worker_(std::move(settings), waiter_, [this] { loop(); }) {
   draft_status_.present = true;
   status_.put(draft_status_);

@@ -5,12 +5,14 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
 #include "core/mounts/mount_text.hpp"
 #include "core/names.hpp"
 #include "core/stamp.hpp"
+#include "daemon/base_station_names.hpp"
 #include "daemon/checkpoint_draft.hpp"
 #include "daemon/counts.hpp"
 #include "daemon/lidar_clock.hpp"
@@ -35,7 +37,8 @@ constexpr double kCheckShare = 0.1;
 /// configured one.
 class OutputSink : public EstimateSink {
  public:
-  explicit OutputSink(files::RunOutput& output) : output_(output) {}
+  OutputSink(files::RunOutput& output, files::StationNames stations)
+      : output_(output), checkpoint_(std::move(stations)) {}
   void on_pose(const PoseEstimate& pose, const Prior& prior) override {
     checkpoint_.note(pose);
     // Of a robot that is not found in its map nobody knows the pose.
@@ -252,7 +255,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
 
   files::RunOutput output(out);
   output.write_settings(run_settings(used));
-  OutputSink sink(output);
+  OutputSink sink(output, station_names(used));
   ReplayMaps maps(used, out);
   LockStep pipeline(stage_settings(used), sink, maps.storage(), maps.loop_files(used),
                     [&] { return maps.exchange(); });

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/replay_maps.hpp"
 
+#include <utility>
+
 #include "core/errors.hpp"
+#include "daemon/base_station_names.hpp"
 #include "daemon/stage_settings.hpp"
 #include "run/building/next_map.hpp"
 #include "run/files/checkpoint.hpp"
@@ -15,7 +18,7 @@ ReplayMaps::ReplayMaps(const Config& config, const std::filesystem::path& out)
   if (localises() && !uses_stored) {
     throw ConfigError("map.use: localise needs the folder of a stored map: map.stored, or --map");
   }
-  if (uses_stored) stored_ = find_stored_map(config.map_files.stored, header_);
+  if (uses_stored) stored_ = find_stored_map(config.map_files.stored, header_, station_names(config));
   if (!stored_) {
     create(1);
   } else if (localises()) {
@@ -60,10 +63,7 @@ void ReplayMaps::begin(LockStep& pipeline, std::vector<std::string>& notes) {
   pipeline.use_maps({.open = [this](std::uint32_t session) { return create(session); },
                      .read = [this](std::uint32_t session) { return read_known_map(store(), session); }});
   if (!stored_) return;
-  if (!stored_->has_datum) {
-    notes.push_back(stored_->folder.string() +
-                    ": no height datum is stored with the map: all of its floors are searched");
-  }
+  if (std::string note = height_note(*stored_); !note.empty()) notes.push_back(std::move(note));
   if (localises()) {
     pipeline.localise_in(stored_->start);
   } else {

@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <utility>
 
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
 #include "core/mounts/mount_text.hpp"
+#include "daemon/base_station_names.hpp"
 #include "daemon/counts.hpp"
 #include "ipc/shared_memory.hpp"
 
@@ -56,7 +58,10 @@ void do_or_log(const Part& part) {
 }  // namespace
 
 RunFiles::RunFiles(const Config& config)
-    : directory_(config.output.directory), configured_rpy_deg_(config.lidar.mount.rpy_deg), maps_(config) {
+    : directory_(config.output.directory),
+      configured_rpy_deg_(config.lidar.mount.rpy_deg),
+      stations_(station_names(config)),
+      maps_(config) {
   if (!directory_.empty()) files::refuse_foreign_folder(directory_, "", "output.directory");
   choose_stored_start(config);
   if (directory_.empty()) return;
@@ -92,8 +97,9 @@ void RunFiles::choose_stored_start(const Config& config) {
   if (map.use == MapUse::kNew && newest > 0) return begin_beside(newest + 1, "map.use is new");
   const bool begun = newest > 0 && !awaits_first_pose(newest);
   if (map.use == MapUse::kNew || map.stored.empty() || !maps_.configured() || begun) return choose_start();
-  if (newest == 0) copy_map(find_stored_map(map.stored, map_header(config)).folder, maps_.folder_of(1));
-  const StoredMap copy = find_stored_map(maps_.folder_of(1), map_header(config));
+  if (newest == 0)
+    copy_map(find_stored_map(map.stored, map_header(config), stations_).folder, maps_.folder_of(1));
+  const StoredMap copy = find_stored_map(maps_.folder_of(1), map_header(config), stations_);
   static_cast<void>(open_map(1));
   start_in(copy);
 }
@@ -109,14 +115,14 @@ void RunFiles::localise_in(const std::string& folder, const MapHeader& header) {
         "output.directory: " + directory_.string() +
         " holds a run with a map of its own; a run that localises in map.stored needs another folder");
   }
-  StoredMap stored =
-      find_stored_map(folder.empty() ? maps_.folder_of(own) : std::filesystem::path(folder), header);
+  StoredMap stored = find_stored_map(folder.empty() ? maps_.folder_of(own) : std::filesystem::path(folder),
+                                     header, stations_);
   maps_.open_read_only(stored.folder);
   stored.start.session = stored.start.place->session = std::max(own, 1U);
   start_in(stored);
   // After a restart the robot is where this run saw it last.
   const auto checkpoint = directory_.empty() ? std::nullopt : read_own_checkpoint();
-  if (checkpoint && checkpoint->session == start_.session) start_ = continuation_of(*checkpoint);
+  if (checkpoint && checkpoint->session == start_.session) continue_from(*checkpoint);
 }
 
 std::optional<files::Checkpoint> RunFiles::read_own_checkpoint() const {
@@ -140,10 +146,14 @@ void RunFiles::start_in(const StoredMap& stored) {
   start_ = stored.start;
   spdlog::info("begins in the stored map {}{}; its place is searched in all of it", stored.folder.string(),
                maps_.read_only() ? ", which is only read" : "");
-  if (!stored.has_datum) {
-    spdlog::warn("{}: no height datum is stored with the map: all of its floors are searched",
-                 stored.folder.string());
-  }
+  if (const std::string note = height_note(stored); !note.empty()) spdlog::warn("{}", note);
+}
+
+void RunFiles::continue_from(files::Checkpoint checkpoint) {
+  std::string other_station = take_over_stations(checkpoint, stations_);
+  if (!other_station.empty()) spdlog::warn("{}: {}", directory_.string(), other_station);
+  start_ = continuation_of(checkpoint);
+  start_.other_station = std::move(other_station);
 }
 
 void RunFiles::choose_start() {
@@ -170,10 +180,11 @@ void RunFiles::choose_start() {
   }
   if (!open_map(newest)) {
     begin_beside(newest + 1, "its map cannot be continued");
+    static_cast<void>(take_over_stations(*checkpoint, stations_));
     start_.datum = checkpoint->datum;
     return;
   }
-  start_ = continuation_of(*checkpoint);
+  continue_from(*checkpoint);
   const Eigen::Vector3d p = checkpoint->T_map_base.translation();
   spdlog::info(
       "continues the earlier run in frame {} at ({:.2f}, {:.2f}, {:.2f}) m; the first scans must "

@@ -33,6 +33,8 @@ class RunFiles {
     return output_ ? &*output_ : nullptr;
   }  ///< null: none configured
   [[nodiscard]] MapStores& maps() noexcept { return maps_; }
+  /// Names of the base stations that the run listens to.
+  [[nodiscard]] const files::StationNames& stations() const noexcept { return stations_; }
   /// Folder of the map of a map frame; may be asked by any thread.
   [[nodiscard]] LoopFiles::MapFolder map_folder() const {
     return [this](std::uint32_t session) { return maps_.folder_of(session); };
@@ -58,6 +60,7 @@ class RunFiles {
   [[nodiscard]] bool awaits_first_pose(std::uint32_t newest) const;
   void localise_in(const std::string& folder, const MapHeader& header);
   [[nodiscard]] std::optional<files::Checkpoint> read_own_checkpoint() const;
+  void continue_from(files::Checkpoint checkpoint);
   void start_in(const StoredMap& stored);
   [[nodiscard]] bool begun(std::uint32_t session);
   [[nodiscard]] bool open_map(std::uint32_t session);
@@ -66,6 +69,7 @@ class RunFiles {
 
   std::filesystem::path directory_;
   Eigen::Vector3d configured_rpy_deg_;
+  files::StationNames stations_;
   MapStores maps_;
   RunStart start_;
   std::optional<files::RunOutput> output_;

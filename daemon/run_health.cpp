@@ -77,6 +77,14 @@ void add_place(const StatusSnapshot& now, HealthReport& report) {
             static_cast<double>(place.hypothesis_count));
 }
 
+/// Heights of another base station: a warning until the place is found.
+void add_other_station(const StatusSnapshot& now, HealthReport& report) {
+  if (now.other_station.empty()) return;
+  const bool found = now.registration.mode != PoseMode::kInitializing && !now.registration.searching;
+  add_entry(report, "stored_map/base_station", found ? HealthLevel::kOk : HealthLevel::kWarning,
+            now.other_station, 0.0);
+}
+
 void add_disk(const StatusSnapshot& now, HealthReport& report) {
   if (!now.output.present) return;
   const bool failing = now.output.failing || now.map.disk_failing;
@@ -102,6 +110,7 @@ void add_run_entries(const StatusSnapshot& now, HealthReport& report) {
   add_session(now, report);
   add_hint(now, report);
   add_place(now, report);
+  add_other_station(now, report);
   add_disk(now, report);
 }
 

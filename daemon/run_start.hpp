@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "core/altitude/height_datum.hpp"
 #include "core/registration/known_place.hpp"
@@ -15,6 +16,7 @@ struct RunStart {
   std::uint32_t session = 1;        ///< number of the map frame
   std::optional<KnownPlace> place;  ///< of the run that is continued
   HeightDatum datum;                ///< of the run that is continued
+  std::string other_station{};  ///< its heights are those of another base station: says of which; else empty
 };
 
 /// The start of a run that goes on where the checkpoint was written.

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <system_error>
+#include <utility>
 
 #include "core/errors.hpp"
+#include "daemon/base_station_names.hpp"
 #include "run/files/checkpoint.hpp"
 #include "run/files/run_output.hpp"
 #include "run/floors/floor_names.hpp"
@@ -58,13 +61,16 @@ std::vector<fs::path> names_of_files(const fs::path& map) {
 
 }  // namespace
 
-StoredMap find_stored_map(const fs::path& folder, const MapHeader& header) {
+StoredMap find_stored_map(const fs::path& folder, const MapHeader& header,
+                          const files::StationNames& stations) {
   StoredMap stored;
   stored.folder = map_folder_in(fs::absolute(folder).lexically_normal());
   refuse_other_grid(stored.folder, header);
   KnownPlace place;
-  if (const auto checkpoint = files::checkpoint_of_map(stored.folder)) {
+  if (auto checkpoint = files::checkpoint_of_map(stored.folder)) {
+    std::string other_station = take_over_stations(*checkpoint, stations);
     stored.start = continuation_of(*checkpoint);
+    stored.start.other_station = std::move(other_station);
     place = *stored.start.place;
   }
   place.anywhere = true;
@@ -74,6 +80,12 @@ StoredMap find_stored_map(const fs::path& folder, const MapHeader& header) {
   stored.has_datum = stored.start.datum.known;
   stored.start.place = place;
   return stored;
+}
+
+std::string height_note(const StoredMap& stored) {
+  if (!stored.start.other_station.empty()) return stored.folder.string() + ": " + stored.start.other_station;
+  if (stored.has_datum) return {};
+  return stored.folder.string() + ": no height datum is stored with the map: all of its floors are searched";
 }
 
 void copy_map(const fs::path& from, const fs::path& to) {

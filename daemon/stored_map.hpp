@@ -12,6 +12,7 @@
 #include "core/map/tile_storage.hpp"
 #include "core/place/known_map.hpp"
 #include "daemon/run_start.hpp"
+#include "run/files/checkpoint.hpp"
 #include "run/tile_store/file_tile_store.hpp"
 
 namespace isobar {
@@ -25,9 +26,13 @@ struct StoredMap {
 
 /// Finds the map in the folder of a map, or in that of a run, there of its newest map frame.
 /// @param header grid of the configuration
+/// @param stations base stations of this run: heights of another one are forgotten, see take_over_stations()
 /// @throws DataError naming the file for a folder without a map, a map of another version of the format or with another grid,
 /// and a damaged checkpoint
-[[nodiscard]] StoredMap find_stored_map(const std::filesystem::path& folder, const MapHeader& header);
+[[nodiscard]] StoredMap find_stored_map(const std::filesystem::path& folder, const MapHeader& header,
+                                        const files::StationNames& stations);
+/// What is to be known of the heights of a stored map at the start; empty: they go on.
+[[nodiscard]] std::string height_note(const StoredMap& stored);
 
 /// Copies the files of a map (tiles, journal, names of floors, checkpoint) to a folder that holds none.
 /// @throws DataError for a folder that holds tiles; ServiceError when the disk refuses

@@ -13,6 +13,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include "core/errors.hpp"
@@ -158,6 +159,7 @@ class Echo {
   struct Taken {
     int received = 0;
     int printed = 0;
+    bool waits = false;  ///< a message is there, to be printed later
   };
   /// Takes all waiting messages and prints as many as the rate allows.
   virtual Taken take(Clock::time_point now) = 0;
@@ -170,12 +172,21 @@ class TopicEcho : public Echo {
       : name_(topic.name),
         period_(std::chrono::duration_cast<Clock::duration>(
             std::chrono::duration<double>(1.0 / options.rate_hz))),
+        is_latched_(topic.delivery == dds::Delivery::kLatched),
         reader_(participant, topic, options.ros_namespace) {}
 
   [[nodiscard]] dds_entity_t reader() const override { return reader_.get(); }
 
+  // A latched topic says how things are until it says otherwise: its newest message stays with the reader until its time has
+  // come.
   Taken take(Clock::time_point now) override {
     Taken taken;
+    if (is_latched_ && now < next_) {
+      std::uint32_t waiting = 0;
+      dds_get_status_changes(reader_.get(), &waiting);
+      taken.waits = (waiting & DDS_DATA_AVAILABLE_STATUS) != 0;
+      return taken;
+    }
     taken.received = reader_.take([&](const Message& message) {
       if (now < next_) {
         return;
@@ -191,6 +202,7 @@ class TopicEcho : public Echo {
  private:
   const char* name_;
   Clock::duration period_;
+  bool is_latched_;
   Clock::time_point next_{};
   dds::Reader<Message> reader_;
 };
@@ -245,11 +257,15 @@ void run(const EchoOptions& options) {
     // With a timeout, because a signal does not end the wait.
     dds_waitset_wait(waitset.get(), nullptr, 0, DDS_MSECS(100));
     const Clock::time_point now = Clock::now();
+    bool waits = false;
     for (const std::unique_ptr<Echo>& echo : echoes) {
       const Echo::Taken taken = echo->take(now);
-      last = taken.received > 0 ? now : last;
+      last = taken.received > 0 || taken.waits ? now : last;
       printed += taken.printed;
+      waits = waits || taken.waits;
     }
+    // What is not taken ends the wait for messages at once.
+    if (waits) std::this_thread::sleep_for(std::chrono::milliseconds(20));
     if (options.timeout_s > 0.0 && now - last > patience) {
       throw ServiceError("no message for " + std::to_string(std::lround(options.timeout_s)) +
                          " s on DDS domain " + std::to_string(options.domain) + "; is isobar-dds running?");

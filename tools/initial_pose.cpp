@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +18,7 @@
 #include "ipc/channel.hpp"
 #include "ipc/service_view.hpp"
 #include "tools/commands.hpp"
+#include "tools/map_parts.hpp"
 #include "tools/number_option.hpp"
 #include "tools/status/hang_limit.hpp"
 #include "tools/subcommand.hpp"
@@ -39,6 +41,8 @@ struct HintOptions {
   double y_m = 0.0;
   double yaw_deg = 0.0;
   std::optional<double> z_m;
+  std::string floor;
+  std::filesystem::path map;
   double sigma_m = 0.5;
   double sigma_deg = 15.0;
   double timeout_s = 30.0;
@@ -91,7 +95,8 @@ std::optional<Answer> wait_for_answer(ipc::Subscriber<ipc::HealthReport>& report
   return found ? answer : std::nullopt;
 }
 
-void run_initial_pose(const HintOptions& options) {
+void run_initial_pose(HintOptions options) {
+  if (!options.floor.empty()) options.z_m = base_height_on(options.map, options.floor);
   const auto end = Clock::now() + milliseconds(static_cast<std::int64_t>(options.timeout_s * 1e3));
   const ipc::PoseHint hint = hint_of(options);
   if (const char* rule = ipc::implausibility(hint); rule != nullptr) throw UsageError(rule);
@@ -120,7 +125,15 @@ void add_initial_pose_command(CLI::App& app) {
   command.add_option("X", options.x_m, "x of base_link in the map frame [m]")->required();
   command.add_option("Y", options.y_m, "y [m]")->required();
   command.add_option("YAW", options.yaw_deg, "heading, counterclockwise from the map's x [deg]")->required();
-  command.add_option("--z", options.z_m, "height of base_link [m]; default: where the robot believes to be");
+  CLI::Option* z = command.add_option("--z", options.z_m,
+                                      "height of base_link [m]; default: where the robot believes to be");
+  CLI::Option* map = command.add_option("--map", options.map,
+                                        "folder of the run or of its map, for the floors; may be written");
+  command
+      .add_option("--floor", options.floor,
+                  "number or name of the floor, which tells the height (`isobar map floors`)")
+      ->needs(map)
+      ->excludes(z);
   command
       .add_option("--sigma", options.sigma_m,
                   "error of X and Y, 1 sigma [m]; twice that is searched, 1 to 5 m")

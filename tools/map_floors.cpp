@@ -116,6 +116,15 @@ void run_floors(const FloorsOptions& options) {
 
 }  // namespace
 
+double base_height_on(const std::filesystem::path& directory, const std::string& floor) {
+  const std::filesystem::path map = map_folder_of(directory);
+  const auto store = open_map(directory);
+  const files::StoredFloors found =
+      files::find_stored_floors(*store, files::path_of(files::trajectory_of_map(map)));
+  return files::floor_by(found.floors, files::FloorNames::read(map), floor).height_m +
+         found.floors.base_height_m;
+}
+
 void add_map_floors_command(CLI::App& map) {
   const auto [command, options] = add_subcommand<FloorsOptions>(
       map, "floors", "Floors of the map: number, name, height, extent", run_floors);

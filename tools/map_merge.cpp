@@ -10,6 +10,7 @@
 #include "core/errors.hpp"
 #include "core/geometry.hpp"
 #include "core/so3.hpp"
+#include "daemon/base_station_names.hpp"
 #include "daemon/stage_settings.hpp"
 #include "run/files/checkpoint.hpp"
 #include "run/files/run_layout.hpp"
@@ -41,7 +42,10 @@ StageSettings settings_of(const std::filesystem::path& map_folder) {
 /// What the air says of both heights; a note where it says nothing.
 HeightRelation relation_of(const std::filesystem::path& a, const std::filesystem::path& b) {
   const auto of_a = files::checkpoint_of_map(a);
-  const auto of_b = files::checkpoint_of_map(b);
+  auto of_b = files::checkpoint_of_map(b);
+  if (of_a && of_b && !take_over_stations(*of_b, of_a->stations).empty()) {
+    std::printf("note: the heights of A and B refer to base stations of different names\n");
+  }
   const auto relation =
       of_a && of_b ? files::height_relation(of_a->datum, of_b->datum) : std::optional<HeightRelation>();
   if (!relation) {

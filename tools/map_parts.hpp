@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "run/tile_store/file_tile_store.hpp"
 
@@ -16,6 +17,10 @@ std::filesystem::path map_folder_of(const std::filesystem::path& directory);
 std::unique_ptr<FileTileStore> open_map(const std::filesystem::path& directory);
 /// Prints the damage found on opening; nothing without damage.
 void print_faults(const TileStoreCounters& counters);
+
+/// Height of base_link on a floor of a map [m], by the floor's number or name.
+/// @throws UsageError naming the floors that there are, for an unknown one
+[[nodiscard]] double base_height_on(const std::filesystem::path& directory, const std::string& floor);
 
 /// Add "map floors", "map grid" and "map merge".
 void add_map_floors_command(CLI::App& map);

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "config/config_layer.hpp"
@@ -45,6 +46,17 @@ bool is_ordinary(const std::string& name) {
          name == "map tiles moved between files" || name.starts_with("loop");
 }
 
+/// A run that localises has no map of its own.
+void print_written(const std::filesystem::path& out) {
+  std::string names;
+  for (const char* name :
+       {"trajectory.tum", "map.ply", "map/", "status.csv", "counters.csv", "settings.toml"}) {
+    std::error_code error;
+    if (std::filesystem::exists(out / name, error)) names += std::string(names.empty() ? "" : " ") + name;
+  }
+  std::printf("written: %s/%s\n", out.c_str(), names.c_str());
+}
+
 void print_summary(const ReplaySummary& summary, const std::filesystem::path& out) {
   for (const std::string& warning : summary.warnings) std::printf("note: %s\n", warning.c_str());
   if (!summary.base_clock.empty()) std::printf("base station clock: %s\n", summary.base_clock.c_str());
@@ -66,7 +78,7 @@ void print_summary(const ReplaySummary& summary, const std::filesystem::path& ou
         "%llu loops, places that the robot saw again: trajectory-corrected.tum is corrected by them\n",
         static_cast<unsigned long long>(summary.loops));
   }
-  std::printf("written: %s/trajectory.tum map.ply map/ status.csv counters.csv settings.toml\n", out.c_str());
+  print_written(out);
 }
 
 /// A run that is already in the folder is kept unless its removal is asked for.

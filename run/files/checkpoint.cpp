@@ -22,7 +22,9 @@ static_assert(std::endian::native == std::endian::little, "checkpoints are writt
 namespace {
 
 constexpr std::array<char, 8> kMagic{'I', 'S', 'O', 'B', 'A', 'R', 'C', 'P'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersionWithoutNames = 1;
+constexpr std::size_t kFirstPartBytes = 216;  // all of version 1
 // Plausibility: no robot drives that far, no air is that far off.
 constexpr double kLargestM = 1e7;
 constexpr double kLargestVarianceM2 = 1e8;
@@ -34,7 +36,7 @@ constexpr std::uint32_t kLargestSession = 1'000'000;
 struct Record {
   std::array<char, 8> magic = kMagic;
   std::uint32_t version = kVersion;
-  std::uint32_t length = kCheckpointBytes;
+  std::uint32_t length = kCheckpointBytes;  // of the file
   std::uint32_t session = 1;
   std::uint8_t datum_known = 0;
   std::uint8_t step_open = 0;
@@ -58,10 +60,20 @@ struct Record {
   std::uint32_t reserved_word = 0;
   std::uint32_t crc = 0;
 };
-static_assert(sizeof(Record) == kCheckpointBytes && std::is_trivially_copyable_v<Record>);
+static_assert(sizeof(Record) == kFirstPartBytes && std::is_trivially_copyable_v<Record>);
 
-std::uint32_t crc_of(const Record& record) {
-  return crc32_of(std::as_bytes(std::span(&record, 1)).first(kCheckpointBytes - sizeof(record.crc)));
+/// Second part of the file: texts that end with a zero.
+struct NamesRecord {
+  std::array<std::array<char, kMostStationBytes + 1>, HeightDatum::kStations> stations{};
+  std::uint32_t reserved = 0;
+  std::uint32_t crc = 0;
+};
+static_assert(sizeof(Record) + sizeof(NamesRecord) == kCheckpointBytes &&
+              std::is_trivially_copyable_v<NamesRecord>);
+
+template <class Part>
+std::uint32_t crc_of(const Part& part) {
+  return crc32_of(std::as_bytes(std::span(&part, 1)).first(sizeof(part) - sizeof(part.crc)));
 }
 
 bool within(double value, double limit) { return std::isfinite(value) && std::abs(value) <= limit; }
@@ -76,10 +88,40 @@ bool are_flags(const Record& record) {
          record.station_known[0] <= 1 && record.station_known[1] <= 1;
 }
 
+std::size_t length_of(std::uint32_t version) {
+  return version == kVersionWithoutNames ? kFirstPartBytes : kCheckpointBytes;
+}
+
+NamesRecord names_record(const StationNames& names) {
+  NamesRecord record;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::copy_n(names[i].begin(), std::min(names[i].size(), kMostStationBytes), record.stations[i].begin());
+  }
+  record.crc = crc_of(record);
+  return record;
+}
+
+/// @return false where the checksum or a text is wrong
+bool read_names(std::span<const std::byte> bytes, StationNames& names) {
+  NamesRecord record;
+  std::memcpy(&record, bytes.data(), sizeof(record));
+  if (record.crc != crc_of(record)) return false;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto& text = record.stations[i];
+    const auto end = std::find(text.begin(), text.end(), '\0');
+    if (end == text.end()) return false;
+    names[i].assign(text.begin(), end);
+  }
+  return true;
+}
+
 const char* broken_rule(const Record& record) {
   if (record.magic != kMagic) return "is no checkpoint of Isobar";
-  if (record.version != kVersion) return "is of another version of Isobar";
-  if (record.length != kCheckpointBytes || record.crc != crc_of(record)) return "its checksum is wrong";
+  if (record.version != kVersion && record.version != kVersionWithoutNames) {
+    return "is of another version of Isobar";
+  }
+  if (record.length != length_of(record.version) || record.crc != crc_of(record))
+    return "its checksum is wrong";
   const auto& q = record.quaternion;
   const bool plausible =
       record.session >= 1 && record.session <= kLargestSession && are_flags(record) &&
@@ -124,19 +166,26 @@ CheckpointBytes encode(const Checkpoint& checkpoint) {
     record.station_known[i] = datum.station_known[i] ? 1 : 0;
   }
   record.crc = crc_of(record);
+  const NamesRecord names = names_record(checkpoint.stations);
   CheckpointBytes bytes;
   std::memcpy(bytes.data(), &record, sizeof(record));
+  std::memcpy(bytes.data() + sizeof(record), &names, sizeof(names));
   return bytes;
 }
 
 std::optional<Checkpoint> decode(std::span<const std::byte> bytes, const char*& rule) {
   rule = "has another length than a checkpoint";
-  if (bytes.size() != kCheckpointBytes) return std::nullopt;
+  if (bytes.size() != kCheckpointBytes && bytes.size() != kFirstPartBytes) return std::nullopt;
   Record record;
   std::memcpy(&record, bytes.data(), sizeof(record));
   rule = broken_rule(record);
+  if (rule == nullptr && bytes.size() != record.length) rule = "has another length than a checkpoint";
   if (rule != nullptr) return std::nullopt;
   Checkpoint checkpoint;
+  if (bytes.size() > kFirstPartBytes && !read_names(bytes.subspan(kFirstPartBytes), checkpoint.stations)) {
+    rule = "its checksum is wrong";
+    return std::nullopt;
+  }
   checkpoint.session = record.session;
   checkpoint.stamp_ns = record.stamp_ns;
   checkpoint.clock_ns = record.clock_ns;

@@ -9,10 +9,14 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "core/altitude/height_datum.hpp"
 
 namespace isobar::files {
+
+/// Names of the base stations of a height datum: those of the configuration. Empty: not known.
+using StationNames = std::array<std::string, HeightDatum::kStations>;
 
 /// Where a run was.
 struct Checkpoint {
@@ -25,12 +29,16 @@ struct Checkpoint {
   double overlap = 0.0;                                 ///< of the last registered pose; 0: none yet
   double residual_rms_m = 0.0;                          ///< the same
   HeightDatum datum;
+  StationNames stations;  ///< of datum.station_offset_log; at most kMostStationBytes
 };
 
-/// Format: magic, version, length, fields (little-endian), CRC-32 of all bytes before it.
-inline constexpr std::size_t kCheckpointBytes = 216;
+/// Format: magic, version, length, fields (little-endian), CRC-32 of all bytes before it; then the names of the base stations
+/// with a CRC-32 of their own. Version 1 had no names, and is read.
+inline constexpr std::size_t kCheckpointBytes = 352;
+inline constexpr std::size_t kMostStationBytes = 63;
 using CheckpointBytes = std::array<std::byte, kCheckpointBytes>;
 
+/// Longer names are cut.
 [[nodiscard]] CheckpointBytes encode(const Checkpoint& checkpoint);
 /// @return nothing where length, magic, version, checksum or a value is wrong; `rule` then says which
 [[nodiscard]] std::optional<Checkpoint> decode(std::span<const std::byte> bytes, const char*& rule);

@@ -2,6 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <span>
 #include <string>
@@ -9,6 +11,7 @@
 #include "core/errors.hpp"
 #include "run/files/checkpoint.hpp"
 #include "run/files/text_file.hpp"
+#include "run/tile_store/tile_record.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -38,6 +41,7 @@ Checkpoint example() {
                       .step_open = true,
                       .station_known = {true, false},
                       .station_offset_log = {0.001, 0.0}};
+  checkpoint.stations = {"roof", ""};
   return checkpoint;
 }
 
@@ -75,6 +79,33 @@ TEST_CASE("a checkpoint survives the way to the disk and back") {
   CHECK(read->datum.station_known[0]);
   CHECK_FALSE(read->datum.station_known[1]);
   CHECK(read->datum.station_offset_log[0] == 0.001);
+  CHECK(read->stations == files::StationNames{"roof", ""});
+}
+
+TEST_CASE("the longest name of a base station is kept, and a longer one cut") {
+  Checkpoint checkpoint = example();
+  checkpoint.stations = {std::string(63, 'a'), std::string(200, 'b')};
+  const char* rule = nullptr;
+  const auto read = files::decode(files::encode(checkpoint), rule);
+  REQUIRE(read.has_value());
+  CHECK(read->stations == files::StationNames{std::string(63, 'a'), std::string(63, 'b')});
+}
+
+TEST_CASE("a checkpoint of version 1, without names of base stations, is read") {
+  // Its fields are the first part of version 2.
+  files::CheckpointBytes bytes = files::encode(example());
+  const std::span<std::byte> old = std::span(bytes).first(216);
+  old[8] = std::byte{1};
+  const std::uint32_t length = 216;
+  std::memcpy(old.data() + 12, &length, sizeof(length));
+  const std::uint32_t crc = crc32_of(old.first(212));
+  std::memcpy(old.data() + 212, &crc, sizeof(crc));
+  const char* rule = nullptr;
+  const auto read = files::decode(old, rule);
+  REQUIRE(read.has_value());
+  CHECK(read->datum.station_offset_log[0] == 0.001);
+  CHECK(read->stations == files::StationNames{});
+  CHECK(is_refused(bytes));  // the length of version 2 with the number of version 1
 }
 
 TEST_CASE("a checkpoint that is cut, or of which any bit is changed, is refused") {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <doctest/doctest.h>
 
+#include "core/errors.hpp"
 #include "core/map/map_tile.hpp"
 #include "run/files/map_export.hpp"
 #include "run/tile_store/file_tile_store.hpp"
@@ -8,6 +9,7 @@
 #include "tests/run/tile_store/tiles.hpp"
 #include "tests/support/exit_code.hpp"
 #include "tools/commands.hpp"
+#include "tools/map_parts.hpp"
 
 namespace isobar::test::test_map_command {
 
@@ -108,6 +110,10 @@ TEST_CASE("floors and grid of a run take the path from its trajectory, and names
   CHECK(content_of(run + "/grids/floor_0.yaml").find("image: floor_0.pgm\n") != std::string::npos);
   CHECK(
       content_of(run + "/grids/floor_0.pgm").starts_with("P5\n# isobar: floor 0 at 4.00 m, Ground floor\n"));
+  for (const char* floor : {"0", "Ground floor"})
+    CHECK(tools::base_height_on(run, floor) == doctest::Approx(4.0));
+  CHECK_THROWS_WITH_AS(static_cast<void>(tools::base_height_on(run, "Cellar")),
+                       "'Cellar' is no floor of this map; it has 0 (Ground floor)", UsageError);
   CHECK(map_command({"grid", run, "--floor", "7", "--out", run + "/grids"}) == 64);
   CHECK(map_command({"floors", run, "--name", "Cellar"}) == 64);
   CHECK(map_command({"floors", run, "--name", "3=Cellar"}) == 64);
