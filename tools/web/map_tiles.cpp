@@ -64,9 +64,12 @@ void MapDraft::add(double x_m, double y_m, double z_m, std::uint8_t intensity) {
     point[axis] = static_cast<std::uint16_t>(std::clamp(steps, 0.0, 65'535.0));
   }
   point[3] = intensity;
-  Tile& tile = tiles_[index];
-  tile.points.push_back(point);
-  tile.sum += hash_of(point);
+  if (last_tile_ == nullptr || index != last_index_) {
+    last_index_ = index;
+    last_tile_ = &tiles_[index];
+  }
+  last_tile_->points.push_back(point);
+  last_tile_->sum += hash_of(point);
   ++points_;
 }
 

@@ -43,6 +43,8 @@ class MapDraft {
     std::uint64_t sum = 0;  ///< of a hash of each point: equal for equal points in any order
   };
   std::map<TileIndex, Tile> tiles_;
+  TileIndex last_index_{};
+  Tile* last_tile_ = nullptr;  ///< of tiles_, whose places stay: points mostly come cube by cube
   std::size_t points_ = 0;
   std::uint64_t left_out_ = 0;
 };
