@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/place/ray_dispute.hpp"
 #include "core/place/slab_heights.hpp"
 #include "core/so3.hpp"
 #include "core/squared.hpp"
@@ -25,6 +26,10 @@ constexpr double kSameM = 0.5;
 constexpr double kSameRad = 0.15;
 // Candidates of less weight are dropped.
 constexpr double kLeastWeight = 1e-3;
+// Share of ground, ceilings and the like on surfaces, below which the height is looked at again: right poses have 0.68 … 0.99.
+constexpr double kDoubtfulHeightFit = 0.6;
+// Candidates that are compared ray by ray, 10 ms each.
+constexpr std::size_t kMostDisputed = 6;
 
 Prediction prediction_at(const Eigen::Isometry3d& T_map_level, double error_m, double height_sigma_m) {
   Prediction prediction;
@@ -90,7 +95,7 @@ const ColdStartResult& ColdStart::locate(const ColdStartInput& input, const std:
       refine(input, height);
     }
   }
-  judge(hint.has_value());
+  judge(input, hint.has_value());
   return result_;
 }
 
@@ -122,20 +127,36 @@ void ColdStart::refine(const ColdStartInput& input, const SlabHeight& height) {
 
 std::optional<ColdStart::Judged> ColdStart::refined(const ColdStartInput& input, const SlabHeight& height,
                                                     const Eigen::Isometry3d& T_map_level, double error_m) {
+  std::optional<Judged> judged = matched(input, height, T_map_level, error_m);
+  if (!judged) return std::nullopt;
+  PlaceCandidate& candidate = judged->candidate;
+  // Where the altimeter is off by some decimetres, ground and ceiling are too far away for the ICP.
+  if (candidate.fit.others < kDoubtfulHeightFit) {
+    Eigen::Isometry3d T_moved = candidate.T_map_level;
+    T_moved.translation().z() += vertical_offset_m(*input.map.snapshot(), input.query, T_moved, matches_);
+    auto moved = matched(input, height, T_moved, error_m);
+    if (moved && moved->evidence.sum() > judged->evidence.sum()) judged = std::move(moved);
+  }
+  const double climb_m = candidate.T_map_level.translation().z() - input.height.z_m;
+  const double relative = climb_m / std::hypot(input.height.sigma_m, kHeightErrorM);
+  if (candidate.fit.score() < config_.least_fit || std::abs(relative) > 3.0) return std::nullopt;
+  candidate.weight = -0.5 * squared(relative);
+  candidate.T_map_base = candidate.T_map_level;
+  candidate.T_map_base.linear() = candidate.T_map_level.linear() * input.R_level_base;
+  return judged;
+}
+
+// The ICP, and how well its result fits.
+std::optional<ColdStart::Judged> ColdStart::matched(const ColdStartInput& input, const SlabHeight& height,
+                                                    const Eigen::Isometry3d& T_map_level, double error_m) {
   const Prediction prediction = prediction_at(T_map_level, error_m, height.sigma_m);
   const MatchResult match = matcher_.match(
       {*input.map.snapshot(), input.query.sample(), traits_, prediction, squared(height.sigma_m)});
   if (!match.solved) return std::nullopt;
   Judged judged;
-  PlaceCandidate& candidate = judged.candidate;
-  candidate.fit =
+  judged.candidate.T_map_level = match.T_map_base;
+  judged.candidate.fit =
       fine_fit(*input.map.snapshot(), image_, input.query, match.T_map_base, matches_, judged.evidence);
-  const double climb_m = match.T_map_base.translation().z() - input.height.z_m;
-  const double relative = climb_m / std::hypot(input.height.sigma_m, kHeightErrorM);
-  if (candidate.fit.score() < config_.least_fit || std::abs(relative) > 3.0) return std::nullopt;
-  candidate.weight = -0.5 * squared(relative);
-  candidate.T_map_level = candidate.T_map_base = match.T_map_base;
-  candidate.T_map_base.linear() = match.T_map_base.linear() * input.R_level_base;
   return judged;
 }
 
@@ -153,7 +174,7 @@ void ColdStart::add_candidate(Judged judged) {
 }
 
 // A candidate that fits worse than the best one by n standard deviations is exp(-n^2 / 2) times as likely.
-void ColdStart::judge(bool hinted) {
+void ColdStart::judge(const ColdStartInput& input, bool hinted) {
   result_.candidates.clear();
   if (judged_.empty()) {
     result_.verdict = hinted ? ColdStartVerdict::kHintRefused : ColdStartVerdict::kUnknown;
@@ -172,9 +193,29 @@ void ColdStart::judge(bool hinted) {
     sum += weight;
   }
   for (PlaceCandidate& one : result_.candidates) one.weight /= sum;
+  if (result_.candidates.front().weight < config_.certain_weight) settle(input);
   std::erase_if(result_.candidates, [](const PlaceCandidate& one) { return one.weight < kLeastWeight; });
   const bool certain = result_.candidates.front().weight >= config_.certain_weight;
   result_.verdict = certain ? ColdStartVerdict::kFound : ColdStartVerdict::kAmbiguous;
+}
+
+// Between places that the sample does not tell apart, single rays may.
+void ColdStart::settle(const ColdStartInput& input) {
+  std::vector<PlaceCandidate>& candidates = result_.candidates;
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < std::min(candidates.size(), kMostDisputed); ++i) {
+    if (candidates[i].weight < kLeastWeight) continue;
+    const RayDispute::Winner winner =
+        dispute(*input.map.snapshot(), input.query, candidates[best].T_map_level, candidates[i].T_map_level)
+            .winner();
+    if (winner == RayDispute::Winner::kOne) candidates[i].weight = 0.0;
+    if (winner == RayDispute::Winner::kOther) candidates[std::exchange(best, i)].weight = 0.0;
+  }
+  double sum = 0.0;
+  for (const PlaceCandidate& one : candidates) sum += one.weight;
+  for (PlaceCandidate& one : candidates) one.weight /= sum;
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const PlaceCandidate& a, const PlaceCandidate& b) { return a.weight > b.weight; });
 }
 
 const ColdStartResult& ColdStart::follow(const ColdStartInput& input, const Eigen::Isometry3d& T_before_now) {
@@ -194,7 +235,7 @@ const ColdStartResult& ColdStart::follow(const ColdStartInput& input, const Eige
     judged->candidate.weight += std::log(std::max(old.weight, kLeastWeight));
     add_candidate(std::move(*judged));
   }
-  judge(false);
+  judge(input, false);
   return result_;
 }
 

@@ -108,8 +108,11 @@ class ColdStart {
   };
   [[nodiscard]] std::optional<Judged> refined(const ColdStartInput& input, const SlabHeight& height,
                                               const Eigen::Isometry3d& T_map_level, double error_m);
+  [[nodiscard]] std::optional<Judged> matched(const ColdStartInput& input, const SlabHeight& height,
+                                              const Eigen::Isometry3d& T_map_level, double error_m);
   void add_candidate(Judged candidate);
-  void judge(bool hinted);
+  void judge(const ColdStartInput& input, bool hinted);
+  void settle(const ColdStartInput& input);
 
   ColdStartConfig config_;
   RegistrationConfig registration_;

@@ -130,6 +130,34 @@ double PlaceEvidence::lead(const PlaceEvidence& better, const PlaceEvidence& wor
   return sum / std::sqrt(kCorrelatedItems * (squares + 1.0));
 }
 
+double vertical_offset_m(const MapSnapshot& map, const PlaceQuery& query,
+                         const Eigen::Isometry3d& T_map_level, std::vector<PlaneMatch>& matches) {
+  constexpr int kSteps = 5;
+  constexpr double kStepM = 0.1;
+  double best_m = 0.0;
+  double best = 0.0;
+  PlaceEvidence evidence;
+  std::vector<Eigen::Vector3f> p_local;
+  for (int i = 0; i <= 2 * kSteps; ++i) {
+    const double offset_m = kStepM * (i % 2 == 0 ? -i / 2 : (i + 1) / 2);
+    Eigen::Isometry3d T = T_map_level;
+    T.translation().z() += offset_m;
+    MatchQuery match{LocalFrame(T.translation(), map.cell_m()), {}, kPlaneReachM};
+    Eigen::Isometry3f T_local_level = T.cast<float>();
+    T_local_level.translation() = match.frame.to_local(T.translation());
+    match.viewpoint_local = T_local_level * query.p_level_lidar();
+    p_local.assign(query.other_points().begin(), query.other_points().end());
+    for (Eigen::Vector3f& p : p_local) p = T_local_level * p;
+    matches.assign(p_local.size(), {});
+    map.match(match, p_local, matches);
+    const double share = add_shares(p_local, matches, false, match.viewpoint_local, evidence);
+    if (share <= best) continue;
+    best = share;
+    best_m = offset_m;
+  }
+  return best_m;
+}
+
 PlaceFit fine_fit(const MapSnapshot& map, const SlabImage& image, const PlaceQuery& query,
                   const Eigen::Isometry3d& T_map_level, std::vector<PlaneMatch>& matches,
                   PlaceEvidence& evidence) {

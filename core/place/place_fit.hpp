@@ -46,4 +46,10 @@ struct PlaceEvidence {
                                 const Eigen::Isometry3d& T_map_level, std::vector<PlaneMatch>& matches,
                                 PlaceEvidence& evidence);
 
+/// Vertical offset [m], in steps of 0.1 m up to 0.5 m, at which most of the points that are no walls, ground and ceilings
+/// mostly, lie on surfaces of the map; the least one of equals. `matches`: scratch.
+[[nodiscard]] double vertical_offset_m(const MapSnapshot& map, const PlaceQuery& query,
+                                       const Eigen::Isometry3d& T_map_level,
+                                       std::vector<PlaneMatch>& matches);
+
 }  // namespace isobar

@@ -60,6 +60,7 @@ PlaceQuery::PlaceQuery() : grid_(static_cast<std::size_t>(kGridCells) * kGridCel
 
 void PlaceQuery::clear() {
   points_.clear();
+  scans_.clear();
   ray_ends_.clear();
   columns_.clear();
   wall_points_.clear();
@@ -80,8 +81,17 @@ void PlaceQuery::add(std::span<const Eigen::Vector3f> p_level, const Eigen::Vect
     }
   }
   if (!has_rays) return;
+  scans_.push_back({before, points_.size(), p_level_lidar});
   const std::size_t step = std::max<std::size_t>((points_.size() - before) / kMostRays, 1);
   for (std::size_t i = before; i < points_.size(); i += step) ray_ends_.push_back(points_[i]);
+}
+
+std::vector<PlaceQuery::Scan> PlaceQuery::scans() const {
+  std::vector<Scan> scans;
+  for (const ScanRange& range : scans_) {
+    scans.push_back({std::span(points_).subspan(range.begin, range.end - range.begin), range.p_level_lidar});
+  }
+  return scans;
 }
 
 void PlaceQuery::finish() {

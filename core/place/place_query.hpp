@@ -26,6 +26,12 @@ class PlaceQuery {
     std::uint16_t levels = 0;  ///< at which rays passed, see height_bit()
   };
 
+  /// Points of a scan, and where their rays start.
+  struct Scan {
+    std::span<const Eigen::Vector3f> p_level;
+    Eigen::Vector3f p_level_lidar;
+  };
+
   PlaceQuery();
   void clear();
   /// Adds the points of a scan [m]; points that are not finite, or beyond kViewRangeM, are left out. `p_level_lidar`: where
@@ -45,6 +51,8 @@ class PlaceQuery {
   /// All kinds of points, at most kMostSamples, evenly spread in space: for the ICP.
   [[nodiscard]] std::span<const Eigen::Vector3f> sample() const { return sample_; }
   [[nodiscard]] const Eigen::Vector3f& p_level_lidar() const { return p_level_lidar_; }
+  /// All points that have rays. Valid until the next clear().
+  [[nodiscard]] std::vector<Scan> scans() const;
   /// Height of the ground near the robot, from base_link [m]; 0 where none is seen.
   [[nodiscard]] float ground_z_m() const { return ground_z_m_; }
   /// False where so little is seen that no place could be told: an open field, or an incomplete scan.
@@ -69,7 +77,13 @@ class PlaceQuery {
   void collect_sample();
   void find_ground();
 
+  struct ScanRange {
+    std::size_t begin;
+    std::size_t end;
+    Eigen::Vector3f p_level_lidar;
+  };
   std::vector<Eigen::Vector3f> points_;
+  std::vector<ScanRange> scans_;
   std::vector<Eigen::Vector3f> ray_ends_;
   Eigen::Vector3f p_level_lidar_ = Eigen::Vector3f::Zero();
   float ground_z_m_ = 0.0F;

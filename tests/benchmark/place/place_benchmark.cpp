@@ -2,7 +2,7 @@
 // Cold starts at simulated places of a stored map: the run of another seed's sensor errors, weather and people. The robot
 // stands anywhere along the way of the run, up to some decimetres beside it, with any heading.
 // Usage: bench_place RUN SCENARIO SEED [PLACES [SCANS [SIGMA_M [QUERY_SEED]]]]; RUN: folder of `isobar replay --out` of the
-// recording SCENARIO, SEED. Default: 200 places, 3 scans, height known to 0.15 m.
+// recording SCENARIO, SEED; SCENARIO-short: its short form. Default: 200 places, 3 scans, height known to 0.15 m.
 // Prints a line for every place that is not found, and a summary.
 #include <algorithm>
 #include <cmath>
@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/geometry.hpp"
@@ -29,11 +30,14 @@ namespace fs = std::filesystem;
 
 constexpr double kRightM = 0.3;
 constexpr double kRightDeg = 3.0;
+constexpr std::string_view kShort = "-short";
 constexpr double kFloorM = 1.5;
+constexpr double kLeastFit = 0.75;  // as daemon/place_stage.cpp
 
 struct Options {
   fs::path run;
   std::string scenario;
+  bool short_form = false;
   std::uint64_t seed = 1;
   int places = 200;
   int scans = 3;
@@ -128,8 +132,8 @@ void print_place(const ColdStartResult& result, const Eigen::Isometry3d& truth,
     const Eigen::Vector3d d = one.T_map_base.translation() - p;
     const double turn =
         rotation_angle_rad(Eigen::Quaterniond(one.T_map_base.linear().transpose() * truth.linear()));
-    std::printf(" [%.2f %.2f %.2f %.1f deg, walls %.3f passed %.3f w %.3f]", d.x(), d.y(), d.z(),
-                turn / kRadPerDeg, one.fit.walls, one.fit.passed, one.weight);
+    std::printf(" [%.2f %.2f %.2f %.1f deg, walls %.3f others %.3f passed %.3f w %.3f]", d.x(), d.y(), d.z(),
+                turn / kRadPerDeg, one.fit.walls, one.fit.others, one.fit.passed, one.weight);
   }
   if (there.candidates.empty()) std::printf(" truth: none");
   for (const PlaceCandidate& one : there.candidates) {
@@ -182,10 +186,16 @@ bool has_twin(const ColdStartResult& result, const Question& question, const sim
   });
 }
 
+/// False where the robot says that it does not know.
+bool is_answer(const ColdStartResult& result) {
+  if (result.candidates.empty()) return false;
+  return result.verdict == ColdStartVerdict::kAmbiguous || result.candidates.front().fit.score() >= kLeastFit;
+}
+
 void count(const ColdStartResult& result, const Question& question, const simulation::Scenario& scenario,
            Tally& tally) {
   tally.incomplete += result.complete ? 0 : 1;
-  if (result.candidates.empty()) {
+  if (!is_answer(result)) {
     ++tally.unknown;
     return;
   }
@@ -208,8 +218,12 @@ void count(const ColdStartResult& result, const Question& question, const simula
 
 int run(const Options& options) {
   const KnownMap map = read_map(options.run / "map");
-  const std::vector<StampedPose> way = read_trajectory(options.run / "trajectory.tum");
-  const simulation::Scenario scenario = simulation::find_scenario(options.scenario).make(options.seed, false);
+  // Loops move the map: the corrected trajectory is in its frame.
+  const fs::path corrected = options.run / "trajectory-corrected.tum";
+  const std::vector<StampedPose> way =
+      read_trajectory(fs::exists(corrected) ? corrected : options.run / "trajectory.tum");
+  const simulation::Scenario scenario =
+      simulation::find_scenario(options.scenario).make(options.seed, options.short_form);
   std::printf("map: %zu voxels of structure, %zu planes; %zu poses\n", map.structure().voxel_count(),
               map.snapshot()->plane_count(), way.size());
   ColdStart cold_start;
@@ -226,7 +240,8 @@ int run(const Options& options) {
     tally.seconds.push_back(thread_s() - begin_s);
     count(result, question, scenario, tally);
     const Eigen::Isometry3d& truth = question.T_map_base;
-    if (result.verdict == ColdStartVerdict::kFound && is_right(result.candidates.front().T_map_base, truth)) {
+    if (result.verdict == ColdStartVerdict::kFound && is_answer(result) &&
+        is_right(result.candidates.front().T_map_base, truth)) {
       continue;
     }
     const double yaw_rad = std::atan2(truth.linear()(1, 0), truth.linear()(0, 0));
@@ -245,7 +260,10 @@ int main(int argc, char** argv) {
     return 64;
   }
   try {
-    Options options{argv[1], argv[2], static_cast<std::uint64_t>(std::atoll(argv[3]))};
+    Options options{.run = argv[1], .scenario = argv[2]};
+    options.seed = static_cast<std::uint64_t>(std::atoll(argv[3]));
+    options.short_form = options.scenario.ends_with(kShort);
+    if (options.short_form) options.scenario.resize(options.scenario.size() - kShort.size());
     if (argc > 4) options.places = std::atoi(argv[4]);
     if (argc > 5) options.scans = std::atoi(argv[5]);
     if (argc > 6) options.sigma_m = std::atof(argv[6]);

@@ -62,6 +62,20 @@ TEST_CASE(
   CHECK(fitted.coarse.passed > 0.02);
 }
 
+TEST_CASE("ground and ceiling tell by how much a height is off") {
+  const Eigen::Isometry3d T = level_pose_at(1.1, -0.7, 0.0, 40.0);
+  PlaceQuery query;
+  office().look(T, query);
+  const KnownMap map = office().map();
+  std::vector<PlaneMatch> matches;
+  for (const double off_m : {-0.4, -0.2, 0.0, 0.1, 0.3}) {
+    CAPTURE(off_m);
+    Eigen::Isometry3d T_off = T;
+    T_off.translation().z() += off_m;
+    CHECK(std::abs(vertical_offset_m(*map.snapshot(), query, T_off, matches) + off_m) < 1e-6);
+  }
+}
+
 TEST_CASE("equal places lead by nothing") {
   PlaceEvidence one;
   one.items.assign(500, 0.9F);
