@@ -70,7 +70,10 @@ CLI::Validator one_of(const std::vector<std::string>& words) {
     if (std::find(words.begin(), words.end(), word) != words.end()) return {};
     return "\"" + word + "\" is none of " + all + did_you_mean(word, words);
   };
-  return {check, "", ""};
+  // As CLI11's own sets are shown: manual pages and completions read the choices here.
+  std::string set;
+  for (const std::string& word : words) set += (set.empty() ? "" : ",") + word;
+  return {check, "{" + set + "}", ""};
 }
 
 }  // namespace isobar::tools

@@ -23,7 +23,8 @@ void main() {
   bool in_slab = floor_count == 0;
   for (int i = 0; i < FLOORS; ++i) {
     float above = world.z - floors_m[i];
-    if (i < floor_count && above > slab_m.x && above < slab_m.y) in_slab = true;
+    if (i >= floor_count) break;
+    if (above > slab_m.x && above < slab_m.y) in_slab = true;
   }
   if (!shown || !in_slab) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   float at = (world.z - range_m.x) / max(0.01, range_m.y - range_m.x);
@@ -43,6 +44,21 @@ const kSampleStep = 61;
 const kSlabM = [-0.5, 1.9];
 const kMostFloors = 32;
 
+/** Puts the points into a random order, so that the first part of them is a thinned whole. Always the same order. */
+function shuffle(data: Uint16Array): void {
+  const words = new Uint32Array(data.buffer); // two a point
+  let random = 1;
+  for (let last = words.length / 2 - 1; last > 0; --last) {
+    random = (Math.imul(random, 1_664_525) + 1_013_904_223) >>> 0;
+    const other = Math.floor((random / 2 ** 32) * (last + 1));
+    for (let word = 0; word < 2; ++word) {
+      const kept = words[2 * last + word];
+      words[2 * last + word] = words[2 * other + word];
+      words[2 * other + word] = kept;
+    }
+  }
+}
+
 interface Drawn {
   points: THREE.Points;
   /** x, y, z in the map frame. */
@@ -54,6 +70,7 @@ export class MapPoints {
   private readonly chunks = new Map<string, Drawn>();
   private epoch = -1;
   private total = 0;
+  private share = 1;
   private readonly material = new THREE.ShaderMaterial({
     vertexShader: kVertex,
     fragmentShader: kFragment,
@@ -117,6 +134,17 @@ export class MapPoints {
       (kPointM * height_px) / (2 * Math.tan((field_of_view_deg * Math.PI) / 360));
   }
 
+  /** Draws this share of the points, evenly thinned, 0 … 1. */
+  set_share(share: number): void {
+    if (share === this.share) return;
+    this.share = share;
+    for (const { points } of this.chunks.values()) this.thin(points.geometry);
+  }
+
+  private thin(geometry: THREE.BufferGeometry): void {
+    geometry.setDrawRange(0, Math.ceil(this.share * geometry.getAttribute('position').count));
+  }
+
   /** Heights between which nearly all points lie; null: none yet. */
   height_range_m(): [number, number] | null {
     const heights: number[] = [];
@@ -136,6 +164,7 @@ export class MapPoints {
 
   private add(key: string, corner_m: [number, number, number], data: Uint16Array, step_m: number): void {
     const geometry = new THREE.BufferGeometry();
+    shuffle(data);
     const buffer = new THREE.InterleavedBuffer(data, 4);
     geometry.setAttribute('position', new THREE.InterleavedBufferAttribute(buffer, 3, 0));
     const samples = new Float32Array(3 * Math.ceil(data.length / 4 / kSampleStep));
@@ -144,6 +173,7 @@ export class MapPoints {
     }
     const edge_m = 65_536 * step_m;
     geometry.boundingSphere = new THREE.Sphere(new THREE.Vector3().setScalar(edge_m / 2), edge_m * 0.87);
+    this.thin(geometry);
     const points = new THREE.Points(geometry, this.material);
     points.position.set(...corner_m);
     this.group.add(points);

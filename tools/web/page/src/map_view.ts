@@ -7,6 +7,7 @@ import { DepthShading } from './depth_shading';
 import { element, on_theme_change, style_value } from './dom';
 import type { MapPiece } from './map_chunks';
 import { MapPoints } from './map_points';
+import { FrameBudget } from './frame_budget';
 import { PathLine, RobotMarker, type Line3 } from './map_tracks';
 
 const kFieldOfViewDeg = 50;
@@ -34,6 +35,7 @@ export class MapView {
   private slice_m: [number, number] | null = null;
   private fitted: THREE.Vector3[] = [];
   private touched = false;
+  private readonly budget = new FrameBudget();
   private waiting = false;
   private follows = false;
   frames = 0;
@@ -53,8 +55,16 @@ export class MapView {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.maxPolarAngle = Math.PI * 0.49;
     this.controls.zoomToCursor = true;
-    this.controls.addEventListener('change', () => this.draw_soon());
-    this.controls.addEventListener('start', () => (this.touched = true));
+    this.controls.addEventListener('change', () => {
+      this.budget.moved();
+      this.draw_soon();
+    });
+    this.budget.on_rest = () => this.draw_soon();
+    this.controls.addEventListener('start', () => {
+      this.touched = true;
+      this.budget.set_held(true);
+    });
+    this.controls.addEventListener('end', () => this.budget.set_held(false));
     this.shading = new DepthShading(this.renderer);
     this.scene.add(this.points.group);
     this.overlay.add(this.robot.object);
@@ -218,8 +228,9 @@ export class MapView {
   private draw_soon(): void {
     if (this.waiting) return;
     this.waiting = true;
-    requestAnimationFrame(() => {
+    requestAnimationFrame((now_ms) => {
       this.waiting = false;
+      this.points.set_share(this.budget.share(now_ms));
       this.robot.scale_to(this.camera);
       this.shading.render(this.scene, this.camera);
       this.renderer.render(this.overlay, this.camera);
