@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/geometry.hpp"
+#include "ipc/dds/messages.hpp"
 
 namespace isobar::tools {
 
