@@ -6,12 +6,16 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
 #include "run/files/run_layout.hpp"
 #include "tools/commands.hpp"
+#include "tools/import_options.hpp"
+#include "tools/import/import_source.hpp"
+#include "tools/import/scratch_folder.hpp"
 #include "tools/method_option.hpp"
 #include "tools/progress.hpp"
 #include "tools/subcommand.hpp"
@@ -28,6 +32,31 @@ struct ReplayOptions {
   bool replace = false;
   std::string map;
   std::string map_use;
+  std::filesystem::path keep;
+  ImportRequest import;  ///< of a source that is no recording
+};
+
+/// The recording that a foreign source becomes: in the folder of --keep, else in a temporary one that goes with the object.
+class ImportedRecording {
+ public:
+  explicit ImportedRecording(const ReplayOptions& options) : folder_(options.recording) {
+    if (!is_importable(options.recording)) return;
+    ImportRequest request = options.import;
+    request.source = options.recording;
+    request.out = options.keep;
+    if (options.keep.empty()) {
+      temporary_.emplace();
+      request.out = temporary_->path() / "recording";
+      request.link_files = true;
+    }
+    import_and_print(request);
+    folder_ = request.out;
+  }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::optional<ScratchFolder> temporary_;
 };
 
 /// Counters of normal operation, which are not printed; the others are printed unless zero.
@@ -99,9 +128,10 @@ void run_replay(const ReplayOptions& options) {
     config.map_files.use = *use;
   }
   prepare_folder(options);
+  const ImportedRecording recording(options);
   Progress progress("replaying");
   const ReplaySummary summary =
-      replay(options.recording, config, options.out, [&](double fraction) { progress.update(fraction); });
+      replay(recording.folder(), config, options.out, [&](double fraction) { progress.update(fraction); });
   progress.finish();
   print_summary(summary, options.out);
 }
@@ -111,7 +141,11 @@ void run_replay(const ReplayOptions& options) {
 void add_replay_command(CLI::App& app) {
   const auto [command, options] =
       add_subcommand<ReplayOptions>(app, "replay", "Estimate poses and a map from a recording", run_replay);
-  command.add_option("RECORDING", options.recording, "recording folder")->required();
+  command
+      .add_option("RECORDING", options.recording,
+                  "recording folder, or what isobar import reads: it is imported into a temporary folder first")
+      ->required();
+  command.add_option("--keep", options.keep, "folder in which the imported recording is kept");
   command.add_option("--config", options.config,
                      "TOML file; its sensors and mounts are replaced by the recording's");
   command.add_option("--method", options.method, method_names() + " (default: the configuration's)");
@@ -125,6 +159,7 @@ void add_replay_command(CLI::App& app) {
       "extend (default): add to a copy of it in the folder of this run; localise: add nothing; new: do "
       "not use it");
   command.add_flag("--replace", options.replace, "delete the run that is in the folder");
+  add_import_options(command, options.import);
 }
 
 }  // namespace isobar::tools
