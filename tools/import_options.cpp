@@ -25,6 +25,7 @@ void add_import_options(CLI::App& command, ImportRequest& request) {
       .add_option(
           "--mount", request.mount_texts,
           "lidar=x,y,z,roll,pitch,yaw in base_link (m, degrees); also imu= and barometer=; may be repeated")
+      ->allow_extra_args(false)
       ->group(kGroup);
   add("--base-frame", request.base_frame, "frame of the robot in /tf_static (default: base_link)");
   add("--model", request.model,

@@ -153,11 +153,11 @@ CaptureFindings find_lidar(const ImportRequest& request, ImportReport& report) {
   }
   for (const PortFindings& port : ports) {
     const bool is_info = port.port == model->info_port && port.port != chosen.port;
-    if (is_info) findings.lidar.info_port = port.port;
+    if (is_info && request.imu != kNoTopic) findings.lidar.info_port = port.port;
     const double span_s = seconds_between(port.first_ns, port.last_ns);
     report.rows.push_back({"UDP port " + std::to_string(port.port), port.model, port.packets,
                            span_s > 0.0 ? static_cast<double>(port.packets - 1) / span_s : 0.0,
-                           &port == &chosen ? "lidar.pcap: packets of a " + name
+                           &port == &chosen ? "lidar.pcap: packets of " + name
                            : is_info        ? "lidar.pcap: the lidar's other packets"
                                             : "nothing"});
   }

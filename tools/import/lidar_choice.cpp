@@ -105,7 +105,7 @@ class LidarChoice {
       plan_.lidar_metadata = metadata;
       plan_.manifest.lidar->calibration_file = is_ouster(at(index)) ? "os.json" : "calibration.csv";
     }
-    becomes_[index] = "lidar.pcap: packets of a " + name;
+    becomes_[index] = "lidar.pcap: packets of " + name;
     for (std::size_t i = 0; i < survey_.topics.size() && is_ouster(at(index)); ++i) {
       if (!is_information(at(i)) || !at(i).is_usable()) continue;
       plan_.lidar_info = PlannedTopic{i};
