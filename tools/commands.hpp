@@ -11,6 +11,7 @@ namespace isobar::tools {
 
 void add_simulate_command(CLI::App& app);               ///< scenario -> recording
 void add_replay_command(CLI::App& app);                 ///< recording -> trajectory, map, status
+void add_import_command(CLI::App& app);                 ///< bag, capture, scans, logs of others -> recording
 void add_check_command(CLI::App& app);                  ///< recording -> contradictions of its sensors
 void add_evaluate_command(CLI::App& app);               ///< reference and estimates -> figures, report
 void add_experiment_command(CLI::App& app);             ///< simulate, replay with all methods, evaluate

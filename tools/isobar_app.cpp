@@ -18,6 +18,7 @@ void add_all_commands(CLI::App& app) {
   app.set_version_flag("--version", version_line("isobar"));
   app.get_formatter()->column_width(32);
   add_simulate_command(app);
+  add_import_command(app);
   add_check_command(app);
   add_replay_command(app);
   add_evaluate_command(app);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -18,6 +19,9 @@
 #include "run/files/run_layout.hpp"
 #include "run/recording/manifest.hpp"
 #include "tools/commands.hpp"
+#include "tools/import_options.hpp"
+#include "tools/import/import_source.hpp"
+#include "tools/import/scratch_folder.hpp"
 #include "tools/method_option.hpp"
 #include "tools/overridden_settings.hpp"
 #include "tools/progress.hpp"
@@ -35,6 +39,31 @@ struct ReplayOptions {
   bool replace = false;
   std::string map;
   std::string map_use;
+  std::filesystem::path keep;
+  ImportRequest import;  ///< of a source that is no recording
+};
+
+/// The recording that a foreign source becomes: in the folder of --keep, else in a temporary one that goes with the object.
+class ImportedRecording {
+ public:
+  explicit ImportedRecording(const ReplayOptions& options) : folder_(options.recording) {
+    if (!is_importable(options.recording)) return;
+    ImportRequest request = options.import;
+    request.source = options.recording;
+    request.out = options.keep;
+    if (options.keep.empty()) {
+      temporary_.emplace();
+      request.out = temporary_->path() / "recording";
+      request.link_files = true;
+    }
+    import_and_print(request);
+    folder_ = request.out;
+  }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::optional<ScratchFolder> temporary_;
 };
 
 /// Counters of normal operation, which are not printed; the others are printed unless zero.
@@ -83,13 +112,10 @@ void print_summary(const ReplaySummary& summary, const std::filesystem::path& ou
 
 /// A run that is already in the folder is kept unless its removal is asked for.
 /// @throws UsageError
-void prepare_folder(const ReplayOptions& options) {
-  if (!files::holds_run(options.out)) return;
-  if (!options.replace) {
-    throw UsageError("--out: " + options.out.string() +
-                     " holds a run already; name another folder, or add --replace to delete that run");
-  }
-  files::remove_run(options.out);
+void refuse_run(const ReplayOptions& options) {
+  if (options.replace || !files::holds_run(options.out)) return;
+  throw UsageError("--out: " + options.out.string() +
+                   " holds a run already; name another folder, or add --replace to delete that run");
 }
 
 /// The stored map is not in the folder that the run replaces.
@@ -123,17 +149,19 @@ Config config_of(const ReplayOptions& options, Config config) {
 
 void run_replay(const ReplayOptions& options) {
   refuse_own_map(options);
+  refuse_run(options);
   const LoadedConfig loaded = options.config.empty() ? LoadedConfig{} : load_layers(options.config);
   const Config config = config_of(options, loaded.config);
+  const ImportedRecording recording(options);
   // Before a run is removed: a recording that cannot be read must not cost it.
   std::vector<std::string> warnings;
-  const recording::Manifest manifest = recording::read_manifest(options.recording, warnings);
+  const recording::Manifest manifest = recording::read_manifest(recording.folder(), warnings);
   for (const std::string& sentence : overridden_settings(loaded, with_sensors_of(manifest, loaded.config)))
     std::printf("note: %s\n", sentence.c_str());
-  prepare_folder(options);
+  if (files::holds_run(options.out)) files::remove_run(options.out);
   Progress progress("replaying");
   const ReplaySummary summary =
-      replay(options.recording, config, options.out, [&](double fraction) { progress.update(fraction); });
+      replay(recording.folder(), config, options.out, [&](double fraction) { progress.update(fraction); });
   progress.finish();
   print_summary(summary, options.out);
 }
@@ -143,7 +171,11 @@ void run_replay(const ReplayOptions& options) {
 void add_replay_command(CLI::App& app) {
   const auto [command, options] =
       add_subcommand<ReplayOptions>(app, "replay", "Estimate poses and a map from a recording", run_replay);
-  command.add_option("RECORDING", options.recording, "recording folder")->required();
+  command
+      .add_option("RECORDING", options.recording,
+                  "recording folder, or what isobar import reads: it is imported into a temporary folder first")
+      ->required();
+  command.add_option("--keep", options.keep, "folder in which the imported recording is kept");
   command.add_option("--config", options.config,
                      "TOML file; its sensors and mounts are replaced by the recording's");
   command.add_option("--method", options.method, method_names() + " (default: the configuration's)");
@@ -157,6 +189,7 @@ void add_replay_command(CLI::App& app) {
       "extend (default): add to a copy of it in the folder of this run; localise: add nothing; new: do "
       "not use it");
   command.add_flag("--replace", options.replace, "delete the run that is in the folder");
+  add_import_options(command, options.import);
 }
 
 }  // namespace isobar::tools

@@ -22,15 +22,17 @@ class PriorPace {
   bool next(std::int64_t now_ns, std::int64_t& stamp_ns) {
     if (!plausible_stamp(now_ns)) return false;
     const bool follows =
-        last_ns_ != 0 && now_ns - last_ns_ <= kLongestPauseNs && last_ns_ - now_ns <= kLongestPauseNs;
+        started_ && now_ns - last_ns_ <= kLongestPauseNs && last_ns_ - now_ns <= kLongestPauseNs;
     if (follows && now_ns - last_ns_ < kStepNs) return false;
+    started_ = true;
     last_ns_ = follows ? last_ns_ + kStepNs : now_ns;
     stamp_ns = last_ns_;
     return true;
   }
 
  private:
-  std::int64_t last_ns_ = 0;  // 0: none yet
+  bool started_ = false;  // stamps of a recording may begin at 0
+  std::int64_t last_ns_ = 0;
 };
 
 }  // namespace isobar

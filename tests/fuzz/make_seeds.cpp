@@ -17,6 +17,7 @@
 #include "tests/drivers/velodyne/packet_builder.hpp"
 #include "tests/drivers/vn100/packet_writer.hpp"
 #include "tests/drivers/xsens/message_writer.hpp"
+#include "tests/fuzz/import_seeds.hpp"
 #include "tests/fuzz/lidar_seeds.hpp"
 
 namespace {
@@ -177,6 +178,7 @@ int main(int count, char** arguments) {
   lidar_seeds();
   imu_seeds();
   test::write_lidar_seeds(root);
+  test::write_import_seeds(root);
   recording_seeds();
   tile_store_seeds();
   save("fuzz_toml", "config", show_config(Config{}));

@@ -83,6 +83,16 @@ TEST_CASE("a prior comes every 20 ms; after a pause the pace begins anew") {
   CHECK_FALSE(pace.next(at(100.01), stamp_ns));
 }
 
+TEST_CASE("a clock that begins at 0, as in a recording of scans without dates, gives the same pace") {
+  PriorPace pace;
+  std::int64_t stamp_ns = -1;
+  CHECK(pace.next(0, stamp_ns));
+  CHECK(stamp_ns == 0);
+  CHECK_FALSE(pace.next(0, stamp_ns));
+  CHECK(pace.next(30'000'000, stamp_ns));
+  CHECK(stamp_ns == 20'000'000);
+}
+
 TEST_CASE("wheels give the way on a plane: a circle closes, gravity stays unknown") {
   const double rate_rad_s = 0.5;
   Prior last;
