@@ -206,5 +206,8 @@ int main(int count, char** arguments) {
       "fuzz_datagram", "all",
       "imu,1,1700000000000000000,0.1,0.2,-0.3,0,0,9.81,1,0,0,0\nbaro,1,1700000000000000000,100000.5,20.25\r\n"
       "base,4294967295,0,1e5,nan\nwheel,7,5,0.5,0,0.1\n");
+  save("fuzz_web", "hint",
+       "robot7.local:8080\nBearer 0123456789abcdef\n{\"x_m\": 1, \"y_m\": -2.5, \"yaw_deg\": 90}");
+  save("fuzz_web", "ipv6", "[fe80::1]:80\nBearer \n[[]]");
   return 0;
 }

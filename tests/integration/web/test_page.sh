@@ -7,6 +7,7 @@ isobar=$1 isobard=$2 bridge=$3 node=$4
 here=$(cd "$(dirname "$0")" && pwd)
 command -v chromium >/dev/null || { echo "skipped: needs the Debian package chromium"; exit 77; }
 [ -d "$here/npm/node_modules/puppeteer-core" ] || { echo "skipped: run npm ci in $here/npm first"; exit 77; }
+if "$isobar" web /nonexistent 2>&1 | grep -q 'without its page'; then echo "skipped: built without the page"; exit 77; fi
 
 work=$(mktemp -d)
 pids=()
@@ -14,13 +15,13 @@ finish() { for pid in "${pids[@]}"; do kill -9 "$pid" 2>/dev/null || true; done;
 trap finish EXIT
 fail() { echo "FAILED: $*"; for log in "$work"/*.log; do echo "--- $log"; tail -n 20 "$log"; done; exit 1; }
 
-"$isobar" simulate stairs-demo --seed 5 --short --stop-after 6 --out "$work/recording" >"$work/simulate.log" 2>&1
+"$isobar" simulate stairs-demo --seed 5 --short --stop-after 7 --out "$work/recording" >"$work/simulate.log" 2>&1
 "$isobar" config show --sensors-of "$work/recording" >"$work/isobar.toml"
 echo 'a-token-of-this-test' >"$work/token"
 chmod 600 "$work/token"
 "$isobar" web --port 18080 --token-file "$work/token" --viewers 3 >"$work/web.log" 2>&1 &
 pids+=("$!")
-# What the page's test asks for, one word a line: play, kill, start.
+# What the page's test asks for, one word a line: start, play, kill; end, when it has ended.
 mkfifo "$work/orders"
 exec 4<>"$work/orders"
 start() {
@@ -35,12 +36,14 @@ pids+=("$!")
 "$node" "$here/page.mjs" http://localhost:18080/ "$work/echo.txt" "$work/orders" >"$work/page.log" 2>&1 &
 page=$!
 pids+=("$page")
-while kill -0 "$page" 2>/dev/null; do
-  read -r -t 0.2 -u 4 order || continue
+# Without a time limit in read, which would lose what it has read of a line.
+(while kill -0 "$page" 2>/dev/null; do sleep 0.2; done; echo end >&4) &
+while read -r -u 4 order; do
   case $order in
     start) start ;;
     play) "$isobar" play "$work/recording" >"$work/play.log" 2>&1 & pids+=("$!") ;;
     kill) kill -9 "$daemon" ;;
+    end) break ;;
   esac
 done
 wait "$page" || fail "the page is not as it should be"
