@@ -22,6 +22,7 @@
 #include "run/recording/record_session.hpp"
 #include "run/tile_store/file_descriptor.hpp"
 #include "tools/commands.hpp"
+#include "tools/foxglove/record_topics.hpp"
 #include "tools/number_option.hpp"
 #include "tools/record_progress.hpp"
 #include "tools/record_source.hpp"
@@ -40,6 +41,7 @@ struct RecordOptions {
   double min_free_mb = 500.0;
   double duration_s = 0.0;
   double timeout_s = 0.0;
+  bool mcap = false;
 };
 
 /// The signals that end a recording, as a descriptor; blocked while this object lives.
@@ -235,7 +237,19 @@ class Recorder {
   std::string why_ended_;
 };
 
-void run_record(const RecordOptions& options) { Recorder(options).run(); }
+void run_record(const RecordOptions& options) {
+  if (!options.mcap) {
+    Recorder(options).run();
+    return;
+  }
+#if ISOBAR_WITH_DDS
+  const bool names_file = options.folder.extension() == ".mcap";
+  record_topics({names_file ? options.folder : std::filesystem::path(options.folder.string() + ".mcap"),
+                 options.duration_s, kMbBytes * options.min_free_mb});
+#else
+  throw UsageError("--mcap: this isobar was built without DDS");
+#endif
+}
 
 }  // namespace
 
@@ -243,6 +257,9 @@ void add_record_command(CLI::App& app) {
   const auto [command, options] = add_subcommand<RecordOptions>(
       app, "record", "Record all inputs of the running isobard to a folder", run_record);
   command.add_option("DIR", options.folder, "new folder; `isobar replay DIR` replays it")->required();
+  command.add_flag(
+      "--mcap", options.mcap,
+      "record the topics of isobar-dds instead, to DIR.mcap: Foxglove opens it, replay does not");
   command
       .add_option("--min-free", options.min_free_mb,
                   "free space on the disk at which the recording ends [MB]")

@@ -4,7 +4,9 @@
 #include <csignal>
 #include <cstdio>
 #include <ctime>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "core/errors.hpp"
 #include "core/version.hpp"
@@ -46,7 +48,9 @@ void run_foxglove(const FoxgloveOptions& options) {
   foxglove::Server server(options.address, tap.channels(), session_name());
   std::signal(SIGINT, [](int) { g_stop_serving = 1; });
   std::signal(SIGTERM, [](int) { g_stop_serving = 1; });
-  tap.start(server);
+  tap.start([&](std::uint32_t channel,
+                std::shared_ptr<const foxglove::Data> data) { server.publish(channel, std::move(data)); },
+            [&] { server.wake(); });
   std::printf("ready: in Foxglove, open connection, Foxglove WebSocket, ws://%s:%u\n",
               options.address.address.c_str(), unsigned{options.address.port});
   std::size_t clients = 0;

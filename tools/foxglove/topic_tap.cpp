@@ -2,6 +2,7 @@
 #include "tools/foxglove/topic_tap.hpp"
 
 #include <chrono>
+#include <utility>
 
 #include "run/mcap/message_definitions.hpp"
 
@@ -48,8 +49,8 @@ std::vector<Channel> TopicTap::channels() const {
   return channels;
 }
 
-void TopicTap::start(Server& server) {
-  thread_ = std::thread([this, &server] { loop(server); });
+void TopicTap::start(Take take, std::function<void()> turn) {
+  thread_ = std::thread([this, take = std::move(take), turn = std::move(turn)] { loop(take, turn); });
 }
 
 void TopicTap::stop() {
@@ -57,7 +58,7 @@ void TopicTap::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-void TopicTap::loop(Server& server) noexcept {
+void TopicTap::loop(const Take& take, const std::function<void()>& turn) noexcept {
   while (!stopping_) {
     dds_waitset_wait(waitset_.get(), nullptr, 0, DDS_MSECS(100));
     for (std::uint32_t i = 0; i < readers_.size(); ++i) {
@@ -65,10 +66,10 @@ void TopicTap::loop(Server& server) noexcept {
         auto data = std::make_shared<Data>();
         data->stamp_ns = system_time_ns();
         data->cdr.assign(cdr.begin(), cdr.end());
-        server.publish(i + 1, std::move(data));
+        take(i + 1, std::move(data));
       });
     }
-    server.wake();
+    turn();
   }
 }
 

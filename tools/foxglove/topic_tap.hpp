@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Thread that takes the messages of isobar-dds from DDS and hands them to the server, undecoded.
+// Thread that takes the messages of isobar-dds from DDS and hands them on, undecoded.
 #pragma once
 
 #include <atomic>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
@@ -10,8 +12,8 @@
 
 #include "ipc/dds/participant.hpp"
 #include "ipc/dds/raw_reader.hpp"
+#include "tools/foxglove/client_queue.hpp"
 #include "tools/foxglove/protocol.hpp"
-#include "tools/foxglove/server.hpp"
 
 namespace isobar::tools::foxglove {
 
@@ -25,12 +27,14 @@ class TopicTap {
   TopicTap& operator=(const TopicTap&) = delete;
 
   [[nodiscard]] std::vector<Channel> channels() const;
-  /// Begins to take messages. `server` must outlive stop(). It is woken ten times a second, also without messages.
-  void start(Server& server);
+  /// Begins to take messages. The thread calls `take` with each, and `turn` at least ten times a second; neither may
+  /// throw, and both must live until stop().
+  using Take = std::function<void(std::uint32_t channel, std::shared_ptr<const Data> data)>;
+  void start(Take take, std::function<void()> turn);
   void stop();
 
  private:
-  void loop(Server& server) noexcept;
+  void loop(const Take& take, const std::function<void()>& turn) noexcept;
 
   std::vector<std::unique_ptr<dds::RawReader>> readers_;  ///< channel i + 1
   dds::Entity waitset_;

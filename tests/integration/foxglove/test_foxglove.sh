@@ -21,6 +21,14 @@ code=0
 [ "$code" -eq 0 ] || fail "$(cat "$work/client.log")"
 cat "$work/client.log"
 
+# The same topics in a file.
+reader=$(dirname "$client")/read_mcap.js
+"$isobar" record "$work/drive" --mcap --for 2.5 --min-free 1 >"$work/record.log" 2>&1 || fail "record --mcap"
+"$node" "$reader" "$work/drive.mcap" >"$work/read.log" 2>&1 || fail "$(cut -c 1-2000 "$work/read.log")"
+for topic in /pose /odom /tf /tf_static /altitude /registered_scan /map_cloud /diagnostics; do
+  grep -q "\"$topic\":" "$work/read.log" || fail "no $topic in drive.mcap: $(cut -c 1-2000 "$work/read.log")"
+done
+
 code=0
 "$isobar" foxglove --port 18765 >"$work/second.log" 2>&1 || code=$?
 [ "$code" -eq 69 ] && grep -q 'port 18765 of 127.0.0.1 cannot be opened' "$work/second.log" || fail "code $code for a port in use"
