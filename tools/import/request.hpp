@@ -2,6 +2,7 @@
 // What a person asks `isobar import` for, and what came of it.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>

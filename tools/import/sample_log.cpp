@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <memory>
+#include <system_error>
 
 #include "core/errors.hpp"
 #include "core/plausibility.hpp"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <system_error>
 
 #include "core/errors.hpp"
 #include "core/plausibility.hpp"
