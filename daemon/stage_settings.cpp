@@ -69,7 +69,8 @@ Config with_sensors_of(const recording::Manifest& manifest, Config config) {
   if (manifest.imu) {
     config.imu.mount = manifest.imu->mount;
   } else {
-    const bool has_imu = !has_clouds && find_lidar_model(manifest.lidar->model)->has_imu && manifest.lidar->info_port != 0;
+    const bool has_imu =
+        !has_clouds && find_lidar_model(manifest.lidar->model)->has_imu && manifest.lidar->info_port != 0;
     config.imu.source = has_imu && config.imu.present() ? ImuSource::kLidar : ImuSource::kNone;
   }
   if (manifest.barometer) {

@@ -19,9 +19,9 @@
 #include "run/files/run_layout.hpp"
 #include "run/recording/manifest.hpp"
 #include "tools/commands.hpp"
-#include "tools/import_options.hpp"
 #include "tools/import/import_source.hpp"
 #include "tools/import/scratch_folder.hpp"
+#include "tools/import_options.hpp"
 #include "tools/method_option.hpp"
 #include "tools/overridden_settings.hpp"
 #include "tools/progress.hpp"
@@ -172,8 +172,9 @@ void add_replay_command(CLI::App& app) {
   const auto [command, options] =
       add_subcommand<ReplayOptions>(app, "replay", "Estimate poses and a map from a recording", run_replay);
   command
-      .add_option("RECORDING", options.recording,
-                  "recording folder, or what isobar import reads: it is imported into a temporary folder first")
+      .add_option(
+          "RECORDING", options.recording,
+          "recording folder, or what isobar import reads: it is imported into a temporary folder first")
       ->required();
   command.add_option("--keep", options.keep, "folder in which the imported recording is kept");
   command.add_option("--config", options.config,

@@ -39,15 +39,17 @@ void read_as_everything(std::span<const std::uint8_t> bytes, Encoding encoding) 
   (void)read_transforms(cursor, poses);
   (void)read_cloud(cursor, cloud);
   (void)read_livox(cursor, cloud);
-  for (const char* type : {"velodyne_msgs/VelodyneScan", "pandar_msgs/PandarScan", "nebula_msgs/NebulaPackets",
-                           "rslidar_msg/RslidarPacket", "ouster_ros/PacketMsg"}) {
+  for (const char* type :
+       {"velodyne_msgs/VelodyneScan", "pandar_msgs/PandarScan", "nebula_msgs/NebulaPackets",
+        "rslidar_msg/RslidarPacket", "ouster_ros/PacketMsg"}) {
     (void)read_packets(type, cursor, packets);
   }
 }
 
 void read_all(MessageStream& stream) {
   Message message;
-  while (stream.next(message)) read_as_everything(message.bytes, stream.channels().at(message.channel).encoding);
+  while (stream.next(message))
+    read_as_everything(message.bytes, stream.channels().at(message.channel).encoding);
 }
 
 }  // namespace
@@ -58,7 +60,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string file = "/proc/self/fd/" + std::to_string(memory);
   const bool is_container = data[0] == static_cast<std::uint8_t>(kMcapMagic[0]) || data[0] == '#';
   const std::size_t skip = is_container ? 0 : 1;
-  if (ftruncate(memory, 0) != 0 || pwrite(memory, data + skip, size - skip, 0) != static_cast<ssize_t>(size - skip)) {
+  if (ftruncate(memory, 0) != 0 ||
+      pwrite(memory, data + skip, size - skip, 0) != static_cast<ssize_t>(size - skip)) {
     return 0;
   }
   try {
