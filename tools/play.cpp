@@ -115,8 +115,9 @@ void play(const PlayOptions& options) {
   const recording::RecordingReader reader(options.recording);
   if (!reader.manifest().lidar) throw DataError(options.recording.string() + ": has no [lidar] to play");
   if (reader.manifest().lidar->holds_clouds()) {
-    throw DataError(options.recording.string() +
-                    ": its lidar gave clouds, not packets: there is nothing to send by UDP; isobar replay reads it");
+    throw DataError(
+        options.recording.string() +
+        ": its lidar gave clouds, not packets: there is nothing to send by UDP; isobar replay reads it");
   }
   Player player(options.address, lidar_plan(options, *reader.manifest().lidar), options.input_port);
   do play_once(options, player);

@@ -93,16 +93,11 @@ const std::map<std::string, Names> kMayIncludeInCore{
 
 /// Libraries and the places that may include them. A library that is not listed may be included anywhere.
 const std::map<std::string, Names> kNamedOnlyBy{
-    {"spdlog/", {"daemon/"}},
-    {"iceoryx", {"ipc/iceoryx/"}},
-    {"dds/", {"ipc/dds/"}},
-    {"CLI/", {"daemon/", "tools/"}},
-    {"nanoflann", {"core/map/"}},
-    {"pcap", {"run/recording/"}},
-    {"toml++", {"config/", "run/"}},
-    {"systemd/", {"daemon/"}},
-    {"httplib.h", {"tools/web/"}},
-    {"openssl/", {"config/checksum", "ipc/keys/"}},
+    {"spdlog/", {"daemon/"}},        {"iceoryx", {"ipc/iceoryx/"}},
+    {"dds/", {"ipc/dds/"}},          {"CLI/", {"daemon/", "tools/"}},
+    {"nanoflann", {"core/map/"}},    {"pcap", {"run/recording/"}},
+    {"toml++", {"config/", "run/"}}, {"systemd/", {"daemon/"}},
+    {"httplib.h", {"tools/web/"}},   {"openssl/", {"config/checksum", "ipc/keys/"}},
 };
 
 /// Standard headers that only code with threads, I/O or a clock needs: none of them in core.

@@ -118,7 +118,8 @@ TEST_CASE("a wide ramp is no floor, whether the robot drives or stands on it") {
   CHECK_FALSE(drive.stand(20));
 }
 
-TEST_CASE("where the storeys are known, a height that is a multiple of them is a floor before its ground is seen") {
+TEST_CASE(
+    "where the storeys are known, a height that is a multiple of them is a floor before its ground is seen") {
   Drive drive(stairwell());
   drive.found({0.0, 3.0});
   drive.ride_to(4.6);
