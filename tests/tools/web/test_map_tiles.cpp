@@ -100,13 +100,13 @@ TEST_CASE("a viewer gets every point within half a millimetre, on both sides of 
   viewer.update(map);
   const auto points = viewer.points();
   REQUIRE(points.size() == places.size());
-  for (const auto& [x, y, z] : places) {
+  for (const std::array<double, 3>& place : places) {
     const bool found = std::any_of(points.begin(), points.end(), [&](const Viewer::Point& point) {
-      // A step is 0.25 mm; the float of the step is exact, since 16.384 m are 65536 steps.
-      return std::abs(point.x_m - x) < 5e-4 && std::abs(point.y_m - y) < 5e-4 &&
-             std::abs(point.z_m - z) < 5e-4 && point.intensity == 200;
+      // A step is 0.25 mm, and its float is right to 1e-7 of itself.
+      return std::abs(point.x_m - place[0]) < 5e-4 && std::abs(point.y_m - place[1]) < 5e-4 &&
+             std::abs(point.z_m - place[2]) < 5e-4 && point.intensity == 200;
     });
-    CHECK_MESSAGE(found, x << " " << y << " " << z);
+    CHECK_MESSAGE(found, place[0] << " " << place[1] << " " << place[2]);
   }
 }
 
