@@ -175,8 +175,6 @@ void LockStep::insert_scan() {
 void LockStep::find_place() {
   const PlaceOrder order = place_.add_scan(registered_);
   if (order.give_up) registration_.give_up_place();
-  registration_.doubt_place(order.doubtful);
-  if (order.doubtful) registered_.pose.for_map = false;
   if (!order.T_map_odom) return;
   const PlaceHint hint = order.hint_at(registered_.pose);
   map_->load_around({hint.p_map_m.x(), hint.p_map_m.y(), hint.z_m});

@@ -107,9 +107,7 @@ PlaceOrder PlaceStage::add_scan(const RegisteredScan& scan) {
     watch(pose);
     if (!carried_) return {};
   }
-  PlaceOrder order = continue_search(scan);
-  order.doubtful = is_doubtful(pose);
-  return order;
+  return continue_search(scan);
 }
 
 PlaceOrder PlaceStage::continue_search(const RegisteredScan& scan) {
@@ -124,7 +122,7 @@ PlaceOrder PlaceStage::continue_search(const RegisteredScan& scan) {
   }
   if (began_ns_ != 0 && sees && is_due(pose.stamp_ns)) search(pose);
   if (began_ns_ == 0) return {};
-  PlaceOrder order{std::exchange(found_, {})};
+  PlaceOrder order{std::exchange(found_, {}), false};
   if (!order.T_map_odom && told_ns_ == 0 && is_over()) {
     order.give_up = true;
     status_.given_up += status_.state == PlaceState::kGivenUp ? 0 : 1;

@@ -26,8 +26,6 @@ struct PlaceOrder {
   /// Where the odometry's frame is in the map: a place was found, and is to be tried.
   std::optional<Eigen::Isometry3d> T_map_odom;
   bool give_up = false;  ///< the place is none of the map
-  /// The robot may have been carried away: the map takes no scan.
-  bool doubtful = false;
 
   /// The place found as a hint, at the time of `pose`. Requires T_map_odom.
   [[nodiscard]] PlaceHint hint_at(const PoseEstimate& pose) const;
@@ -73,7 +71,6 @@ class PlaceStage {
   void take(const ColdStartResult& result, std::int64_t stamp_ns);
   void tell(const Eigen::Isometry3d& T_map_odom, std::int64_t stamp_ns);
   [[nodiscard]] bool is_at_found_place(const PoseEstimate& pose) const;
-  [[nodiscard]] bool is_doubtful(const PoseEstimate& pose) const;
   void take_carried(const ColdStartResult& result, const PoseEstimate& pose);
   void describe(const ColdStartResult& result);
 

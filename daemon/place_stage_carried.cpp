@@ -42,12 +42,6 @@ bool PlaceStage::is_at_found_place(const PoseEstimate& pose) const {
   return seen_at_ && are_near(*seen_at_ * upright(odometry_of(pose)), upright(pose.T_map_base), kPresentM);
 }
 
-// Until the first look, and from there on where it has found another place: a robot that has come to what the map does not
-// have, out of an elevator, has to map it.
-bool PlaceStage::is_doubtful(const PoseEstimate& pose) const {
-  return status_.carried && (looks_ == 0 || seen_at_.has_value()) && !is_at_found_place(pose);
-}
-
 // Two looks, a metre apart, must find one and the same other place, in a map that knows nothing of where the robot believes
 // to be. If that fits as well, something else has changed.
 void PlaceStage::take_carried(const ColdStartResult& result, const PoseEstimate& pose) {

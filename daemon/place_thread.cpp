@@ -61,7 +61,6 @@ void PlaceThread::drain() noexcept {
 
 void PlaceThread::follow(const PlaceOrder& order, const PoseEstimate& pose) {
   if (order.give_up) registration_.give_up_place();
-  registration_.doubt_place(order.doubtful);
   if (order.T_map_odom) {
     const PlaceHint hint = order.hint_at(pose);
     looked_before_ = map_.looked();

@@ -31,7 +31,6 @@ void RegistrationStage::add_prior(const Prior& prior) {
 void RegistrationStage::register_scan(const Scan& scan, const MapSnapshot& map, RegisteredScan& out) {
   const CpuTimer timer;
   registration_->register_scan(scan, map, out);
-  if (place_doubtful_) out.pose.for_map = false;
   out.pose.registration_ms = timer.elapsed_ms();
   silence_.scanned(out.pose.stamp_ns);
   if (silence_.in_order(out.pose.stamp_ns)) {

@@ -44,8 +44,6 @@ class RegistrationStage {
   void begin_new_frame();
   void wait_for_place(bool waits) { registration_->wait_for_place(waits); }
   void give_up_place() { registration_->give_up_place(); }
-  /// From the next scan on: the robot may be elsewhere than it seems, and the map takes no scan.
-  void doubt_place(bool doubtful) { place_doubtful_ = doubtful; }
   void stay_in(const KnownPlace& place) { registration_->stay_in(place); }
   void hint(const PlaceHint& hint) { registration_->hint(hint); }
   /// A place found by the search of the whole map: the hint of a person goes first.
@@ -80,7 +78,6 @@ class RegistrationStage {
   std::unique_ptr<Scan> without_points_;  ///< stands in for a dropped scan
   Prior newest_prior_;
   SilenceBridge silence_;
-  bool place_doubtful_ = false;
 };
 
 }  // namespace isobar

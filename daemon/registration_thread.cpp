@@ -118,7 +118,6 @@ void RegistrationThread::obey() noexcept {
 void RegistrationThread::take_hints() noexcept {
   places_.take([this](const PlaceHint& hint) { stage_.offer_place(hint); });
   if (place_given_up_.exchange(false, std::memory_order_relaxed)) stage_.give_up_place();
-  stage_.doubt_place(place_doubtful_.load(std::memory_order_relaxed));
   while (const auto hint = hints_.take()) {
     if (ipc::implausibility(*hint) != nullptr) {
       ++draft_status_.bad_hints;

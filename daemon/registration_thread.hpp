@@ -95,7 +95,6 @@ class RegistrationThread final : private EstimateSink {
   /// The search of the place has found it, or gives it up. The thread that searches.
   void offer_place(const PlaceHint& hint) { places_.offer(std::make_unique<PlaceHint>(hint)); }
   void give_up_place() noexcept { place_given_up_.store(true, std::memory_order_relaxed); }
-  void doubt_place(bool doubtful) noexcept { place_doubtful_.store(doubtful, std::memory_order_relaxed); }
   /// Begins a new map frame with the next scan; the old map and trajectory are kept. Any thread.
   void begin_new_frame(NewFrameReason reason) noexcept {
     new_frame_.store(reason, std::memory_order_relaxed);
@@ -150,7 +149,6 @@ class RegistrationThread final : private EstimateSink {
   Handover<Change> changes_;
   Handover<PlaceHint> places_;
   std::atomic<bool> place_given_up_{false};
-  std::atomic<bool> place_doubtful_{false};
   std::atomic<NewFrameReason> new_frame_{NewFrameReason::kNone};  ///< asked for; kNone: not
   std::uint64_t warm_up_faults_ = 0;
   RegistrationStatus draft_status_;

@@ -253,38 +253,16 @@ TEST_CASE("a robot that stands and at once sees another place is found there, af
   CHECK_FALSE(robot.stand_at(T_before, 3.0).T_map_odom.has_value());
   CHECK(robot.reads() == 0);
   robot.believe(T_before, 0.3);
-  CHECK(robot.scan_at(T_after).doubtful);
-  robot.believe(T_before, 0.8);  // as the registration has it
+  robot.stand_at(T_after, 0.1);
+  robot.believe(T_before, 0.8);  // its own scans are in the map since
   CHECK_FALSE(robot.stand_at(T_after, 5.0).T_map_odom.has_value());
   CHECK(robot.status().carried);
-  CHECK(robot.scan_at(T_after).doubtful);
   CHECK(robot.reads() == 1);
   const Eigen::Isometry3d T_on = T_after * level_pose_at(1.2, 0.0, 0.0, 0.0);
   robot.believe(T_before * level_pose_at(1.2, 0.0, 0.0, 0.0), 0.8);
   const PlaceOrder order = robot.stand_at(T_on, 2.0);
   REQUIRE(order.T_map_odom.has_value());
   check_hint(order.hint_at(robot.pose()), T_on);
-  robot.believe(T_on, 0.9);
-  CHECK_FALSE(robot.scan_at(T_on).doubtful);
-}
-
-TEST_CASE("a robot that has come to what the map does not have goes on mapping") {
-  Building world = office();
-  add_divided_room(world, 40.0, 0.8);
-  const Eigen::Isometry3d T_before = level_pose_at(1.1, -0.7, 0.0, 40.0);
-  const Eigen::Isometry3d T_after = level_pose_at(42.0, 2.0, 0.0, -75.0);
-  const Building in_map = office();
-  Robot robot(in_map, world);
-  robot.know_place();
-  robot.stand_on_wheels(true);
-  robot.believe(T_before, 0.9);
-  robot.stand_at(T_before, 3.0);
-  robot.believe(T_before, 0.3);
-  CHECK(robot.scan_at(T_after).doubtful);
-  robot.stand_at(T_after, 0.5);
-  CHECK(robot.status().searches == 1);
-  CHECK(robot.status().carried);
-  CHECK_FALSE(robot.scan_at(T_after).doubtful);
 }
 
 TEST_CASE("a robot that drives, or before which a door opens, is not taken to be carried away") {
@@ -304,7 +282,6 @@ TEST_CASE("a robot that drives, or before which a door opens, is not taken to be
     CHECK_FALSE(robot.stand_at(T, 2.0).T_map_odom.has_value());
     CHECK_FALSE(robot.status().carried);
     CHECK(robot.status().searches == (stands ? 1 : 0));
-    CHECK_FALSE(robot.scan_at(T).doubtful);
   }
 }
 
