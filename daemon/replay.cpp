@@ -233,6 +233,11 @@ double feed(recording::RecordingReader& reader, const UsableSensors& usable, Loc
   return last_ns > first_ns ? seconds_between(first_ns, last_ns) : 0.0;
 }
 
+void describe_clouds(const LockStep& pipeline, ReplaySummary& summary) {
+  const std::string clouds = pipeline.clouds().sentence();
+  if (!clouds.empty()) summary.warnings.push_back("lidar clouds: " + clouds);
+}
+
 }  // namespace
 
 ReplaySummary replay(const std::filesystem::path& recording, const Config& config,
@@ -277,9 +282,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   add_contradictions(contradictions, summary.counts);
   warn_of_scans_without(manifest, used.imu.present(), sink, summary);
   describe_place(pipeline, sink, summary);
-  if (const std::string clouds = pipeline.clouds().sentence(); !clouds.empty()) {
-    summary.warnings.push_back("lidar clouds: " + clouds);
-  }
+  describe_clouds(pipeline, summary);
   warn_of_two_lidars(pipeline, used.lidar.port, summary);
   warn_of_unusable_sensors(manifest, used, pipeline, summary);
   output.write_counters(summary.counts);

@@ -29,9 +29,9 @@ bool FrameTree::holds(const std::string& frame) const {
                                                 [&](const auto& entry) { return entry.second.name == name; });
 }
 
-std::vector<std::pair<std::string, Eigen::Isometry3d>> FrameTree::ancestors(std::string frame) const {
+std::vector<std::pair<std::string, Eigen::Isometry3d>> FrameTree::ancestors(const std::string& start) const {
   std::vector<std::pair<std::string, Eigen::Isometry3d>> chain{
-      {plain_frame(frame), Eigen::Isometry3d::Identity()}};
+      {plain_frame(start), Eigen::Isometry3d::Identity()}};
   while (chain.size() < kLongestChain) {
     const auto parent = parents_.find(chain.back().first);
     if (parent == parents_.end()) break;

@@ -27,7 +27,8 @@ class FrameTree {
     Eigen::Isometry3d T_parent_child;
   };
   /// Transforms of a frame in itself and its ancestors, nearest first.
-  [[nodiscard]] std::vector<std::pair<std::string, Eigen::Isometry3d>> ancestors(std::string frame) const;
+  [[nodiscard]] std::vector<std::pair<std::string, Eigen::Isometry3d>> ancestors(
+      const std::string& start) const;
 
   std::map<std::string, Parent> parents_;  // by child
 };

@@ -31,7 +31,7 @@ Eigen::Quaterniond read_quaternion(MessageCursor& cursor) {
 }
 
 /// False for what is no rotation; a quaternion of few decimals is made one.
-bool set_pose(const Eigen::Vector3d& p, Eigen::Quaterniond q, Eigen::Isometry3d& pose) {
+bool set_pose(const Eigen::Vector3d& p, const Eigen::Quaterniond& q, Eigen::Isometry3d& pose) {
   constexpr double kMostOff = 0.1;
   if (!p.allFinite() || !(std::abs(q.norm() - 1.0) < kMostOff)) return false;
   pose = Eigen::Translation3d(p) * q.normalized();

@@ -114,6 +114,7 @@ std::string message_definition(std::string_view type) {
 
 std::vector<std::string> message_types() {
   std::vector<std::string> types;
+  types.reserve(kDefinitions.size());
   for (const Definition& definition : kDefinitions) types.emplace_back(definition.type);
   return types;
 }

@@ -98,8 +98,8 @@ const PortFindings& choose_port(const ImportRequest& request, const std::vector<
     if (port.model.empty()) continue;
     lidars += (lidars.empty() ? "" : ", ") + number + " (" + port.model + ")";
     if (chosen != nullptr && request.lidar.empty()) {
-      throw UsageError("--lidar: there are several lidars, on UDP ports " + lidars + "; say --lidar " +
-                       number);
+      lidars.append("; say --lidar ").append(number);
+      throw UsageError("--lidar: there are several lidars, on UDP ports " + lidars);
     }
     chosen = &port;
   }

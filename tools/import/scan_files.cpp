@@ -77,15 +77,13 @@ std::vector<std::int64_t> read_times(const fs::path& file) {
     if (text.empty()) continue;
     std::int64_t stamp_ns = 0;
     double seconds = 0.0;
-    if (text::parse_seconds(text, stamp_ns)) {
-      times.push_back(stamp_ns);
-    } else if (text::parse_number(text, seconds) && seconds >= 0.0 && seconds < 4e9) {
-      times.push_back(std::llround(seconds * 1e9));  // KITTI writes 1.036224e-01
-    } else if (recording::parse_date(text, stamp_ns)) {
-      times.push_back(stamp_ns);
-    } else {
+    const bool is_seconds = text::parse_seconds(text, stamp_ns);
+    if (!is_seconds && text::parse_number(text, seconds) && seconds >= 0.0 && seconds < 4e9) {
+      stamp_ns = std::llround(seconds * 1e9);  // KITTI writes 1.036224e-01
+    } else if (!is_seconds && !recording::parse_date(text, stamp_ns)) {
       throw DataError(file.string() + ":" + std::to_string(times.size() + 1) + ": is no time");
     }
+    times.push_back(stamp_ns);
   }
   return times;
 }

@@ -62,7 +62,7 @@ UnitGuess guess_gyro_unit(const std::string& chosen, std::vector<double> rates, 
   if (const KnownUnit* unit = find_chosen(chosen, kUnits, "--gyro-unit")) return {unit->scale, unit->name};
   if (rates.empty()) return {1.0, "rad/s"};
   const double fastest = *std::max_element(rates.begin(), rates.end());
-  const UnitGuess degrees{kRadPerDeg, "deg/s, converted"};
+  UnitGuess degrees{kRadPerDeg, "deg/s, converted"};
   if (fastest > std::sqrt(3.0) * kPlausibleGyroRadS.highest) return degrees;
   // The IMU's own attitude turns as its rates say: 57 times less where they are in degrees.
   constexpr double kLeastTurnRad = 0.3;
