@@ -106,9 +106,8 @@ void warn_of_missing_sensors(const recording::Manifest& manifest, const Config& 
 std::vector<files::RunCount> collect_counts(const recording::RecordingReader& reader,
                                             const LockStep& pipeline) {
   std::vector<files::RunCount> counts;
-  for (const recording::Count& count : reader.counts()) {
+  for (const recording::Count& count : reader.counts())
     counts.push_back({count.name, count.count, count.first_message});
-  }
   run_counts::append(counts,
                      counts_of(pipeline.assembler().counters(), pipeline.assembler().decoder().mismatch()));
   run_counts::append(counts, pipeline.clouds().counts());
@@ -233,6 +232,13 @@ double feed(recording::RecordingReader& reader, const UsableSensors& usable, Loc
   return last_ns > first_ns ? seconds_between(first_ns, last_ns) : 0.0;
 }
 
+void describe_output(const files::RunOutput& output, ReplaySummary& summary) {
+  summary.poses = output.poses();
+  summary.registered = output.registered();
+  summary.from_prior = output.from_prior();
+  summary.map_points = output.map_points();
+}
+
 void describe_clouds(const LockStep& pipeline, ReplaySummary& summary) {
   const std::string clouds = pipeline.clouds().sentence();
   if (!clouds.empty()) summary.warnings.push_back("lidar clouds: " + clouds);
@@ -272,10 +278,7 @@ ReplaySummary replay(const std::filesystem::path& recording, const Config& confi
   const std::vector<files::RunCount> map_counts = counts_of_map(maps.store(), output);
 
   summary.scans = pipeline.scans();
-  summary.poses = output.poses();
-  summary.registered = output.registered();
-  summary.from_prior = output.from_prior();
-  summary.map_points = output.map_points();
+  describe_output(output, summary);
   summary.counts = collect_counts(reader, pipeline);
   run_counts::append(summary.counts, map_counts);
   describe_loops(pipeline.loops(), summary);
