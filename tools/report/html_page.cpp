@@ -35,7 +35,7 @@ figcaption { font-size: 14px; color: var(--muted); margin-top: 4px; max-width: 9
 .pair > div { flex: 1 1 100%; }
 .pair > .half { flex: 1 1 480px; }
 .pair h3 { font-size: 15px; margin: 10px 0 4px; }
-.scroll { overflow-x: auto; }
+.scroll, pre { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 14.5px; font-variant-numeric: tabular-nums; margin-top: 12px; }
 th, td { padding: 5px 14px 5px 0; text-align: right; border-bottom: 1px solid var(--soft-line); white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; }

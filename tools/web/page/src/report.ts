@@ -80,7 +80,7 @@ function map_of(data: ReportData, target: HTMLElement): void {
   const slicer = new FloorSlicer();
   slicer.set_floors(data.floors);
   view.on_range = (range_m) => slicer.set_range(range_m);
-  slicer.on_slice = (lowest_m, highest_m) => view.set_slice(lowest_m, highest_m);
+  slicer.on_slice = (slice_m) => view.set_slice(slice_m);
   const chips = indices.map((index) => button(data.methods[index].name, 'chip', () => choose(index)));
   const choose = (chosen: number) => {
     const text = document.getElementById(`isobar-map-${chosen}`)?.textContent ?? '';
