@@ -24,16 +24,9 @@ struct ExportOptions {
   bool mcap = false;
 };
 
-/// RUN.mcap beside the folder RUN.
-std::filesystem::path file_beside(const std::filesystem::path& run) {
-  std::filesystem::path folder = std::filesystem::absolute(run).lexically_normal();
-  if (!folder.has_filename()) folder = folder.parent_path();
-  return folder.string() + ".mcap";
-}
-
 void run_export(const ExportOptions& options) {
   if (!options.mcap) throw UsageError("--mcap: missing; it is the format that is written");
-  const std::filesystem::path out = options.out.empty() ? file_beside(options.run) : options.out;
+  const std::filesystem::path out = options.out.empty() ? beside(options.run, ".mcap") : options.out;
   Progress progress("exporting");
   const mcap::ExportedRun done =
       mcap::export_run({options.run, options.recording, out, version_line("isobar")},

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
 
 namespace isobar::tools {
 
@@ -18,6 +17,12 @@ CLI::Validator written_as(const std::vector<std::string>& endings) {
     return file + ": is written as " + all + ", and its name must end so";
   };
   return {check, "", ""};
+}
+
+std::filesystem::path beside(const std::filesystem::path& folder, const std::string& ending) {
+  std::filesystem::path path = std::filesystem::absolute(folder).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();
+  return path.string() + ending;
 }
 
 }  // namespace isobar::tools

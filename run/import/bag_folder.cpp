@@ -9,6 +9,7 @@
 #include "run/import/file_bytes.hpp"
 #include "run/import/mcap_stream.hpp"
 #include "run/import/sqlite_stream.hpp"
+#include "run/mcap/mcap_format.hpp"
 #include "run/text/number_text.hpp"
 #include "run/text/small_file.hpp"
 
@@ -105,7 +106,7 @@ void BagFolder::open_next() {
   const std::filesystem::path file = folder_ / metadata_.files[opened_++];
   channel_of_file_.clear();
   try {
-    if (head_of(file, kMcapMagic.size()) == kMcapMagic) {
+    if (head_of(file, mcap::kMagic.size()) == mcap::kMagic) {
       file_ = std::make_unique<McapStream>(file);
     } else {
       file_ = std::make_unique<SqliteStream>(

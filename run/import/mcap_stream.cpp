@@ -7,18 +7,13 @@
 
 #include "core/errors.hpp"
 #include "run/import/decompress.hpp"
+#include "run/mcap/mcap_format.hpp"
 
 namespace isobar::imports {
 namespace {
 
-enum Opcode : std::uint8_t {
-  kFooter = 0x02,
-  kSchema = 0x03,
-  kChannel = 0x04,
-  kMessage = 0x05,
-  kChunk = 0x06,
-  kDataEnd = 0x0f,
-};
+namespace opcode = mcap::opcode;
+
 constexpr std::size_t kRecordHeadBytes = 9;
 /// Most topics that are kept apart; damaged files could name any number.
 constexpr std::size_t kMostMcapChannels = 65'536;
@@ -31,8 +26,8 @@ Encoding encoding_of(std::string_view name) {
 }  // namespace
 
 McapStream::McapStream(const std::filesystem::path& file) : file_(file) {
-  std::array<std::uint8_t, kMcapMagic.size()> magic{};
-  if (!file_.read(magic) || std::memcmp(magic.data(), kMcapMagic.data(), magic.size()) != 0) {
+  std::array<std::uint8_t, mcap::kMagic.size()> magic{};
+  if (!file_.read(magic) || std::memcmp(magic.data(), mcap::kMagic.data(), magic.size()) != 0) {
     throw DataError(file_.name() + ": is no MCAP file of version 0");
   }
 }
@@ -65,12 +60,12 @@ bool McapStream::next_in_file(Record& record) {
   record.opcode = head[0];
   std::uint64_t length = 0;
   std::memcpy(&length, &head[1], sizeof(length));
-  if (record.opcode == kDataEnd || record.opcode == kFooter) {
+  if (record.opcode == opcode::kDataEnd || record.opcode == opcode::kFooter) {
     ended_ = true;
     return false;
   }
   // What is no data is passed over: attachments may be long.
-  const bool is_read = record.opcode >= kSchema && record.opcode <= kChunk;
+  const bool is_read = record.opcode >= opcode::kSchema && record.opcode <= opcode::kChunk;
   if (is_read ? !file_.read(length, content_) : !file_.skip(length)) {
     ended_ = true;
     note(record.at, length > file_.left() ? "a record ends beyond the file, which is cut or damaged there"
@@ -121,16 +116,16 @@ void McapStream::open_chunk(const Record& record) {
 bool McapStream::take(const Record& record, Message& message) {
   ByteCursor cursor(record.content);
   switch (record.opcode) {
-    case kSchema:
+    case opcode::kSchema:
       add_schema(cursor);
       return false;
-    case kChannel:
+    case opcode::kChannel:
       add_channel(cursor);
       return false;
-    case kChunk:
+    case opcode::kChunk:
       open_chunk(record);
       return false;
-    case kMessage:
+    case opcode::kMessage:
       break;
     default:
       return false;

@@ -14,8 +14,6 @@
 
 namespace isobar::imports {
 
-inline constexpr std::string_view kMcapMagic("\x89MCAP0\r\n", 8);
-
 /// Reader of an MCAP file (mcap.dev/spec, major version 0): chunks none, lz4 and zstd, or without chunks; the summary
 /// behind the data is not needed.
 class McapStream : public MessageStream {

@@ -8,6 +8,7 @@
 #include "run/import/message_stream.hpp"
 #include "run/import/rosbag1_stream.hpp"
 #include "run/import/sqlite_stream.hpp"
+#include "run/mcap/mcap_format.hpp"
 
 namespace isobar::imports {
 
@@ -20,7 +21,7 @@ bool holds_messages(const std::filesystem::path& source) {
   std::error_code error;
   if (std::filesystem::is_directory(source, error)) return !find_bag(source).files.empty();
   const std::string head = head_of(source, kSqliteMagic.size());
-  return head == kSqliteMagic || head.starts_with(kMcapMagic) || head.starts_with(kRosbag1Magic);
+  return head == kSqliteMagic || head.starts_with(mcap::kMagic) || head.starts_with(kRosbag1Magic);
 }
 
 std::unique_ptr<MessageStream> open_messages(const std::filesystem::path& source) {
@@ -33,7 +34,7 @@ std::unique_ptr<MessageStream> open_messages(const std::filesystem::path& source
     return std::make_unique<SqliteStream>(
         source, metadata.compression_mode == "message" ? metadata.compression_format : std::string());
   }
-  if (head.starts_with(kMcapMagic)) return std::make_unique<McapStream>(source);
+  if (head.starts_with(mcap::kMagic)) return std::make_unique<McapStream>(source);
   if (head.starts_with("#ROSBAG")) return std::make_unique<Rosbag1Stream>(source);
   throw DataError(source.string() + ": is no rosbag1, rosbag2 or MCAP");
 }

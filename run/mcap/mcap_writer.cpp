@@ -5,34 +5,24 @@
 #include <zstd.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include "core/errors.hpp"
+#include "run/mcap/mcap_format.hpp"
 #include "run/mcap/message_definitions.hpp"
 
 namespace isobar::mcap {
 
 namespace {
 
-constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
 constexpr std::string_view kProfile = "ros2";
 constexpr std::string_view kCompression = "zstd";
 // Faster than a robot's lidar fills it on one slow core, and within some per cent of the best ratio on clouds.
 constexpr int kZstdLevel = 1;
 
-// Opcodes of MCAP's records.
-constexpr std::uint8_t kHeader = 0x01;
-constexpr std::uint8_t kFooter = 0x02;
-constexpr std::uint8_t kSchema = 0x03;
-constexpr std::uint8_t kChannel = 0x04;
-constexpr std::uint8_t kMessage = 0x05;
-constexpr std::uint8_t kChunk = 0x06;
-constexpr std::uint8_t kMessageIndex = 0x07;
-constexpr std::uint8_t kChunkIndex = 0x08;
-constexpr std::uint8_t kStatistics = 0x0B;
-constexpr std::uint8_t kSummaryOffset = 0x0E;
-constexpr std::uint8_t kDataEnd = 0x0F;
+std::span<const std::uint8_t> magic_bytes() {
+  return {reinterpret_cast<const std::uint8_t*>(kMagic.data()), kMagic.size()};
+}
 
 void put_bytes(std::span<const std::uint8_t> bytes, Bytes& out) {
   out.insert(out.end(), bytes.begin(), bytes.end());
@@ -59,11 +49,11 @@ Bytes compressed(const Bytes& plain) {
 }  // namespace
 
 McapWriter::McapWriter(const std::filesystem::path& file, std::string_view library) : file_(file) {
-  append(kMagic);
+  append(magic_bytes());
   Bytes header;
   put_text(kProfile, header);
   put_text(library, header);
-  append_record(kHeader, header);
+  append_record(opcode::kHeader, header);
 }
 
 void McapWriter::append(std::span<const std::uint8_t> bytes) {
@@ -86,7 +76,7 @@ std::uint16_t McapWriter::schema_of(const std::string& type) {
   put_text(type, schema);
   put_text("ros2msg", schema);
   put_text(message_definition(type), schema);
-  put_record(kSchema, schema, chunk_);
+  put_record(opcode::kSchema, schema, chunk_);
   schemas_.push_back(std::move(schema));
   schema_numbers_[type] = number;
   return number;
@@ -101,7 +91,7 @@ std::uint16_t McapWriter::add_channel(const std::string& topic, const std::strin
   put_text(topic, channel.record);
   put_text("cdr", channel.record);
   put(std::uint32_t{0}, channel.record);  // no metadata
-  put_record(kChannel, channel.record, chunk_);
+  put_record(opcode::kChannel, channel.record, chunk_);
   channels_.push_back(std::move(channel));
   return number;
 }
@@ -109,7 +99,7 @@ std::uint16_t McapWriter::add_channel(const std::string& topic, const std::strin
 void McapWriter::write(std::uint16_t channel, std::int64_t stamp_ns, std::span<const std::uint8_t> cdr) {
   const auto time_ns = static_cast<std::uint64_t>(std::max<std::int64_t>(stamp_ns, 0));
   index_[channel].push_back({time_ns, chunk_.size()});
-  put(kMessage, chunk_);
+  put(opcode::kMessage, chunk_);
   put(static_cast<std::uint64_t>(sizeof channel + sizeof sequence_ + 2 * sizeof time_ns + cdr.size()),
       chunk_);
   put(channel, chunk_);
@@ -137,7 +127,7 @@ void McapWriter::flush() {
   put(static_cast<std::uint64_t>(packed.size()), content);
   put_bytes(packed, content);
   ChunkEntry entry{chunk_first_ns_, chunk_last_ns_, position_, 0, {}, 0, packed.size(), chunk_.size()};
-  append_record(kChunk, content);
+  append_record(opcode::kChunk, content);
   entry.length = position_ - entry.start;
   write_indexes(entry);
   chunks_.push_back(std::move(entry));
@@ -156,7 +146,7 @@ void McapWriter::write_indexes(ChunkEntry& entry) {
       put(message.stamp_ns, content);
       put(message.offset, content);
     }
-    append_record(kMessageIndex, content);
+    append_record(opcode::kMessageIndex, content);
   }
   entry.index_length = position_ - begin;
 }
@@ -200,24 +190,24 @@ void McapWriter::write_summary() {
     put(opcode, content);
     put(begin, content);
     put(length, content);
-    put_record(kSummaryOffset, content, offsets);
+    put_record(opcode::kSummaryOffset, content, offsets);
   };
-  group(kSchema, [&] {
-    for (const Bytes& schema : schemas_) put_record(kSchema, schema, summary);
+  group(opcode::kSchema, [&] {
+    for (const Bytes& schema : schemas_) put_record(opcode::kSchema, schema, summary);
   });
-  group(kChannel, [&] {
-    for (const Channel& channel : channels_) put_record(kChannel, channel.record, summary);
+  group(opcode::kChannel, [&] {
+    for (const Channel& channel : channels_) put_record(opcode::kChannel, channel.record, summary);
   });
-  group(kStatistics, [&] { put_record(kStatistics, statistics(), summary); });
-  group(kChunkIndex, [&] {
-    for (const ChunkEntry& chunk : chunks_) put_record(kChunkIndex, chunk_index(chunk), summary);
+  group(opcode::kStatistics, [&] { put_record(opcode::kStatistics, statistics(), summary); });
+  group(opcode::kChunkIndex, [&] {
+    for (const ChunkEntry& chunk : chunks_) put_record(opcode::kChunkIndex, chunk_index(chunk), summary);
   });
   Bytes footer;
   put(start, footer);
   put(start + summary.size(), footer);
   put_bytes(offsets, summary);
   // The checksum covers the summary and the footer up to the checksum itself.
-  put(kFooter, summary);
+  put(opcode::kFooter, summary);
   put(static_cast<std::uint64_t>(footer.size() + sizeof(std::uint32_t)), summary);
   put_bytes(footer, summary);
   put(crc_of(summary), summary);
@@ -248,9 +238,9 @@ void McapWriter::close() {
   flush();
   Bytes end;
   put(std::uint32_t{0}, end);  // no checksum of the data: each chunk has its own
-  append_record(kDataEnd, end);
+  append_record(opcode::kDataEnd, end);
   write_summary();
-  append(kMagic);
+  append(magic_bytes());
   file_.close();
 }
 

@@ -15,6 +15,7 @@
 #include "run/import/point_text.hpp"
 #include "run/import/ros_messages.hpp"
 #include "run/import/rosbag1_stream.hpp"
+#include "run/mcap/mcap_format.hpp"
 
 namespace {
 
@@ -58,7 +59,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size < 2) return 0;
   static const int memory = memfd_create("import", MFD_CLOEXEC);
   const std::string file = "/proc/self/fd/" + std::to_string(memory);
-  const bool is_container = data[0] == static_cast<std::uint8_t>(kMcapMagic[0]) || data[0] == '#';
+  const bool is_container = data[0] == static_cast<std::uint8_t>(isobar::mcap::kMagic[0]) || data[0] == '#';
   const std::size_t skip = is_container ? 0 : 1;
   if (ftruncate(memory, 0) != 0 ||
       pwrite(memory, data + skip, size - skip, 0) != static_cast<ssize_t>(size - skip)) {

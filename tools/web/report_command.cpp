@@ -29,13 +29,6 @@ struct ReportOptions {
   std::filesystem::path out;
 };
 
-/// REPORT.html beside the folder.
-std::filesystem::path file_beside(const std::filesystem::path& folder) {
-  std::filesystem::path path = std::filesystem::absolute(folder).lexically_normal();
-  if (!path.has_filename()) path = path.parent_path();
-  return path.string() + ".html";
-}
-
 std::string page_of(const web::FileView& view, const web::MapTiles& map, const web::InlineParts& parts) {
   std::string html =
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -64,7 +57,8 @@ void run_report(const ReportOptions& options) {
   progress.finish();
   map.thin_to(kMostMapPoints);
   std::printf("%s\n", view.summary.c_str());
-  write_output(options.out.empty() ? file_beside(options.folder) : options.out, page_of(view, map, *parts));
+  write_output(options.out.empty() ? beside(options.folder, ".html") : options.out,
+               page_of(view, map, *parts));
 }
 
 }  // namespace
