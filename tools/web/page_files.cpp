@@ -6,15 +6,17 @@
 #include "tools/web/inline_text.hpp"
 
 #if ISOBAR_WITH_PAGE
-// Begin and end of each file, see embedded_page.S.in.
+// Begin and end of each file, see embedded_page.S.in: names of the assembler, arrays of unknown length.
+// NOLINTBEGIN(modernize-avoid-c-arrays, readability-identifier-naming)
 extern "C" {
-extern const char isobar_page_html[], isobar_page_html_end[];              // NOLINT(modernize-avoid-c-arrays)
-extern const char isobar_page_js[], isobar_page_js_end[];                  // NOLINT(modernize-avoid-c-arrays)
-extern const char isobar_page_css[], isobar_page_css_end[];                // NOLINT(modernize-avoid-c-arrays)
-extern const char isobar_page_icon[], isobar_page_icon_end[];              // NOLINT(modernize-avoid-c-arrays)
-extern const char isobar_page_report_js[], isobar_page_report_js_end[];    // NOLINT(modernize-avoid-c-arrays)
-extern const char isobar_page_report_css[], isobar_page_report_css_end[];  // NOLINT(modernize-avoid-c-arrays)
+extern const char isobar_page_html[], isobar_page_html_end[];
+extern const char isobar_page_js[], isobar_page_js_end[];
+extern const char isobar_page_css[], isobar_page_css_end[];
+extern const char isobar_page_icon[], isobar_page_icon_end[];
+extern const char isobar_page_report_js[], isobar_page_report_js_end[];
+extern const char isobar_page_report_css[], isobar_page_report_css_end[];
 }
+// NOLINTEND(modernize-avoid-c-arrays, readability-identifier-naming)
 #endif
 
 namespace isobar::web {

@@ -26,7 +26,7 @@ std::string source_of(const std::string& key, const std::string& value, bool is_
   if (from != nullptr) {
     const auto origin = from->origins.find(key);
     if (origin != from->origins.end()) {
-      const std::string place = origin->second.file + ":" + std::to_string(origin->second.line);
+      std::string place = origin->second.file + ":" + std::to_string(origin->second.line);
       if (in_files.at(key) == value) return place;
       return place + " says " + in_files.at(key) +
              ": replaced on the command line, or changed since the start";

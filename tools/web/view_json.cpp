@@ -26,7 +26,8 @@ Json rounded(double value, int decimals) {
 
 double seconds_after(std::int64_t stamp_ns, std::int64_t origin_ns) {
   constexpr std::int64_t kUnitNs = 100'000;
-  return static_cast<double>((stamp_ns - origin_ns) / kUnitNs) * 1e-4;
+  const std::int64_t units = (stamp_ns - origin_ns) / kUnitNs;
+  return static_cast<double>(units) * 1e-4;
 }
 
 Json poses_json(const std::vector<PoseRow>& rows, std::int64_t origin_ns) {

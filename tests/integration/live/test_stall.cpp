@@ -147,15 +147,21 @@ void held_process(const ChildProcess& isobard, Tap& tap) {
   std::this_thread::sleep_for(2s);
   isobard.signal(SIGCONT);
   const std::int64_t resumed_ns = RobotClock::now_ns();
-  tap.gather(2s);
+  tap.gather(3s);
   const Pose* fresh = nullptr;
   for (const Pose& pose : tap.poses) {
     if (fresh == nullptr && pose.estimate.stamp_ns > resumed_ns) fresh = &pose;
   }
   REQUIRE(fresh != nullptr);
-  // Measured: 640 ms under a sanitizer on a loaded machine. Processing twenty waiting scans would take three
-  // times that.
-  CHECK(fresh->received_ns < resumed_ns + 1200 * kMs);
+  // Twenty scans waited. A machine that is too slow to register them all at once drops most of them instead.
+  // Measured under a sanitizer: 5 registered, and 0.6 to 1.3 s until the fresh pose.
+  int registered_late = 0;
+  for (const Pose& pose : tap.poses) {
+    const bool waited = pose.estimate.stamp_ns < resumed_ns;
+    registered_late += waited && pose.estimate.mode == PoseMode::kRegistered ? 1 : 0;
+  }
+  const bool is_fast = fresh->received_ns < resumed_ns + 1000 * kMs;
+  CHECK((is_fast || registered_late <= 10));
   // Most IMU samples of these two seconds are lost: the prior is accurate to a metre, as in test_live.sh.
   check_steady(tap.poses, 1.0);
   CHECK(first_registered(tap.poses, resumed_ns, resumed_ns) != nullptr);
