@@ -202,7 +202,10 @@ TEST_CASE(
   hung_map(isobard, *tap, manager);
 
   ChildProcess play({ISOBAR_PROGRAM, "play", drive().recording});
-  tap->gather(5s);
+  tap->gather(3s);
+  // On a loaded machine the bootstrap drops scans and takes longer.
+  for (int i = 0; i < 8 && first_registered(tap->poses, 0, 0) == nullptr; ++i) tap->gather(1s);
+  tap->gather(1s);
   held_registration(isobard, *tap);
   held_process(isobard, *tap);
   tap.reset();  // an attachment must not outlive isobard
