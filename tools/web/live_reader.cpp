@@ -27,6 +27,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::int64_t kPoseIntervalNs = 95'000'000;
 /// The health report comes once a second; beyond this isobard hangs.
 constexpr std::chrono::seconds kSilence{5};
+/// Answers to an action come within seconds; a hint waits for the next scans.
+constexpr std::chrono::seconds kAnswerPatience{30};
 constexpr std::size_t kMostFloors = 200;
 
 double sqrt_or_unknown(double variance) { return variance > 0.0 ? std::sqrt(variance) : PoseRow::kUnknown; }
@@ -87,6 +89,7 @@ void LiveReader::poll(std::size_t viewers) {
   take_map(viewers);
   take_black_box();
   carry_out_orders();
+  give_up_waiting();
 }
 
 void LiveReader::take_poses() {
@@ -189,6 +192,7 @@ void LiveReader::take_map_piece(const ipc::MapCloud& piece) {
 void LiveReader::carry_out_orders() {
   const auto order = desk_.take();
   if (!order) return;
+  asked_ = Clock::now();
   if (order->kind == Order::Kind::kPoseHint) {
     hint_waits_ = hints_.has_subscribers() && hints_.send(order->hint);
     if (!hint_waits_) tell_action("isobard takes no hint: is this a base station?", true);
@@ -202,6 +206,15 @@ void LiveReader::carry_out_orders() {
     return;
   }
   order_number_ = save.number;
+}
+
+void LiveReader::give_up_waiting() {
+  if ((order_number_ == 0 && !hint_waits_) || Clock::now() - asked_ < kAnswerPatience) return;
+  tell_action(hint_waits_ ? "No answer to the hint yet: it needs scans. See initial pose under Health."
+                          : "No answer from the black box: see its line under Health.",
+              true);
+  order_number_ = 0;
+  hint_waits_ = false;
 }
 
 void LiveReader::take_black_box() {

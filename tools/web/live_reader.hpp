@@ -48,6 +48,8 @@ class LiveReader {
   void take_black_box();
   void follow_hint(const ipc::HealthReport& report);
   void carry_out_orders();
+  /// An answer that does not come is said, too.
+  void give_up_waiting();
   void tell_action(const std::string& text, bool failed);
 
   LiveState& live_;
@@ -79,6 +81,7 @@ class LiveReader {
   std::uint64_t order_number_ = 0;  ///< of the order to the black box that waits for its answer; 0: none
   std::uint64_t hints_given_ = 0;   ///< as the health report counted them before ours
   bool hint_waits_ = false;
+  Clock::time_point asked_{};  ///< of the newest action
 
   std::optional<Clock::time_point> last_report_;
 };

@@ -96,7 +96,7 @@ export class LivePage implements Listener {
   }
 
   on_action(text: string, failed: boolean): void {
-    this.actions?.tell(text, failed);
+    this.actions?.tell_outcome(text, failed);
   }
 
   private empty(): ViewData['poses'] {
