@@ -103,7 +103,8 @@ std::string tile_row(const std::vector<Tile>& tiles) {
 
 std::string html_table(const std::vector<std::string>& head,
                        const std::vector<std::vector<TableCell>>& rows) {
-  std::string html = "<div class=\"scroll\"><table>\n<thead><tr>";
+  std::string html =
+      "<div class=\"scroll\" role=\"region\" aria-label=\"Table\" tabindex=\"0\"><table>\n<thead><tr>";
   for (const std::string& title : head) html += "<th>" + escaped(title) + "</th>";
   html += "</tr></thead>\n<tbody>\n";
   for (const std::vector<TableCell>& row : rows) {

@@ -110,7 +110,10 @@ std::string top_section(const evaluation::EvaluatedRun& run) {
 /// The mounts that the run has found, as its mounts.toml.
 std::string mounts_section(const evaluation::EvaluatedRun& run) {
   const std::string& mounts = main_method(run).mounts;
-  return mounts.empty() ? "" : heading("Mounts found") + "<pre>" + escaped(mounts) + "</pre>\n";
+  return mounts.empty()
+             ? ""
+             : heading("Mounts found") + "<pre role=\"region\" aria-label=\"Mounts found\" tabindex=\"0\">" +
+                   escaped(mounts) + "</pre>\n";
 }
 
 std::string time_section(const evaluation::EvaluatedRun& run) {

@@ -6,6 +6,8 @@ import { appendFileSync, existsSync, readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import net from 'node:net';
 
+import { check_basics, check_shifts, watch_shifts } from './basics.mjs';
+
 const puppeteer = createRequire(new URL('./npm/', import.meta.url))('puppeteer-core');
 const [url, echo_file, orders] = process.argv.slice(2);
 const order = (word) => appendFileSync(orders, `${word}\n`);
@@ -22,6 +24,7 @@ const errors = [];
 
 async function open(width, height) {
   const page = await browser.newPage();
+  await watch_shifts(page);
   await page.setViewport({ width, height });
   page.on('request', (request) => requests.push(request.url()));
   page.on('console', (message) => { if (message.type() === 'error') errors.push(message.text()); });
@@ -122,8 +125,9 @@ try {
 
   const narrow = await open(390, 844);
   await summary(narrow, 'error', 'silent for', 5000);
-  assert.ok(await narrow.evaluate(() => document.documentElement.scrollWidth) <= 390, 'the page scrolls sideways at 390 px');
-  ok('a second viewer sees the same, at 390 px without scrolling sideways');
+  const shifts = [await check_shifts(page, 'page'), await check_shifts(narrow, 'page at 390 px')];
+  await check_basics(narrow, 'page');
+  ok(`a second viewer sees the same, at 390 px, too; the basics hold, layout shift while data come ${shifts.join(', ')}`);
   const answer = await narrow.evaluate(async () => (await fetch('/api/save-black-box', { method: 'POST', headers: { Authorization: 'Bearer wrong' } })).status);
   assert.equal(answer, 401);
   assert.equal(errors.filter((error) => !error.includes('401')).join('\n'), '');

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The counters of a run: what was received, lost and refused. Those at zero come only when asked for.
-import { button, element, panel, set_text } from './dom';
+import { button, element, panel, scrolls, set_text } from './dom';
 import { count } from './format';
 import type { ViewData } from './view_data';
 
@@ -23,6 +23,6 @@ export function counters_table(counters: ViewData['counters']): HTMLElement {
   });
   show();
   head.append(toggle);
-  body.append(element('div', 'scroll', element('table', 'figures', rows)));
+  body.append(scrolls(element('div', 'scroll', element('table', 'figures', rows)), 'Counters'));
   return root;
 }

@@ -55,6 +55,8 @@ export class HealthLights {
       this.show();
     });
     head.append(this.toggle);
+    this.list.tabIndex = 0;  // it scrolls
+    this.list.setAttribute('aria-label', 'Health');
     body.append(this.list);
     this.show();
   }

@@ -11,7 +11,7 @@ const kTitles: Record<string, string> = {
 
 /** A sensor that should be heard, and has not been for this long, is marked [s]. */
 const kSilentS = 2;
-const kPlaces = 5;
+const kPlaces = 6;
 
 export class Rates {
   readonly root: HTMLElement;

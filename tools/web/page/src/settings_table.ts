@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every setting in force and where its value comes from; what differs from the defaults first.
-import { element, panel, set_text } from './dom';
+import { element, panel, scrolls, set_text } from './dom';
 import type { Setting } from './view_data';
 
 type Choice = 'changed' | 'basic' | 'all';
@@ -29,7 +29,7 @@ export class SettingsTable {
     this.choice.addEventListener('change', () => this.show());
     this.search.addEventListener('input', () => this.show());
     const heads = ['Setting', 'Value', 'From'].map((text) => element('th', '', text));
-    body.append(this.note, element('div', 'scroll', element('table', 'settings-rows', element('thead', '', element('tr', '', ...heads)), this.rows)));
+    body.append(this.note, scrolls(element('div', 'scroll', element('table', 'settings-rows', element('thead', '', element('tr', '', ...heads)), this.rows)), 'Settings'));
     this.show();
   }
 
