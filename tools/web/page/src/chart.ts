@@ -40,6 +40,7 @@ export class Chart {
   private data: uPlot.AlignedData;
   private is_zoomed = false;
   private marked_s: number | null = null;
+  private readonly mark_line = element('div', 'chart-mark');
 
   constructor(private readonly options: ChartOptions) {
     this.data = [[], ...options.series.map(() => [])] as unknown as uPlot.AlignedData;
@@ -59,7 +60,7 @@ export class Chart {
   mark(t_s: number | null): void {
     if (t_s === this.marked_s) return;
     this.marked_s = t_s;
-    this.plot?.redraw(false);
+    if (this.plot) this.place_mark(this.plot);
   }
 
   reset_zoom(): void {
@@ -117,7 +118,7 @@ export class Chart {
       bands: (bands ?? []).map((band) => ({ series: band.between, fill: () => style_value(band.colour) })),
       hooks: {
         setSelect: [(plot) => { if (plot.select.width > 0) this.is_zoomed = true; }],
-        draw: [(plot) => this.draw_mark(plot)],
+        draw: [(plot) => this.place_mark(plot)],
         ready: [(plot) => this.listen(plot)],
       },
     };
@@ -131,6 +132,8 @@ export class Chart {
   }
 
   private listen(plot: uPlot): void {
+    plot.over.append(this.mark_line);
+    this.place_mark(plot);
     plot.over.addEventListener('dblclick', () => this.reset_zoom());
     let pressed_px = 0;
     plot.over.addEventListener('mousedown', (event) => (pressed_px = event.clientX));
@@ -141,20 +144,11 @@ export class Chart {
     });
   }
 
-  private draw_mark(plot: uPlot): void {
-    if (this.marked_s === null) return;
-    const x = plot.valToPos(this.marked_s, 'x', true);
-    const { left, top, width, height } = plot.bbox;
-    if (x < left || x > left + width) return;
-    const { ctx } = plot;
-    ctx.save();
-    ctx.strokeStyle = style_value('--ink');
-    ctx.globalAlpha = 0.75;
-    ctx.lineWidth = devicePixelRatio;
-    ctx.beginPath();
-    ctx.moveTo(x, top);
-    ctx.lineTo(x, top + height);
-    ctx.stroke();
-    ctx.restore();
+  /** Moves the line over the chart, which is not drawn anew for it. */
+  private place_mark(plot: uPlot): void {
+    const x = this.marked_s === null ? NaN : plot.valToPos(this.marked_s, 'x');
+    const is_inside = x >= 0 && x <= plot.over.clientWidth;
+    this.mark_line.hidden = !is_inside;
+    if (is_inside) this.mark_line.style.transform = `translateX(${x.toFixed(1)}px)`;
   }
 }
