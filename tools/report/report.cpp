@@ -83,7 +83,7 @@ std::string height_section(const evaluation::EvaluatedRun& run) {
 std::string side_section(const evaluation::EvaluatedRun& run) {
   const std::vector<SideView> views = side_view_pictures(run);
   if (views.empty()) return "";
-  std::string html = heading("The map from the side") + "<figure><div class=\"pair\">\n";
+  std::string html = heading("The map from the side") + "<figure tabindex=\"0\"><div class=\"pair\">\n";
   for (const SideView& view : views) {
     html += std::string(view.is_half ? "<div class=\"half\">" : "<div>") + "<h3>" + escaped(view.method) +
             "</h3>\n" + view.picture.svg("Side elevation of the map of " + view.method) + "</div>\n";

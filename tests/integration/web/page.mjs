@@ -98,7 +98,7 @@ try {
   let pressed = null;
   for (const end = Date.now() + 7500; Date.now() < end; await sleep(100)) {
     const pose = await shown_pose(page);
-    const is_on_scan = (await page.$eval('.pose-pose dd', (mode) => mode.textContent)) === 'on scan';
+    const is_on_scan = (await page.$eval('.pose-pose dd', (mode) => mode.textContent)) === 'lidar';
     if (is_on_scan && pose.every(Number.isFinite)) seen.push(pose);
     if (!pressed && seen.length >= 10) pressed = press_all(page).catch((error) => error);
   }

@@ -54,13 +54,16 @@ export class Chart {
     if (!this.plot) return;
     this.plot.setData(this.data, !this.is_zoomed);
     if (this.is_zoomed) this.plot.redraw();
+    this.show_values(this.plot);
   }
 
   /** Marks a time by a line; null: none. */
   mark(t_s: number | null): void {
     if (t_s === this.marked_s) return;
     this.marked_s = t_s;
-    if (this.plot) this.place_mark(this.plot);
+    if (!this.plot) return;
+    this.place_mark(this.plot);
+    this.show_values(this.plot);
   }
 
   reset_zoom(): void {
@@ -120,6 +123,8 @@ export class Chart {
         setSelect: [(plot) => { if (plot.select.width > 0) this.is_zoomed = true; }],
         draw: [(plot) => this.place_mark(plot)],
         ready: [(plot) => this.listen(plot)],
+        // When the pointer has left, uPlot empties the legend.
+        setCursor: [(plot) => { if ((plot.cursor.left ?? -1) < 0) queueMicrotask(() => this.show_values(plot)); }],
       },
     };
   }
@@ -134,6 +139,7 @@ export class Chart {
   private listen(plot: uPlot): void {
     plot.over.append(this.mark_line);
     this.place_mark(plot);
+    this.show_values(plot);
     plot.over.addEventListener('dblclick', () => this.reset_zoom());
     let pressed_px = 0;
     plot.over.addEventListener('mousedown', (event) => (pressed_px = event.clientX));
@@ -142,6 +148,13 @@ export class Chart {
       const { left } = plot.over.getBoundingClientRect();
       this.on_pick(plot.posToVal(event.clientX - left, 'x'));
     });
+  }
+
+  /** The legend tells the values at the marked time, or the newest, while no pointer asks for others. */
+  private show_values(plot: uPlot): void {
+    const last = plot.data[0].length - 1;
+    if (last < 0 || (plot.cursor.left ?? -1) >= 0) return;
+    plot.setLegend({ idx: this.marked_s === null ? last : plot.valToIdx(this.marked_s) }, false);
   }
 
   /** Moves the line over the chart, which is not drawn anew for it. */

@@ -4,6 +4,11 @@ import { button, element, panel, scrolls, set_text } from './dom';
 import { count } from './format';
 import type { ViewData } from './view_data';
 
+/** "base_barometer: good rows" is read "base barometer: rows read". */
+function title_of(name: string): string {
+  return name.replaceAll('_', ' ').replace(/good rows$/, 'rows read');
+}
+
 export function counters_table(counters: ViewData['counters']): HTMLElement {
   const { root, head, body } = panel('Counters', 'counters');
   const rows = element('tbody', '');
@@ -11,7 +16,7 @@ export function counters_table(counters: ViewData['counters']): HTMLElement {
   const show = () => {
     const shown = counters.filter((counter) => all || counter.count > 0);
     rows.replaceChildren(...shown.map((counter) => {
-      const name = element('th', '', counter.name, counter.message ? element('span', 'message', counter.message) : null);
+      const name = element('th', '', title_of(counter.name), counter.message ? element('span', 'message', counter.message) : null);
       name.scope = 'row';
       return element('tr', '', name, element('td', '', count(counter.count)));
     }));

@@ -34,6 +34,7 @@ export class FloorSlicer {
   });
 
   constructor() {
+    this.ceilings.title = 'Show also what lies more than 1.9 m above the floors';
     this.low.value = '0';
     this.high.value = String(kSteps);
     this.buttons.setAttribute('role', 'group');
