@@ -121,7 +121,8 @@ try {
 
   await summary(page, 'error', 'silent for', 5000);
   assert.ok(await page.$$eval('.lights li.error', (entries) => entries.some((entry) => entry.textContent.startsWith('lidar'))));
-  ok('an unplugged lidar is red, with the sentence that explains it');
+  await page.waitForFunction(() => document.querySelector('.pose.old .pose-pose dd')?.textContent === 'no pose', { timeout: 8000, polling: 100 });
+  ok('an unplugged lidar is red, with the sentence that explains it; the last pose is told to be old');
 
   const narrow = await open(390, 844);
   await summary(narrow, 'error', 'silent for', 5000);

@@ -43,7 +43,14 @@ export class PoseReadout {
     this.put('floor', text || '–');
   }
 
+  /** No pose has come for a while: what is shown is old. */
+  set_old(): void {
+    this.put('pose', 'no pose');
+    this.root.classList.add('old');
+  }
+
   set_mode(mode: string, lost = ''): void {
+    this.root.classList.remove('old');
     this.put('pose', lost ? 'lost' : (kModes[mode] ?? mode) || '–');
     this.root.classList.toggle('lost', lost !== '');
   }
