@@ -50,7 +50,7 @@ dl { max-width: 92ch; font-size: 15px; } dt { font-weight: 600; margin-top: 10px
 @media (max-width: 560px) { main { padding: 20px 14px 40px; } h1 { font-size: 24px; } .lead { font-size: 16px; }
   .tiles li { flex-basis: 44%; padding: 8px 10px; } .tiles .value { font-size: 20px; }
   figure svg { max-width: none; width: 720px; } figcaption { position: sticky; left: 0; }
-  th, td { padding-right: 10px; } th, td:first-child, td.unit { white-space: normal; } td:first-child { min-width: 130px; } }
+  th, td { padding-right: 10px; } th, td:first-child, td.unit { white-space: normal; } tr:has(td.unit) td:first-child { min-width: 130px; } }
 @page { size: A4; margin: 14mm; }
 @media print { main { padding: 0; max-width: none; } h2, .before-table { break-after: avoid; } body { font-size: 11pt; }
   table { font-size: 8pt; } th, td { padding: 3px 9px 3px 0; } th { white-space: normal; } .scroll { overflow: visible; }
@@ -69,7 +69,8 @@ std::string cell_html(const TableCell& cell) {
 
 std::string html_page(const std::string& title, const std::string& body) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<link rel=\"icon\" "
+         "href=\"data:,\">\n<title>" +
          escaped(title) + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n<main>\n" + body +
          "</main>\n</body>\n</html>\n";
 }

@@ -49,6 +49,7 @@ export class MapView {
   constructor() {
     this.renderer = new THREE.WebGLRenderer({ antialias: false, powerPreference: 'high-performance' });
     this.renderer.localClippingEnabled = true;
+    this.renderer.debug.checkShaderErrors = false;  // asking waits for the compiler
     this.renderer.autoClear = false;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, kMostPixelRatio));
     const canvas = this.renderer.domElement;
