@@ -80,6 +80,19 @@ ipc::CurrentFloor FloorStage::current() {
   return current;
 }
 
+ipc::KnownFloors FloorStage::known() const {
+  ipc::KnownFloors known;
+  known.session = session_;
+  for (const Floor& floor : map_.floors().floors) {
+    if (known.count == ipc::KnownFloors::kMost) break;
+    ipc::KnownFloor& told = known.floors[known.count++];
+    told.number = floor.number;
+    told.z_m = floor.height_m;
+    ipc::copy_text(names_.name_of(floor), told.name, sizeof(told.name));
+  }
+  return known;
+}
+
 std::optional<OccupancyGrid> FloorStage::grid() const {
   if (!last_) return std::nullopt;
   return map_.grid(*last_);

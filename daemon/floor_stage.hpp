@@ -35,6 +35,8 @@ class FloorStage {
   void find();
   /// The floor at the newest pose, among those of the last find().
   [[nodiscard]] ipc::CurrentFloor current();
+  /// The floors of the last find(), with their names.
+  [[nodiscard]] ipc::KnownFloors known() const;
   /// Grid of the floor that was known last; none without one.
   /// @throws DataError when it is too large
   [[nodiscard]] std::optional<OccupancyGrid> grid() const;

@@ -66,6 +66,7 @@ void FloorThread::drain() noexcept {
     const bool is_other = grid_session_ != floor.session || grid_floor_ != floor.number;
     if (is_other && floor.known) offer_grid(floor, now_ns);
     publish(floor, now_ns);
+    publish_known(now_ns);
     grids_.step(now_ns);
   } catch (const std::exception& error) {
     // Only memory can be refused here: files and grids have errors of their own.
@@ -175,6 +176,18 @@ void FloorThread::publish(const ipc::CurrentFloor& floor, std::int64_t now_ns) {
   floors_.publish(message);
   published_ = floor;
   published_ns_ = now_ns;
+}
+
+void FloorThread::publish_known(std::int64_t now_ns) {
+  if (now_ns - listed_ns_ < kSecondNs) return;
+  const ipc::KnownFloors known = stage_.known();
+  if (known == listed_) return;
+  ipc::KnownFloors* message = lists_.loan();
+  if (message == nullptr) return;
+  *message = known;
+  lists_.publish(message);
+  listed_ = known;
+  listed_ns_ = now_ns;
 }
 
 void add_floor(const FloorStatus& status, ipc::HealthReport& report) {

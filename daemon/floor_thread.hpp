@@ -50,6 +50,7 @@ class FloorThread {
   [[nodiscard]] std::int64_t wait_ns() const;
   void offer_grid(const ipc::CurrentFloor& floor, std::int64_t now_ns);
   void publish(const ipc::CurrentFloor& floor, std::int64_t now_ns);
+  void publish_known(std::int64_t now_ns);
 
   FloorSettings settings_;
   FloorFeed& feed_;
@@ -57,6 +58,7 @@ class FloorThread {
   FloorStage stage_;
   FloorGridPublisher grids_;
   ipc::Publisher<ipc::CurrentFloor> floors_{ipc::topics::kFloor};
+  ipc::Publisher<ipc::KnownFloors> lists_{ipc::topics::kKnownFloors};
   ipc::Subscriber<PoseEstimate> poses_{ipc::topics::kPose};
   ipc::Waiter waiter_;
 
@@ -70,6 +72,8 @@ class FloorThread {
   std::int32_t grid_floor_ = 0;
   ipc::CurrentFloor published_;
   std::int64_t published_ns_ = 0;
+  ipc::KnownFloors listed_;  ///< as published
+  std::int64_t listed_ns_ = 0;
   std::filesystem::path folder_;  ///< of the map
   std::int64_t names_ns_ = 0;     ///< when the names were looked at
   std::filesystem::file_time_type names_changed_{};

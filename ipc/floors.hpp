@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Payloads about the floors of a building: the occupancy grid of the one that the robot is on, and which one that is.
+// Payloads about the floors of a building: which ones the map knows, which one the robot is on, and its occupancy grid.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "core/floors/floor_place.hpp"
 
@@ -46,6 +48,30 @@ struct CurrentFloor {
   double certainty = 0.0;                   ///< 0 … 1, probability that the robot is on this floor
   double z_m = 0.0;                         ///< of the floor, map frame
   char name[kFloorNameBytes] = {};          // NOLINT(modernize-avoid-c-arrays): null-terminated; may be empty
+};
+
+/// One floor of the map.
+struct KnownFloor {
+  std::int32_t number = 0;          ///< as in CurrentFloor
+  double z_m = 0.0;                 ///< of the ground, map frame
+  char name[kFloorNameBytes] = {};  // NOLINT(modernize-avoid-c-arrays): null-terminated; may be empty
+
+  [[nodiscard]] bool operator==(const KnownFloor& other) const noexcept {
+    return number == other.number && z_m == other.z_m && std::strncmp(name, other.name, sizeof name) == 0;
+  }
+};
+
+/// All floors of the map: driven now, or known from the stored map or from before a restart. Sent when they change.
+struct KnownFloors {
+  static constexpr std::uint32_t kMost = 200;
+  std::uint32_t session = 0;  ///< number of the map frame
+  std::uint32_t count = 0;    ///< floors[0 … count - 1] are valid, the lowest first
+  KnownFloor floors[kMost];   // NOLINT(modernize-avoid-c-arrays)
+
+  [[nodiscard]] bool operator==(const KnownFloors& other) const noexcept {
+    return session == other.session && count == other.count &&
+           std::equal(floors, floors + std::min(count, kMost), other.floors);
+  }
 };
 
 }  // namespace isobar::ipc

@@ -145,6 +145,7 @@ inline constexpr Topic<RegisteredScan> kRegisteredScan{"registered_scan", 4, 0};
 inline constexpr Topic<MapCloud> kMapCloud{"map_cloud", 4, 1};
 inline constexpr Topic<FloorGrid> kFloorGrid{"floor_grid", 4, 1};
 inline constexpr Topic<CurrentFloor> kFloor{"floor", 4, 1};
+inline constexpr Topic<KnownFloors> kKnownFloors{"known_floors", 1, 1};
 inline constexpr Topic<HealthReport> kHealth{"health", 4, 1};
 inline constexpr Topic<LidarPackets> kLidarPackets{"lidar/packets", 80, 0};
 inline constexpr Topic<RunDescription> kRunDescription{"run_description", 1, 1};
@@ -166,7 +167,7 @@ inline constexpr ChunkPool kChunkPools[] = {
     // NOLINT(modernize-avoid-c-arrays)
     {256, 4096},        // samples
     {1024, 1024},       // priors, poses
-    {40 * 1024, 32},    // health
+    {40 * 1024, 38},    // health, floors
     {60 * 1024, 4},     // description of the run
     {68 * 1024, 100},   // lidar packets: all queues hold the same newest 80 messages
     {1200 * 1024, 40},  // scans, registered scans, maps, grids

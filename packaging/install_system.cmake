@@ -12,7 +12,7 @@ endif()
 set(systemd ${isobar_source}/systemd)
 set(rights OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
 
-foreach(unit isobard.service isobar-dds.service isobar-metrics.service run-isobar.mount)
+foreach(unit isobard.service isobar-dds.service isobar-metrics.service isobar-web.service run-isobar.mount)
   file(READ ${systemd}/${unit} text)
   string(REPLACE "/etc/isobar/" "${etc}/isobar/" text "${text}")
   string(REPLACE "/usr/" "${CMAKE_INSTALL_PREFIX}/" text "${text}")
@@ -21,7 +21,7 @@ foreach(unit isobard.service isobar-dds.service isobar-metrics.service run-isoba
   list(APPEND CMAKE_INSTALL_MANIFEST_FILES ${lib}/systemd/system/${unit})
 endforeach()
 # file(INSTALL) puts DESTDIR before these places itself.
-foreach(unit isobard isobar-dds isobar-metrics)
+foreach(unit isobard isobar-dds isobar-metrics isobar-web)
   file(INSTALL ${systemd}/shared-memory.conf DESTINATION ${lib}/systemd/system/${unit}.service.d PERMISSIONS ${rights})
 endforeach()
 file(INSTALL ${systemd}/59-isobar.rules DESTINATION ${lib}/udev/rules.d PERMISSIONS ${rights})

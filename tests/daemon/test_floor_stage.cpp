@@ -147,6 +147,17 @@ TEST_CASE("a run that is continued knows the floors that were driven before, onc
   stage.find();
   CHECK(stage.current().known);
   CHECK(stage.current().number == 1);
+  stage.set_names(files::FloorNames::parse("[[floor]]\nheight_m = 0.0\nname = \"Hall\"\n", "floors.toml"));
+  const ipc::KnownFloors known = stage.known();
+  REQUIRE(known.count == 2);
+  CHECK(known.session == 1);
+  CHECK(known.floors[0].number == 0);
+  CHECK(std::string(known.floors[0].name) == "Hall");
+  CHECK(known.floors[1].number == 1);
+  CHECK(known.floors[1].z_m == doctest::Approx(3.0).epsilon(0.01));
+  CHECK(stage.known() == known);
+  stage.begin(2, {});
+  CHECK_FALSE(stage.known() == known);
 }
 
 }  // namespace isobar::test::test_floor_stage

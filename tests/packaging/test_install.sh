@@ -17,8 +17,8 @@ check() { # check NAME COMMAND…: passes when COMMAND succeeds and prints nothi
 install() { DESTDIR=$root cmake --install "$2" --prefix "$1" >"$root/log" || { cat "$root/log"; exit 1; }; }
 
 install /usr "$2"
-for file in usr/bin/{isobard,isobar,isobar-dds} lib/systemd/system/{isobard.service,isobar-dds.service,run-isobar.mount} \
-  lib/systemd/system/{isobard,isobar-dds,isobar-metrics}.service.d/shared-memory.conf \
+for file in usr/bin/{isobard,isobar,isobar-dds} lib/systemd/system/{isobard.service,isobar-dds.service,isobar-metrics.service,isobar-web.service,run-isobar.mount} \
+  lib/systemd/system/{isobard,isobar-dds,isobar-metrics,isobar-web}.service.d/shared-memory.conf \
   lib/udev/rules.d/59-isobar.rules usr/lib/sysusers.d/isobar.conf usr/lib/tmpfiles.d/isobar.conf etc/isobar/isobar.toml \
   etc/isobar/conf.d usr/share/man/man8/{isobard,isobar-dds}.8 usr/share/man/man5/isobar.toml.5 \
   usr/share/doc/isobar/copyright usr/share/isobar/ros2/isobar_msgs/package.xml; do
@@ -71,4 +71,9 @@ install /opt/isobar "$2"
 check "another prefix: the unit starts that program with that configuration" \
   grep -qx "ExecStart=/opt/isobar/bin/isobard --config /opt/isobar/etc/isobar/isobar.toml" \
   "$root/opt/isobar/lib/systemd/system/isobard.service"
+for script in postinst prerm postrm; do
+  check "$script of the package names every optional unit" bash -c \
+    'grep -q isobar-metrics.service "$1" && grep -q isobar-web.service "$1"' _ "$source/packaging/debian/$script"
+done
+check "the page is not enabled by the package" bash -c '! grep -q "enable .*isobar-web" "$1"' _ "$source/packaging/debian/postinst"
 exit $failed

@@ -8,18 +8,18 @@ trap 'rm -rf "$folder"' EXIT
 failed=0
 check() { if [ "$2" = yes ]; then echo "ok: $1"; else echo "FAILED: $1"; failed=1; fi; }
 
-for unit in isobard.service isobar-dds.service isobar-metrics.service run-isobar.mount; do
+for unit in isobard.service isobar-dds.service isobar-metrics.service isobar-web.service run-isobar.mount; do
   sed -e "s#^ExecStart=/usr/bin/isobard #ExecStart=$2 #; s#^ExecStart=/usr/bin/isobar-dds #ExecStart=$3 #; s#^ExecStart=/usr/bin/isobar #ExecStart=$4 #" "$1/$unit" \
     >"$folder/$unit"
 done
-for unit in isobard isobar-dds isobar-metrics; do
+for unit in isobard isobar-dds isobar-metrics isobar-web; do
   install -D -m 644 "$1/shared-memory.conf" "$folder/$unit.service.d/shared-memory.conf"
 done
 # Its exit code is 0 also after "Unknown key name …, ignoring".
 said=$(SYSTEMD_LOG_LEVEL=info systemd-analyze verify --man=no "$folder"/*.service "$folder"/*.mount 2>&1 || true)
 check "systemd-analyze verify says nothing: $said" "$([ -z "$said" ] && echo yes)"
 
-for unit in isobard isobar-dds isobar-metrics; do
+for unit in isobard isobar-dds isobar-metrics isobar-web; do
   exposure=$(systemd-analyze security --offline=true --no-pager "$folder/$unit.service" |
     sed -n 's/.*Overall exposure level.*: \([0-9.]*\) .*/\1/p')
   check "exposure of $unit is ${exposure:-unknown}, at most 2.0" \
@@ -30,6 +30,12 @@ for unit in isobard isobar-dds isobar-metrics; do
   for line in StartLimitIntervalSec=0 Restart=always User=isobar PrivateTmp=yes; do
     check "$unit.service: $line" "$(grep -qxF "$line" "$folder/$unit.service" && echo yes)"
   done
+done
+for unit in isobar-metrics isobar-web; do
+  check "$unit.service: loopback only" "$(grep -qxF IPAddressDeny=any "$folder/$unit.service" && grep -qxF IPAddressAllow=localhost "$folder/$unit.service" && echo yes)"
+done
+for line in CPUQuota=50% MemoryMax=512M; do
+  check "isobar-web.service: $line" "$(grep -qxF "$line" "$folder/isobar-web.service" && echo yes)"
 done
 for unit in isobard isobar-dds; do
   check "$unit.service: SIGHUP reloads" "$(grep -qxF 'ExecReload=/bin/kill -HUP $MAINPID' "$folder/$unit.service" && echo yes)"

@@ -12,7 +12,7 @@ constexpr const char* kStyle = R"css(
 @media (prefers-color-scheme: dark) { :root { --ground: #0e1114; --panel: #161a1f; --raised: #1f252c; --ink: #e7ebef;
   --muted: #a3afbb; --line: #323b45; --soft-line: #272e36; --strong-line: #93a0ad; --error: #ff6369; --accent: #ff5c93;
   --map-ground: #0b0d10; --map-rim: #0b0d10; }
-  figure svg { background: #fff; border-radius: 6px; } }
+  figure svg { background: #fff; border-radius: 6px; filter: invert(0.93) hue-rotate(180deg); } }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--ground); color: var(--ink);
   font: 16px/1.55 system-ui, "Segoe UI", Roboto, "DejaVu Sans", Helvetica, Arial, sans-serif; }
@@ -30,6 +30,7 @@ p { margin: 6px 0; max-width: 78ch; }
 .tiles .more { font-size: 13.5px; color: var(--muted); }
 figure { margin: 14px 0 0; break-inside: avoid; }
 figure svg { display: block; max-width: 100%; height: auto; }
+figure { overflow-x: auto; }
 figcaption { font-size: 14px; color: var(--muted); margin-top: 4px; max-width: 92ch; }
 .pair { display: flex; flex-wrap: wrap; gap: 14px; }
 .pair > div { flex: 1 1 100%; }
@@ -47,7 +48,9 @@ td.lost { color: var(--error); font-weight: 700; }
 .notes li { margin: 3px 0; max-width: 92ch; }
 dl { max-width: 92ch; font-size: 15px; } dt { font-weight: 600; margin-top: 10px; } dd { margin: 0; }
 @media (max-width: 560px) { main { padding: 20px 14px 40px; } h1 { font-size: 24px; } .lead { font-size: 16px; }
-  .tiles li { flex-basis: 44%; padding: 8px 10px; } .tiles .value { font-size: 20px; } }
+  .tiles li { flex-basis: 44%; padding: 8px 10px; } .tiles .value { font-size: 20px; }
+  figure svg { max-width: none; width: 720px; } figcaption { position: sticky; left: 0; }
+  th, td { padding-right: 10px; } th, td:first-child, td.unit { white-space: normal; } tr:has(td.unit) td:first-child { min-width: 130px; } }
 @page { size: A4; margin: 14mm; }
 @media print { main { padding: 0; max-width: none; } h2, .before-table { break-after: avoid; } body { font-size: 11pt; }
   table { font-size: 8pt; } th, td { padding: 3px 9px 3px 0; } th { white-space: normal; } .scroll { overflow: visible; }
@@ -66,7 +69,8 @@ std::string cell_html(const TableCell& cell) {
 
 std::string html_page(const std::string& title, const std::string& body) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<link rel=\"icon\" "
+         "href=\"data:,\">\n<title>" +
          escaped(title) + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n<main>\n" + body +
          "</main>\n</body>\n</html>\n";
 }
@@ -83,7 +87,8 @@ std::string heading(const std::string& text) { return "<h2>" + escaped(text) + "
 std::string paragraph(const std::string& text) { return "<p>" + escaped(text) + "</p>\n"; }
 
 std::string figure(const Picture& picture, const std::string& title, const std::string& caption) {
-  return "<figure>\n" + picture.svg(title) + "<figcaption>" + escaped(caption) + "</figcaption>\n</figure>\n";
+  return "<figure tabindex=\"0\">\n" + picture.svg(title) + "<figcaption>" + escaped(caption) +
+         "</figcaption>\n</figure>\n";
 }
 
 std::string bullet_list(const std::vector<std::string>& lines) {
@@ -103,7 +108,8 @@ std::string tile_row(const std::vector<Tile>& tiles) {
 
 std::string html_table(const std::vector<std::string>& head,
                        const std::vector<std::vector<TableCell>>& rows) {
-  std::string html = "<div class=\"scroll\"><table>\n<thead><tr>";
+  std::string html =
+      "<div class=\"scroll\" role=\"region\" aria-label=\"Table\" tabindex=\"0\"><table>\n<thead><tr>";
   for (const std::string& title : head) html += "<th>" + escaped(title) + "</th>";
   html += "</tr></thead>\n<tbody>\n";
   for (const std::vector<TableCell>& row : rows) {

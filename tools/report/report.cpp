@@ -83,7 +83,7 @@ std::string height_section(const evaluation::EvaluatedRun& run) {
 std::string side_section(const evaluation::EvaluatedRun& run) {
   const std::vector<SideView> views = side_view_pictures(run);
   if (views.empty()) return "";
-  std::string html = heading("The map from the side") + "<figure><div class=\"pair\">\n";
+  std::string html = heading("The map from the side") + "<figure tabindex=\"0\"><div class=\"pair\">\n";
   for (const SideView& view : views) {
     html += std::string(view.is_half ? "<div class=\"half\">" : "<div>") + "<h3>" + escaped(view.method) +
             "</h3>\n" + view.picture.svg("Side elevation of the map of " + view.method) + "</div>\n";
@@ -110,7 +110,10 @@ std::string top_section(const evaluation::EvaluatedRun& run) {
 /// The mounts that the run has found, as its mounts.toml.
 std::string mounts_section(const evaluation::EvaluatedRun& run) {
   const std::string& mounts = main_method(run).mounts;
-  return mounts.empty() ? "" : heading("Mounts found") + "<pre>" + escaped(mounts) + "</pre>\n";
+  return mounts.empty()
+             ? ""
+             : heading("Mounts found") + "<pre role=\"region\" aria-label=\"Mounts found\" tabindex=\"0\">" +
+                   escaped(mounts) + "</pre>\n";
 }
 
 std::string time_section(const evaluation::EvaluatedRun& run) {

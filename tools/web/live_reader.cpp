@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string_view>
 
 #include "core/geometry.hpp"
@@ -27,7 +28,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::int64_t kPoseIntervalNs = 95'000'000;
 /// The health report comes once a second; beyond this isobard hangs.
 constexpr std::chrono::seconds kSilence{5};
-constexpr std::size_t kMostFloors = 200;
+/// Answers to an action come within seconds; a hint waits for the next scans.
+constexpr std::chrono::seconds kAnswerPatience{30};
 
 double sqrt_or_unknown(double variance) { return variance > 0.0 ? std::sqrt(variance) : PoseRow::kUnknown; }
 
@@ -82,11 +84,12 @@ LiveReader::LiveReader(LiveState& live, MapTiles& map, ActionDesk& desk)
 void LiveReader::poll(std::size_t viewers) {
   take_poses();
   take_health();
-  take_floor();
+  take_floors();
   take_settings();
   take_map(viewers);
   take_black_box();
   carry_out_orders();
+  give_up_waiting();
 }
 
 void LiveReader::take_poses() {
@@ -118,27 +121,19 @@ void LiveReader::take_health() {
   }
 }
 
-void LiveReader::take_floor() {
+void LiveReader::take_floors() {
+  const auto known = known_floors_.take_latest();
+  if (known && known->count <= ipc::KnownFloors::kMost) floors_ = *known;
   const auto floor = floor_.take_latest();
-  if (!floor) return;
-  if (floor->session != floor_session_) known_floors_.clear();
-  floor_session_ = floor->session;
-  if (floor->known && std::isfinite(floor->z_m)) {
-    const KnownFloor told{floor->number, text_in(floor->name), floor->z_m};
-    const auto known = std::find_if(known_floors_.begin(), known_floors_.end(),
-                                    [&](const KnownFloor& other) { return other.number == told.number; });
-    if (known != known_floors_.end()) {
-      *known = told;
-    } else if (known_floors_.size() < kMostFloors) {
-      known_floors_.push_back(told);
-    }
-  }
+  if (floor) current_floor_ = floor->known ? std::optional(floor->number) : std::nullopt;
+  if (!known && !floor) return;
   Json json{{"floors", Json::array()}, {"current", nullptr}};
-  for (const KnownFloor& known : known_floors_) {
+  for (const ipc::KnownFloor& one : std::span(floors_.floors, floors_.count)) {
+    if (!std::isfinite(one.z_m)) continue;
     json["floors"].push_back(
-        {{"number", known.number}, {"name", known.name}, {"z_m", rounded(known.z_m, 2)}});
+        {{"number", one.number}, {"name", text_in(one.name)}, {"z_m", rounded(one.z_m, 2)}});
   }
-  if (floor->known) json["current"] = floor->number;
+  if (current_floor_) json["current"] = *current_floor_;
   live_.put(Topic::kFloors, text_of(json));
 }
 
@@ -189,6 +184,7 @@ void LiveReader::take_map_piece(const ipc::MapCloud& piece) {
 void LiveReader::carry_out_orders() {
   const auto order = desk_.take();
   if (!order) return;
+  asked_ = Clock::now();
   if (order->kind == Order::Kind::kPoseHint) {
     hint_waits_ = hints_.has_subscribers() && hints_.send(order->hint);
     if (!hint_waits_) tell_action("isobard takes no hint: is this a base station?", true);
@@ -202,6 +198,15 @@ void LiveReader::carry_out_orders() {
     return;
   }
   order_number_ = save.number;
+}
+
+void LiveReader::give_up_waiting() {
+  if ((order_number_ == 0 && !hint_waits_) || Clock::now() - asked_ < kAnswerPatience) return;
+  tell_action(hint_waits_ ? "No answer to the hint yet: it needs scans. See initial pose under Health."
+                          : "No answer from the black box: see its line under Health.",
+              true);
+  order_number_ = 0;
+  hint_waits_ = false;
 }
 
 void LiveReader::take_black_box() {

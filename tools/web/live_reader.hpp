@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "ipc/shared_memory.hpp"
 #include "tools/web/action_desk.hpp"
@@ -33,21 +32,17 @@ class LiveReader {
 
  private:
   using Clock = std::chrono::steady_clock;
-  struct KnownFloor {
-    int number = 0;
-    std::string name;
-    double z_m = 0.0;
-  };
-
   void take_poses();
   void take_health();
-  void take_floor();
+  void take_floors();
   void take_settings();
   void take_map(std::size_t viewers);
   void take_map_piece(const ipc::MapCloud& piece);
   void take_black_box();
   void follow_hint(const ipc::HealthReport& report);
   void carry_out_orders();
+  /// An answer that does not come is said, too.
+  void give_up_waiting();
   void tell_action(const std::string& text, bool failed);
 
   LiveState& live_;
@@ -58,6 +53,7 @@ class LiveReader {
   ipc::Subscriber<Prior> priors_{ipc::topics::kPrior};
   ipc::Subscriber<ipc::HealthReport> reports_{ipc::topics::kHealth};
   ipc::Subscriber<ipc::CurrentFloor> floor_{ipc::topics::kFloor};
+  ipc::Subscriber<ipc::KnownFloors> known_floors_{ipc::topics::kKnownFloors};
   ipc::Subscriber<ipc::RunDescription> descriptions_{ipc::topics::kRunDescription};
   ipc::Subscriber<ipc::BlackBoxState> black_box_{ipc::topics::kBlackBoxState};
   ipc::Publisher<ipc::BlackBoxOrder> orders_{ipc::topics::kBlackBoxOrder};
@@ -67,8 +63,8 @@ class LiveReader {
   double altimeter_m_ = PoseRow::kUnknown;
   std::int64_t last_pose_ns_ = 0;
   std::uint32_t session_ = 0;  ///< of the poses; 0: none yet
-  std::vector<KnownFloor> known_floors_;
-  std::uint32_t floor_session_ = 0;
+  ipc::KnownFloors floors_;    ///< the newest
+  std::optional<std::int32_t> current_floor_;
 
   std::optional<Clock::time_point> last_viewer_;
   std::optional<MapDraft> draft_;
@@ -79,6 +75,7 @@ class LiveReader {
   std::uint64_t order_number_ = 0;  ///< of the order to the black box that waits for its answer; 0: none
   std::uint64_t hints_given_ = 0;   ///< as the health report counted them before ours
   bool hint_waits_ = false;
+  Clock::time_point asked_{};  ///< of the newest action
 
   std::optional<Clock::time_point> last_report_;
 };

@@ -145,11 +145,11 @@ void serve_live(const WebOptions& options) {
   service.ready("page on " + url_of(options.where));
   std::unique_ptr<web::LiveReader> reader;
   while (service.wait_for(reader ? 100ms : 500ms)) {
+    service.feed_watchdog();
     if (!reader) reader = attach(live, map, desk);
     if (!reader) continue;
     reader->poll(server->viewers());
     if (!reader->alive()) run_again();
-    service.feed_watchdog();
   }
   server.reset();
   end_attached(0);

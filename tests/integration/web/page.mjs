@@ -2,9 +2,11 @@
 // The page as a person sees it. Orders what shall happen to isobard by the FIFO of test_page.sh.
 //   node page.mjs URL ECHO.txt ORDERS
 import assert from 'node:assert/strict';
-import { appendFileSync, readFileSync } from 'node:fs';
+import { appendFileSync, existsSync, readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import net from 'node:net';
+
+import { check_basics, check_shifts, watch_shifts } from './basics.mjs';
 
 const puppeteer = createRequire(new URL('./npm/', import.meta.url))('puppeteer-core');
 const [url, echo_file, orders] = process.argv.slice(2);
@@ -22,6 +24,7 @@ const errors = [];
 
 async function open(width, height) {
   const page = await browser.newPage();
+  await watch_shifts(page);
   await page.setViewport({ width, height });
   page.on('request', (request) => requests.push(request.url()));
   page.on('console', (message) => { if (message.type() === 'error') errors.push(message.text()); });
@@ -49,6 +52,35 @@ function dds_poses() {
   return [...readFileSync(echo_file, 'utf8').matchAll(/ x +(\S+) +y +(\S+) +z +(\S+) m/g)].map((match) => match.slice(1, 4).map(Number));
 }
 
+/** What the page answers to its actions, once it fits. */
+async function told(page, fits, within_ms) {
+  try {
+    await page.waitForFunction((fits) => new RegExp(fits).test(document.querySelector('.answer').textContent), { timeout: within_ms, polling: 50 }, fits);
+  } catch {
+    assert.fail(`no answer like "${fits}": ${await page.$eval('.answer', (element) => element.textContent)}`);
+  }
+  return page.$eval('.answer', (element) => [element.textContent, element.classList.contains('failed')]);
+}
+
+const press = (page, label) => page.$$eval('.actions button', (buttons, label) => buttons.find((button) => button.textContent === label).click(), label);
+
+/** Presses all that a person with the token may press, while the robot drives. */
+async function press_all(page) {
+  await page.type('.actions .token', 'a-token-of-this-test');
+  await press(page, 'The robot is here');
+  assert.deepEqual(await told(page, 'needed', 2000), ['x, y and yaw are needed.', true]);
+  const fields = await page.$$('.actions input[type=number]');
+  const yaw = await page.$eval('.pose-yaw dd', (element) => element.textContent.replace('−', '-'));
+  for (const [index, value] of [...(await shown_pose(page)).slice(0, 2), yaw].entries()) await fields[index].type(String(value));
+  await press(page, 'The robot is here');
+  const [hint, is_refused] = await told(page, '^Hint ', 8000);
+  assert.equal(is_refused, hint.includes('refused'), hint);
+  await press(page, 'Save the black box');
+  const [saved, has_failed] = await told(page, 'aved: ', 8000);
+  assert.ok(!has_failed, saved);
+  return { hint, saved };
+}
+
 try {
   const page = await open(1000, 800);
   await summary(page, 'error', 'isobard is not running', 5000);
@@ -57,12 +89,18 @@ try {
   await summary(page, 'stale', 'nothing received yet', 8000);
   ok('it follows isobard without being loaded again');
 
+  await press(page, 'Save the black box');
+  assert.deepEqual(await told(page, 'token is', 5000), ['the token is missing or wrong', true]);
+  ok('an action without the token is refused, and the page says why');
+
   order('play');
   const seen = [];
+  let pressed = null;
   for (const end = Date.now() + 7500; Date.now() < end; await sleep(100)) {
     const pose = await shown_pose(page);
-    const is_on_scan = (await page.$eval('.pose-pose dd', (mode) => mode.textContent)) === 'on scan';
+    const is_on_scan = (await page.$eval('.pose-pose dd', (mode) => mode.textContent)) === 'lidar';
     if (is_on_scan && pose.every(Number.isFinite)) seen.push(pose);
+    if (!pressed && seen.length >= 10) pressed = press_all(page).catch((error) => error);
   }
   const sent = dds_poses();
   const moved = seen.filter(([x, y]) => Math.hypot(x, y) > 0.02);
@@ -75,15 +113,22 @@ try {
   const points = await page.$eval('.map-foot', (foot) => foot.textContent);
   assert.match(points, /[1-9].* points/);
   ok(`the map is there: ${points}`);
+  const done = await pressed;
+  if (done instanceof Error) throw done;
+  const recording = done.saved.match(/\/\S+/)?.[0] ?? '';
+  assert.ok(existsSync(`${recording}/recording.toml`), `no recording in "${recording}": ${done.saved}`);
+  ok(`actions: "${done.hint}"; "${done.saved}"`);
 
   await summary(page, 'error', 'silent for', 5000);
   assert.ok(await page.$$eval('.lights li.error', (entries) => entries.some((entry) => entry.textContent.startsWith('lidar'))));
-  ok('an unplugged lidar is red, with the sentence that explains it');
+  await page.waitForFunction(() => document.querySelector('.pose.old .pose-pose dd')?.textContent === 'no pose', { timeout: 8000, polling: 100 });
+  ok('an unplugged lidar is red, with the sentence that explains it; the last pose is told to be old');
 
   const narrow = await open(390, 844);
   await summary(narrow, 'error', 'silent for', 5000);
-  assert.ok(await narrow.evaluate(() => document.documentElement.scrollWidth) <= 390, 'the page scrolls sideways at 390 px');
-  ok('a second viewer sees the same, at 390 px without scrolling sideways');
+  const shifts = [await check_shifts(page, 'page'), await check_shifts(narrow, 'page at 390 px')];
+  await check_basics(narrow, 'page');
+  ok(`a second viewer sees the same, at 390 px, too; the basics hold, layout shift while data come ${shifts.join(', ')}`);
   const answer = await narrow.evaluate(async () => (await fetch('/api/save-black-box', { method: 'POST', headers: { Authorization: 'Bearer wrong' } })).status);
   assert.equal(answer, 401);
   assert.equal(errors.filter((error) => !error.includes('401')).join('\n'), '');

@@ -6,7 +6,7 @@ set -euo pipefail
 isobar=$1 isobard=$2 bridge=$3 node=$4
 here=$(cd "$(dirname "$0")" && pwd)
 command -v chromium >/dev/null || { echo "skipped: needs the Debian package chromium"; exit 77; }
-[ -d "$here/npm/node_modules/puppeteer-core" ] || { echo "skipped: run npm ci in $here/npm first"; exit 77; }
+[ -d "$here/npm/node_modules/puppeteer-core" ] && [ -d "$here/npm/node_modules/axe-core" ] || { echo "skipped: run npm ci in $here/npm first"; exit 77; }
 if "$isobar" web /nonexistent 2>&1 | grep -q 'without its page'; then echo "skipped: built without the page"; exit 77; fi
 
 work=$(mktemp -d)

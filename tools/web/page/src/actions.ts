@@ -17,6 +17,8 @@ export class Actions {
   private readonly x = number_input('x', 'm');
   private readonly y = number_input('y', 'm');
   private readonly yaw = number_input('yaw', '°');
+  /** Outcomes told so far: one that overtakes the answer to its request stands. */
+  private outcomes = 0;
 
   constructor() {
     const { root, body } = panel('Actions', 'actions');
@@ -36,7 +38,12 @@ export class Actions {
   }
 
   /** The outcome of an action, which comes later. */
-  tell(text: string, failed: boolean): void {
+  tell_outcome(text: string, failed: boolean): void {
+    ++this.outcomes;
+    this.tell(text, failed);
+  }
+
+  private tell(text: string, failed: boolean): void {
     set_text(this.answer, text);
     this.answer.classList.toggle('failed', failed);
   }
@@ -49,13 +56,15 @@ export class Actions {
 
   private async send(path: string, body: object): Promise<void> {
     this.tell('Asking …', false);
+    const before = this.outcomes;
     try {
       const answer = await fetch(path, {
         method: 'POST',
         headers: { Authorization: `Bearer ${this.token.value}`, 'Content-Type': 'application/json' },
         body: JSON.stringify(body),
       });
-      this.tell((await answer.text()).trim(), !answer.ok);
+      const text = (await answer.text()).trim();
+      if (this.outcomes === before) this.tell(text, !answer.ok);
     } catch {
       this.tell('isobar web does not answer.', true);
     }

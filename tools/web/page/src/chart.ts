@@ -40,6 +40,7 @@ export class Chart {
   private data: uPlot.AlignedData;
   private is_zoomed = false;
   private marked_s: number | null = null;
+  private readonly mark_line = element('div', 'chart-mark');
 
   constructor(private readonly options: ChartOptions) {
     this.data = [[], ...options.series.map(() => [])] as unknown as uPlot.AlignedData;
@@ -53,13 +54,16 @@ export class Chart {
     if (!this.plot) return;
     this.plot.setData(this.data, !this.is_zoomed);
     if (this.is_zoomed) this.plot.redraw();
+    this.show_values(this.plot);
   }
 
   /** Marks a time by a line; null: none. */
   mark(t_s: number | null): void {
     if (t_s === this.marked_s) return;
     this.marked_s = t_s;
-    this.plot?.redraw(false);
+    if (!this.plot) return;
+    this.place_mark(this.plot);
+    this.show_values(this.plot);
   }
 
   reset_zoom(): void {
@@ -117,8 +121,10 @@ export class Chart {
       bands: (bands ?? []).map((band) => ({ series: band.between, fill: () => style_value(band.colour) })),
       hooks: {
         setSelect: [(plot) => { if (plot.select.width > 0) this.is_zoomed = true; }],
-        draw: [(plot) => this.draw_mark(plot)],
+        draw: [(plot) => this.place_mark(plot)],
         ready: [(plot) => this.listen(plot)],
+        // When the pointer has left, uPlot empties the legend.
+        setCursor: [(plot) => { if ((plot.cursor.left ?? -1) < 0) queueMicrotask(() => this.show_values(plot)); }],
       },
     };
   }
@@ -131,6 +137,9 @@ export class Chart {
   }
 
   private listen(plot: uPlot): void {
+    plot.over.append(this.mark_line);
+    this.place_mark(plot);
+    this.show_values(plot);
     plot.over.addEventListener('dblclick', () => this.reset_zoom());
     let pressed_px = 0;
     plot.over.addEventListener('mousedown', (event) => (pressed_px = event.clientX));
@@ -141,20 +150,18 @@ export class Chart {
     });
   }
 
-  private draw_mark(plot: uPlot): void {
-    if (this.marked_s === null) return;
-    const x = plot.valToPos(this.marked_s, 'x', true);
-    const { left, top, width, height } = plot.bbox;
-    if (x < left || x > left + width) return;
-    const { ctx } = plot;
-    ctx.save();
-    ctx.strokeStyle = style_value('--ink');
-    ctx.globalAlpha = 0.75;
-    ctx.lineWidth = devicePixelRatio;
-    ctx.beginPath();
-    ctx.moveTo(x, top);
-    ctx.lineTo(x, top + height);
-    ctx.stroke();
-    ctx.restore();
+  /** The legend tells the values at the marked time, or the newest, while no pointer asks for others. */
+  private show_values(plot: uPlot): void {
+    const last = plot.data[0].length - 1;
+    if (last < 0 || (plot.cursor.left ?? -1) >= 0) return;
+    plot.setLegend({ idx: this.marked_s === null ? last : plot.valToIdx(this.marked_s) }, false);
+  }
+
+  /** Moves the line over the chart, which is not drawn anew for it. */
+  private place_mark(plot: uPlot): void {
+    const x = this.marked_s === null ? NaN : plot.valToPos(this.marked_s, 'x');
+    const is_inside = x >= 0 && x <= plot.over.clientWidth;
+    this.mark_line.hidden = !is_inside;
+    if (is_inside) this.mark_line.style.transform = `translateX(${x.toFixed(1)}px)`;
   }
 }

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The counters of a run: what was received, lost and refused. Those at zero come only when asked for.
-import { button, element, panel, set_text } from './dom';
+import { button, element, panel, scrolls, set_text } from './dom';
 import { count } from './format';
 import type { ViewData } from './view_data';
+
+/** "base_barometer: good rows" is read "base barometer: rows read". */
+function title_of(name: string): string {
+  return name.replaceAll('_', ' ').replace(/good rows$/, 'rows read');
+}
 
 export function counters_table(counters: ViewData['counters']): HTMLElement {
   const { root, head, body } = panel('Counters', 'counters');
@@ -11,7 +16,7 @@ export function counters_table(counters: ViewData['counters']): HTMLElement {
   const show = () => {
     const shown = counters.filter((counter) => all || counter.count > 0);
     rows.replaceChildren(...shown.map((counter) => {
-      const name = element('th', '', counter.name, counter.message ? element('span', 'message', counter.message) : null);
+      const name = element('th', '', title_of(counter.name), counter.message ? element('span', 'message', counter.message) : null);
       name.scope = 'row';
       return element('tr', '', name, element('td', '', count(counter.count)));
     }));
@@ -23,6 +28,6 @@ export function counters_table(counters: ViewData['counters']): HTMLElement {
   });
   show();
   head.append(toggle);
-  body.append(element('div', 'scroll', element('table', 'figures', rows)));
+  body.append(scrolls(element('div', 'scroll', element('table', 'figures', rows)), 'Counters'));
   return root;
 }

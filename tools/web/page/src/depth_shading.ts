@@ -40,18 +40,25 @@ void main() {
 const kRadiusPx = 1.4;
 const kStrength = 16;
 
-export class DepthShading {
-  private readonly target = new THREE.WebGLRenderTarget(1, 1, {
+function make_target(): THREE.WebGLRenderTarget {
+  return new THREE.WebGLRenderTarget(1, 1, {
     depthTexture: new THREE.DepthTexture(1, 1), minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter,
   });
+}
+
+export class DepthShading {
+  private readonly pictures = [make_target(), make_target()];
+  /** Which picture is shown, and into which one is drawn: the same, while it is refined before the reader's eyes. */
+  private shown = 0;
+  private drawn = 0;
   private readonly material = new THREE.ShaderMaterial({
     vertexShader: kVertex,
     fragmentShader: kFragment,
     depthTest: false,
     depthWrite: false,
     uniforms: {
-      colours: { value: this.target.texture },
-      depths: { value: this.target.depthTexture },
+      colours: { value: null as THREE.Texture | null },
+      depths: { value: null as THREE.Texture | null },
       pixel: { value: new THREE.Vector2() },
       near_far: { value: new THREE.Vector2() },
       strength: { value: kStrength },
@@ -68,7 +75,7 @@ export class DepthShading {
 
   /** Size of the canvas in pixels of the screen. */
   resize(width_px: number, height_px: number): void {
-    this.target.setSize(width_px, height_px);
+    for (const picture of this.pictures) picture.setSize(width_px, height_px);
     const scale = kRadiusPx * Math.min(2, this.renderer.getPixelRatio());
     this.material.uniforms.pixel.value.set(scale / width_px, scale / height_px);
   }
@@ -79,12 +86,31 @@ export class DepthShading {
     this.material.uniforms.ground.value.set(r, g, b);
   }
 
-  render(points: THREE.Scene, camera: THREE.PerspectiveCamera): void {
-    this.material.uniforms.near_far.value.set(camera.near, camera.far);
-    this.renderer.setRenderTarget(this.target);
+  /** Begins another picture. */
+  begin(): void {
+    this.drawn = 1 - this.shown;
+    this.renderer.setRenderTarget(this.pictures[this.drawn]);
     this.renderer.clear();
+    this.renderer.setRenderTarget(null);
+  }
+
+  /** Draws points into the picture that was begun, over those that are in it. */
+  draw(points: THREE.Scene, camera: THREE.PerspectiveCamera): void {
+    this.renderer.setRenderTarget(this.pictures[this.drawn]);
     this.renderer.render(points, camera);
     this.renderer.setRenderTarget(null);
+  }
+
+  /** The picture that was begun is the one that render() shows. */
+  show(camera: THREE.PerspectiveCamera): void {
+    this.shown = this.drawn;
+    this.material.uniforms.colours.value = this.pictures[this.shown].texture;
+    this.material.uniforms.depths.value = this.pictures[this.shown].depthTexture;
+    this.material.uniforms.near_far.value.set(camera.near, camera.far);
+  }
+
+  /** Shows the picture on the canvas. */
+  render(): void {
     this.renderer.render(this.scene, this.flat_camera);
   }
 }

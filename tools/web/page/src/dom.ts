@@ -32,6 +32,14 @@ export function panel(title: string, classes = ''): { root: HTMLElement; head: H
   return { root: element('section', `panel ${classes}`, head, body), head, body };
 }
 
+/** Makes a part that scrolls reachable by the keyboard. */
+export function scrolls<Part extends HTMLElement>(part: Part, label: string): Part {
+  part.tabIndex = 0;
+  part.setAttribute('role', 'region');
+  part.setAttribute('aria-label', label);
+  return part;
+}
+
 /** The value of a custom property of the style sheet, such as "--ink". */
 export function style_value(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();

@@ -34,6 +34,7 @@ export class FloorSlicer {
   });
 
   constructor() {
+    this.ceilings.title = 'Show also what lies more than 1.9 m above the floors';
     this.low.value = '0';
     this.high.value = String(kSteps);
     this.buttons.setAttribute('role', 'group');
@@ -108,7 +109,8 @@ export class FloorSlicer {
     return this.range_m[0] + (step / kSteps) * (this.range_m[1] - this.range_m[0]);
   }
 
-  private tell(): void {
+  /** Calls back with what is chosen. */
+  tell(): void {
     this.on_slice(this.slice_m);
     const is_cut = this.slice_m === null && !this.has_ceilings;
     this.on_cut(is_cut ? this.floors.map((floor) => floor.z_m) : []);

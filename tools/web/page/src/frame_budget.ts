@@ -1,53 +1,60 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// While a hand moves the view, only so many points are drawn as this machine can draw 30 times a second; at rest, all.
+// How many points a frame may draw, so that this machine draws 30 frames a second: found from the time that the graphics
+// card, or the software in its place, takes for each. No frame begins before the last one is done, so that a hand never
+// waits for frames in a queue.
 
-const kSlowMs = 40;
-const kFastMs = 24;
-const kLeastShare = 0.01;
-/** The view rests when nothing has moved it for so long. */
-const kRestMs = 300;
+const kFirstPoints = 100_000;
+const kLeastPoints = 20_000;
+const kMostPoints = 8_000_000;
+/** A frame above this is too slow [ms]: with the wait for the screen, 30 frames a second are lost. */
+const kSlowMs = 28;
+const kWantedMs = 22;
+const kQuickMs = 16;
+/** How often the card is asked whether it is done, and when it is given up [ms]. */
+const kPollMs = 3;
+const kGiveUpMs = 5000;
 
 export class FrameBudget {
-  /** Called when the view has come to rest after thinned frames: draw once more. */
-  on_rest: () => void = () => {};
-  private held = false;
-  private moved_ms = -kRestMs;
-  /** Time of the last frame of this movement; 0: none yet. */
-  private last_ms = 0;
-  private moving_share = 1;
-  private timer = 0;
+  private allowed = kFirstPoints;
+  private fence: WebGLSync | null = null;
+  private began_ms = 0;
 
-  /** A hand takes or leaves the view. */
-  set_held(held: boolean): void {
-    this.held = held;
-    this.moved();
+  constructor(private readonly gl: WebGL2RenderingContext) {}
+
+  /** Points that the next frame may draw. */
+  get points(): number {
+    return this.allowed;
   }
 
-  /** The view has moved. */
-  moved(): void {
-    this.moved_ms = performance.now();
-    clearTimeout(this.timer);
-    this.timer = window.setTimeout(() => this.rest(), kRestMs);
+  /** The last frame is still being drawn. */
+  get is_busy(): boolean {
+    return this.fence !== null;
   }
 
-  /** Share of the points to draw in the frame that begins now. */
-  share(now_ms: number): number {
-    if (!this.held && now_ms - this.moved_ms > kRestMs) {
-      this.last_ms = 0;
-      return 1;
+  /** Call it when all commands of a frame with so many points were given, which began at began_ms. */
+  drawn(points: number, began_ms: number): void {
+    this.began_ms = began_ms;
+    this.fence = this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    this.gl.flush();
+    if (this.fence) setTimeout(() => this.poll(points), kPollMs);
+  }
+
+  private poll(points: number): void {
+    if (!this.fence) return;
+    const took_ms = performance.now() - this.began_ms;
+    const is_done = this.gl.clientWaitSync(this.fence, 0, 0) !== this.gl.TIMEOUT_EXPIRED;
+    if (!is_done && took_ms < kGiveUpMs) {
+      setTimeout(() => this.poll(points), kPollMs);
+      return;
     }
-    const since_ms = now_ms - this.last_ms;
-    if (this.last_ms > 0) {
-      if (since_ms > kSlowMs) this.moving_share = Math.max(kLeastShare, this.moving_share * (since_ms > 4 * kSlowMs ? 0.3 : 0.7));
-      else if (since_ms < kFastMs) this.moving_share = Math.min(1, this.moving_share * 1.1);
-    }
-    this.last_ms = now_ms;
-    return this.moving_share;
+    this.gl.deleteSync(this.fence);
+    this.fence = null;
+    this.learn(points, took_ms);
   }
 
-  private rest(): void {
-    if (this.held) return;
-    this.last_ms = 0;
-    if (this.moving_share < 1) this.on_rest();
+  private learn(points: number, took_ms: number): void {
+    if (took_ms > kSlowMs && points > 0) this.allowed = Math.max(kLeastPoints, Math.min(points, this.allowed) * Math.max(0.3, kWantedMs / took_ms));
+    // A frame with fewer points than it might have tells nothing of more.
+    else if (took_ms < kQuickMs && points >= 0.9 * this.allowed) this.allowed = Math.min(kMostPoints, this.allowed * (took_ms < kQuickMs / 2 ? 2 : 1.2));
   }
 }

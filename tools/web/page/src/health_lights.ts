@@ -7,6 +7,11 @@ import type { HealthEntry, Level } from './view_data';
 const kSeverity: Record<Level, number> = { ok: 0, warning: 1, stale: 2, error: 3 };
 const kWords: Record<Level, string> = { ok: 'ok', warning: 'warning', stale: 'no data', error: 'error' };
 
+/** The summary begins with the name of what it is about. */
+function readable(sentence: string): string {
+  return sentence.replace(/^[a-z_]+(\/[a-z_]+)?(?=: )/, subject);
+}
+
 /** "lidar/packets_lost" is read "lidar: packets lost". */
 function subject(name: string): string {
   return name.replaceAll('_', ' ').replace('/', ': ');
@@ -34,7 +39,7 @@ export class SummaryLight {
     this.root.className = `summary ${level}`;
     this.root.firstElementChild!.className = `light ${level}`;
     set_text(this.word, kWords[level]);
-    set_text(this.sentence, sentence);
+    set_text(this.sentence, readable(sentence));
     this.sentence.title = sentence;
   }
 }
@@ -55,6 +60,8 @@ export class HealthLights {
       this.show();
     });
     head.append(this.toggle);
+    this.list.tabIndex = 0;  // it scrolls
+    this.list.setAttribute('aria-label', 'Health');
     body.append(this.list);
     this.show();
   }

@@ -14,6 +14,8 @@ const kSpans: [string, number][] = [['1 min', 60], ['10 min', 600], ['all', 0]];
 const kPlaces: Record<string, string> = { 'on a half level': 'half level', 'between floors': 'between' };
 /** Charts and path are drawn anew this often; the robot moves with every pose [ms]. */
 const kRedrawMs = 500;
+/** Poses come ten times a second: after this time without one, the last is old [ms]. */
+const kOldMs = 2000;
 
 export class LivePage implements Listener {
   private layout!: Layout;
@@ -21,6 +23,7 @@ export class LivePage implements Listener {
   private readonly span = element('select', '');
   private actions: Actions | null = null;
   private session = 0;
+  private pose_ms = 0;
   private is_new = false;
   private link: Link = { ok: true, text: '' };
 
@@ -61,6 +64,7 @@ export class LivePage implements Listener {
   on_pose(pose: LivePose): void {
     if (pose.session !== this.session && this.session !== 0) this.history.replace({ ...this.empty() });
     this.session = pose.session;
+    this.pose_ms = performance.now();
     this.history.add(pose);
     this.is_new = true;
     this.layout.pose.set(pose.x_m, pose.y_m, pose.z_m, pose.yaw_deg, pose.z_sd_m);
@@ -96,7 +100,7 @@ export class LivePage implements Listener {
   }
 
   on_action(text: string, failed: boolean): void {
-    this.actions?.tell(text, failed);
+    this.actions?.tell_outcome(text, failed);
   }
 
   private empty(): ViewData['poses'] {
@@ -104,6 +108,7 @@ export class LivePage implements Listener {
   }
 
   private redraw(): void {
+    if (this.pose_ms > 0 && performance.now() - this.pose_ms > kOldMs) this.layout.pose.set_old();
     if (!this.is_new || document.hidden) return;
     this.is_new = false;
     this.layout.height.set_poses(this.history.poses, Number(this.span.value));

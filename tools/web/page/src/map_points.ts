@@ -12,13 +12,14 @@ uniform vec2 slab_m;
 uniform float floors_m[FLOORS];
 uniform int floor_count;
 uniform float pixels_per_m;
+uniform float larger;
 uniform sampler2D colours;
 varying vec3 colour;
 void main() {
   vec4 world = modelMatrix * vec4(position * step_m, 1.0);
   vec4 seen = viewMatrix * world;
   gl_Position = projectionMatrix * seen;
-  gl_PointSize = clamp(pixels_per_m / max(0.1, -seen.z), 1.0, 5.0);
+  gl_PointSize = larger * clamp(pixels_per_m / max(0.1, -seen.z), 1.0, 5.0);
   bool shown = world.z >= slice_m.x && world.z <= slice_m.y;
   bool in_slab = floor_count == 0;
   for (int i = 0; i < FLOORS; ++i) {
@@ -38,6 +39,8 @@ void main() {
 
 /** Edge of a drawn point in space [m], while it is larger than a pixel. */
 const kPointM = 0.07;
+/** Thinned points are at most so much larger: beyond, they look like another map. */
+const kMostLarger = 3;
 /** One of this many points is kept for the extent of the map. */
 const kSampleStep = 61;
 /** Floors without their ceilings are shown between these heights above the ground [m]. */
@@ -70,7 +73,6 @@ export class MapPoints {
   private readonly chunks = new Map<string, Drawn>();
   private epoch = -1;
   private total = 0;
-  private share = 1;
   private readonly material = new THREE.ShaderMaterial({
     vertexShader: kVertex,
     fragmentShader: kFragment,
@@ -83,6 +85,7 @@ export class MapPoints {
       floors_m: { value: new Array(kMostFloors).fill(0) },
       floor_count: { value: 0 },
       pixels_per_m: { value: 50 },
+      larger: { value: 1 },
       colours: { value: null },
     },
   });
@@ -134,15 +137,17 @@ export class MapPoints {
       (kPointM * height_px) / (2 * Math.tan((field_of_view_deg * Math.PI) / 360));
   }
 
-  /** Draws this share of the points, evenly thinned, 0 … 1. */
-  set_share(share: number): void {
-    if (share === this.share) return;
-    this.share = share;
-    for (const { points } of this.chunks.values()) this.thin(points.geometry);
-  }
-
-  private thin(geometry: THREE.BufferGeometry): void {
-    geometry.setDrawRange(0, Math.ceil(this.share * geometry.getAttribute('position').count));
+  /**
+   * Which of the points are drawn next, 0 … 1: their order is random, so that each part is a thinned whole.
+   * @param is_alone the part stands for all: its points are larger, so that surfaces stay closed
+   */
+  set_part(from: number, to: number, is_alone: boolean): void {
+    this.material.uniforms.larger.value = is_alone ? Math.min(kMostLarger, Math.sqrt(1 / (to - from))) : 1;
+    for (const { points: { geometry } } of this.chunks.values()) {
+      const points = geometry.getAttribute('position').count;
+      const first = Math.ceil(from * points);
+      geometry.setDrawRange(first, Math.ceil(to * points) - first);
+    }
   }
 
   /** Heights between which nearly all points lie; null: none yet. */
@@ -173,7 +178,6 @@ export class MapPoints {
     }
     const edge_m = 65_536 * step_m;
     geometry.boundingSphere = new THREE.Sphere(new THREE.Vector3().setScalar(edge_m / 2), edge_m * 0.87);
-    this.thin(geometry);
     const points = new THREE.Points(geometry, this.material);
     points.position.set(...corner_m);
     this.group.add(points);

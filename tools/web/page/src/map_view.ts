@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The map in three dimensions: points, paths and robot. Draws only when something has changed. Knows nothing of where
-// the data come from: see MapPiece and Poses.
+// The map in three dimensions: points, paths and robot. Draws only when something has changed; of many points each frame
+// draws as many as this machine draws in time, larger; at rest the whole picture grows unseen, and is shown then. Knows nothing of where the
+// data come from: see MapPiece and Poses.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { DepthShading } from './depth_shading';
@@ -14,6 +15,8 @@ const kFieldOfViewDeg = 50;
 const kDarkQuery = '(prefers-color-scheme: dark)';
 /** Of a screen with many pixels only so many are drawn per CSS pixel: points stay points, at half the work. */
 const kMostPixelRatio = 1.5;
+/** A map that grows moves the view only where it would move by more than this share of its distance. */
+const kGentleShare = 0.04;
 
 export class MapView {
   readonly root = element('div', 'map-view');
@@ -35,7 +38,9 @@ export class MapView {
   private slice_m: [number, number] | null = null;
   private fitted: THREE.Vector3[] = [];
   private touched = false;
-  private readonly budget = new FrameBudget();
+  private readonly budget: FrameBudget;
+  /** The picture of the points: how much of it is drawn, 0 … 1; shown at once, thinned, or when it is whole; outdated. */
+  private picture = { share: 1, is_shown: true, is_old: false };
   private waiting = false;
   private follows = false;
   frames = 0;
@@ -44,6 +49,7 @@ export class MapView {
   constructor() {
     this.renderer = new THREE.WebGLRenderer({ antialias: false, powerPreference: 'high-performance' });
     this.renderer.localClippingEnabled = true;
+    this.renderer.debug.checkShaderErrors = false;  // asking waits for the compiler
     this.renderer.autoClear = false;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, kMostPixelRatio));
     const canvas = this.renderer.domElement;
@@ -55,16 +61,9 @@ export class MapView {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.maxPolarAngle = Math.PI * 0.49;
     this.controls.zoomToCursor = true;
-    this.controls.addEventListener('change', () => {
-      this.budget.moved();
-      this.draw_soon();
-    });
-    this.budget.on_rest = () => this.draw_soon();
-    this.controls.addEventListener('start', () => {
-      this.touched = true;
-      this.budget.set_held(true);
-    });
-    this.controls.addEventListener('end', () => this.budget.set_held(false));
+    this.controls.addEventListener('change', () => this.draw_anew());
+    this.controls.addEventListener('start', () => (this.touched = true));
+    this.budget = new FrameBudget(this.renderer.getContext() as WebGL2RenderingContext);
     this.shading = new DepthShading(this.renderer);
     this.scene.add(this.points.group);
     this.overlay.add(this.robot.object);
@@ -79,16 +78,17 @@ export class MapView {
   }
 
   apply(piece: MapPiece): void {
+    const is_first = this.points.count === 0;
     this.points.apply(piece);
     if (!piece.more) this.take_range();
-    if (!this.touched && !piece.more) this.fit();
-    this.draw_soon();
+    if (!this.touched && !piece.more) this.fit_places([...this.points.samples()], false, true);
+    this.draw_anew(is_first);
   }
 
   clear(): void {
     this.points.clear();
     this.range_m = null;
-    this.draw_soon();
+    this.draw_anew();
   }
 
   /** The path that was driven; `whole`: the faint line beneath it, of the whole run. */
@@ -145,7 +145,7 @@ export class MapView {
   /** Leaves out the ceilings over these floors; none: shows all. */
   cut_above(floors_m: number[]): void {
     this.points.cut_above(floors_m);
-    this.draw_soon();
+    this.draw_anew();
   }
 
   /** The whole map, from obliquely above or from the top. */
@@ -160,19 +160,21 @@ export class MapView {
     this.fit_places(places, false);
   }
 
-  private fit_places(places: THREE.Vector3[], from_top: boolean): void {
+  private fit_places(places: THREE.Vector3[], from_top: boolean, is_gentle = false): void {
     if (places.length === 0) return;
     this.fitted = places;
     const box = new THREE.Box3().setFromPoints(places);
     const centre = box.getCenter(new THREE.Vector3());
     const direction = (from_top ? new THREE.Vector3(0, -0.001, 1) : new THREE.Vector3(-0.45, -0.75, 0.8)).normalize();
     const distance = Math.max(3, 1.08 * this.distance_for(places, centre, direction));
+    const position = centre.clone().addScaledVector(direction, distance);
+    if (is_gentle && position.distanceTo(this.camera.position) < kGentleShare * distance) return;
     this.controls.target.copy(centre);
-    this.camera.position.copy(centre).addScaledVector(direction, distance);
+    this.camera.position.copy(position);
     this.camera.far = Math.max(1000, 10 * distance);
     this.camera.updateProjectionMatrix();
     this.controls.update();
-    this.draw_soon();
+    this.draw_anew();
   }
 
   /** Distance from the centre at which all places are in view. */
@@ -200,7 +202,7 @@ export class MapView {
   private colour(): void {
     const range = this.slice_m ?? this.range_m;
     if (range) this.points.set_range(range[0], range[1]);
-    this.draw_soon();
+    this.draw_anew();
   }
 
   private take_theme(): void {
@@ -209,7 +211,7 @@ export class MapView {
     for (const line of [this.path, this.whole_path]) line.set_colour(style_value('--accent'));
     this.other_path.set_colour(style_value('--ink'));
     this.robot.set_colours(style_value('--accent'), style_value('--map-rim'));
-    this.draw_soon();
+    this.draw_anew();
   }
 
   private resize(): void {
@@ -222,19 +224,53 @@ export class MapView {
     this.points.set_view(height * ratio, kFieldOfViewDeg);
     this.shading.resize(Math.floor(width * ratio), Math.floor(height * ratio));
     if (!this.touched) this.fit_places(this.fitted, false);
+    this.draw_anew();
+  }
+
+  /** Begins another picture of the points. @param is_shown at once: what is there is of another view */
+  private draw_anew(is_shown = true): void {
+    const { picture } = this;
+    // One that grows unseen is finished first: maps that come faster than they are drawn would never be shown.
+    if (!is_shown && picture.share < 1) picture.is_old = !picture.is_shown;
+    else this.picture = { share: 0, is_shown, is_old: false };
     this.draw_soon();
   }
 
   private draw_soon(): void {
     if (this.waiting) return;
     this.waiting = true;
-    requestAnimationFrame((now_ms) => {
-      this.waiting = false;
-      this.points.set_share(this.budget.share(now_ms));
-      this.robot.scale_to(this.camera);
-      this.shading.render(this.scene, this.camera);
-      this.renderer.render(this.overlay, this.camera);
-      ++this.frames;
-    });
+    requestAnimationFrame(() => this.frame());
+  }
+
+  private frame(): void {
+    if (this.budget.is_busy) {
+      requestAnimationFrame(() => this.frame());
+      return;
+    }
+    this.waiting = false;
+    const began_ms = performance.now();
+    const drawn = this.picture.share < 1 ? this.draw_points() : 0;
+    this.robot.scale_to(this.camera);
+    this.shading.render();
+    this.renderer.render(this.overlay, this.camera);
+    ++this.frames;
+    this.budget.drawn(drawn, began_ms);
+    if (this.picture.share < 1) this.draw_soon();
+    else if (this.picture.is_old) this.draw_anew(false);
+  }
+
+  /** Draws the next part of the points. @return their number */
+  private draw_points(): number {
+    const { picture } = this;
+    const total = Math.max(1, this.points.count);
+    const to = Math.min(1, picture.share + this.budget.points / total);
+    if (picture.share === 0) this.shading.begin();
+    this.points.set_part(picture.share, to, picture.is_shown);
+    this.shading.draw(this.scene, this.camera);
+    if (picture.is_shown || to === 1) this.shading.show(this.camera);
+    const drawn = (to - picture.share) * total;
+    picture.share = to;
+    if (picture.is_shown && to < 1) this.picture = { share: 0, is_shown: false, is_old: false };
+    return drawn;
   }
 }

@@ -6,8 +6,13 @@ import { fixed } from './format';
 const kFields = [['x', 'm'], ['y', 'm'], ['z', 'm'], ['yaw', '°'], ['σ z', 'm'], ['floor', ''], ['pose', '']] as const;
 type Field = (typeof kFields)[number][0];
 
+/** Where fields have another label than their name, and what explains it. */
+const kLabels: Partial<Record<Field, [string, string]>> = {
+  'σ z': ['± z', 'standard deviation of z'],
+  pose: ['pose from', 'lidar: a scan was matched to the map; motion: between scans, from inertial sensors and wheels'],
+};
 const kModes: Record<string, string> = {
-  registered: 'on scan', prior: 'no scan', initializing: 'starting',
+  registered: 'lidar', prior: 'motion', initializing: 'starting',
 };
 
 export class PoseReadout {
@@ -18,7 +23,10 @@ export class PoseReadout {
     for (const [name, unit] of kFields) {
       const value = element('dd', '', '–');
       this.values.set(name, value);
-      this.root.append(element('div', `pose-${name.replace(' ', '-')}`, element('dt', '', unit ? `${name} ${unit}` : name), value));
+      const [label, meaning] = kLabels[name] ?? [name, ''];
+      const field = element('div', `pose-${name.replace(' ', '-')}`, element('dt', '', unit ? `${label} ${unit}` : label), value);
+      field.title = meaning;
+      this.root.append(field);
     }
     this.root.setAttribute('aria-label', 'Pose of the robot in the map');
   }
@@ -35,7 +43,14 @@ export class PoseReadout {
     this.put('floor', text || '–');
   }
 
+  /** No pose has come for a while: what is shown is old. */
+  set_old(): void {
+    this.put('pose', 'no pose');
+    this.root.classList.add('old');
+  }
+
   set_mode(mode: string, lost = ''): void {
+    this.root.classList.remove('old');
     this.put('pose', lost ? 'lost' : (kModes[mode] ?? mode) || '–');
     this.root.classList.toggle('lost', lost !== '');
   }

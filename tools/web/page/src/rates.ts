@@ -11,7 +11,7 @@ const kTitles: Record<string, string> = {
 
 /** A sensor that should be heard, and has not been for this long, is marked [s]. */
 const kSilentS = 2;
-const kPlaces = 5;
+const kPlaces = 6;
 
 export class Rates {
   readonly root: HTMLElement;
@@ -21,7 +21,7 @@ export class Rates {
   constructor(private readonly is_live: boolean) {
     const { root, body } = panel('Sensors', 'rates');
     this.root = root;
-    const heads = is_live ? ['', 'rate', 'age', 'lost', 'refused'] : ['', 'rate', 'samples', 'span', ''];
+    const heads = is_live ? ['', 'rate', 'age', 'lost', 'refused'] : ['', 'rate', 'samples', 'span'];
     const row = element('tr', '', ...heads.map((head) => element('th', '', head)));
     body.append(element('table', 'figures', element('thead', '', row), this.rows));
   }
@@ -35,10 +35,9 @@ export class Rates {
 
   private make(sensors: Sensor[]): void {
     this.rows.replaceChildren(...sensors.map((sensor) => {
-      const name = element('th', '', kTitles[sensor.name] ?? sensor.name);
+      const name = element('th', '', kTitles[sensor.name] ?? sensor.name, sensor.file ? element('span', 'message', sensor.file) : null);
       name.scope = 'row';
-      if (sensor.file) name.title = sensor.file;
-      return element('tr', '', name, ...Array.from({ length: 4 }, () => element('td', '')));
+      return element('tr', '', name, ...Array.from({ length: this.is_live ? 4 : 3 }, () => element('td', '')));
     }));
     // Places for the sensors that come, so that nothing moves then.
     for (let i = sensors.length; this.is_live && i < kPlaces; ++i) {
@@ -52,7 +51,7 @@ export class Rates {
     const texts = this.is_live
       ? [rate, sensor.heard ? (age_s < 1 ? `${fixed(1000 * age_s, 0)} ms` : `${fixed(age_s, 1)} s`) : '–', count(sensor.lost),
           count((sensor.rejected ?? 0) + (sensor.dropped ?? 0))]
-      : [rate, count(sensor.samples), `${fixed(sensor.age_s, 1)} s`, sensor.file ?? ''];
+      : [rate, count(sensor.samples), `${fixed(sensor.age_s, 1)} s`];
     texts.forEach((text, i) => set_text(row.children[i + 1], text));
     row.classList.toggle('silent', this.is_live && (!sensor.heard || age_s > kSilentS));
   }

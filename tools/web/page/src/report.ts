@@ -67,35 +67,64 @@ function curves(data: ReportData, target: HTMLElement): void {
     figure('Height along the way', heights.root, 'Dashed: the reference.'));
 }
 
+/** Calls back once, when a part comes near the window or is to be printed. */
+function when_near(part: HTMLElement, callback: () => void): void {
+  let is_done = false;
+  const once = () => {
+    if (is_done) return;
+    is_done = true;
+    watcher.disconnect();
+    removeEventListener('beforeprint', once);
+    callback();
+  };
+  // After the next frame: text and curves are painted first.
+  const watcher = new IntersectionObserver((entries) => {
+    if (entries.some((entry) => entry.isIntersecting)) requestAnimationFrame(() => setTimeout(once, 0));
+  }, { rootMargin: '600px' });
+  watcher.observe(part);
+  addEventListener('beforeprint', once);
+}
+
+/** The place of the map; what fills it, and takes a second on a weak machine, begins when a reader comes near. */
 function map_of(data: ReportData, target: HTMLElement): void {
   const indices = data.methods.map((_, index) => index).filter((index) => data.methods[index].has_map);
   if (indices.length === 0) return;
-  let view: MapView;
-  try {
-    view = new MapView();
-  } catch {
-    target.append(figure('The map', element('p', 'no-map', 'This browser has no WebGL, which draws the map.'), ''));
-    return;
-  }
+  const place = element('div', 'map-view');
+  const group = element('div', 'chips');
   const slicer = new FloorSlicer();
   slicer.set_floors(data.floors);
-  view.on_range = (range_m) => slicer.set_range(range_m);
-  slicer.on_slice = (slice_m) => view.set_slice(slice_m);
-  const chips = indices.map((index) => button(data.methods[index].name, 'chip', () => choose(index)));
-  const choose = (chosen: number) => {
-    const text = document.getElementById(`isobar-map-${chosen}`)?.textContent ?? '';
-    const method = data.methods[chosen];
-    view.clear();
-    view.apply(decode_map(Uint8Array.from(atob(text.trim()), (byte) => byte.charCodeAt(0)).buffer));
-    view.set_path(method, method);
-    view.set_other_path(data.reference);
-    chips.forEach((chip, i) => chip.setAttribute('aria-pressed', String(indices[i] === chosen)));
-  };
-  const from_top = button('From above', 'chip', () => view.fit(true));
-  const group = element('div', 'chips', ...(chips.length > 1 ? chips : []), from_top);
-  target.append(figure('The map', element('div', 'map-box', group, view.root, slicer.root),
+  const chips = indices.map((index) => button(data.methods[index].name, 'chip', () => {}));
+  const from_top = button('From above', 'chip', () => {});
+  group.append(...(chips.length > 1 ? chips : []), from_top);
+  const box = element('div', 'map-box', group, place, slicer.root);
+  target.append(figure('The map', box,
     'Coloured by height. Drag to turn, wheel or pinch to zoom, right button or two fingers to move; buttons show one floor. Thick line: the estimate; thin line: the reference.'));
-  choose(indices.includes(data.main) ? data.main : indices[0]);
+  when_near(box, () => {
+    let view: MapView;
+    try {
+      view = new MapView();
+    } catch {
+      box.replaceChildren(element('p', 'no-map', 'This browser has no WebGL, which draws the map.'));
+      return;
+    }
+    place.replaceWith(view.root);
+    view.on_range = (range_m) => slicer.set_range(range_m);
+    slicer.on_slice = (slice_m) => view.set_slice(slice_m);
+    slicer.on_cut = (floors_m) => view.cut_above(floors_m);
+    slicer.tell();
+    const choose = (chosen: number) => {
+      const text = document.getElementById(`isobar-map-${chosen}`)?.textContent ?? '';
+      const method = data.methods[chosen];
+      view.clear();
+      view.apply(decode_map(Uint8Array.from(atob(text.trim()), (byte) => byte.charCodeAt(0)).buffer));
+      view.set_path(method, method);
+      view.set_other_path(data.reference);
+      chips.forEach((chip, i) => chip.setAttribute('aria-pressed', String(indices[i] === chosen)));
+    };
+    chips.forEach((chip, i) => chip.addEventListener('click', () => choose(indices[i])));
+    from_top.addEventListener('click', () => view.fit(true));
+    choose(indices.includes(data.main) ? data.main : indices[0]);
+  });
 }
 
 const target = document.getElementById('isobar-report-view');

@@ -85,6 +85,8 @@ export class RunPage implements Listener {
     if (path) this.layout.map?.set_path(path, path);
     if (has_poses && tracks[0]) this.layout.map?.set_other_path(tracks[0]);
     if (map.points === 0 && this.layout.map) {
+      this.layout.map_note.classList.add('below');
+      this.layout.slicer.root.hidden = true;
       set_text(this.layout.map_note, this.view.kind === 'recording'
         ? 'A recording has no map yet. Make one: isobar replay RECORDING --out RUN, then isobar web RUN.'
         : 'This run has no map: neither map.ply nor the folder map.');

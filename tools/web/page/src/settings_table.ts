@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every setting in force and where its value comes from; what differs from the defaults first.
-import { element, panel, set_text } from './dom';
+import { element, panel, scrolls, set_text } from './dom';
 import type { Setting } from './view_data';
 
 type Choice = 'changed' | 'basic' | 'all';
 
 export class SettingsTable {
   readonly root: HTMLElement;
+  private readonly table: HTMLElement;
   private readonly rows = element('tbody', '');
   private readonly search = element('input', 'search');
   private readonly choice = element('select', '');
@@ -26,10 +27,10 @@ export class SettingsTable {
     this.search.placeholder = 'Search';
     this.search.setAttribute('aria-label', 'Search the settings');
     head.append(this.choice, this.search);
+    this.table = scrolls(element('div', 'scroll', element('table', 'settings-rows', element('thead', '', element('tr', '', ...['Setting', 'Value', 'From'].map((text) => element('th', '', text)))), this.rows)), 'Settings');
     this.choice.addEventListener('change', () => this.show());
     this.search.addEventListener('input', () => this.show());
-    const heads = ['Setting', 'Value', 'From'].map((text) => element('th', '', text));
-    body.append(this.note, element('div', 'scroll', element('table', 'settings-rows', element('thead', '', element('tr', '', ...heads)), this.rows)));
+    body.append(this.note, this.table);
     this.show();
   }
 
@@ -59,5 +60,6 @@ export class SettingsTable {
       ? 'The configuration is not known.'
       : `${this.settings.length} settings, ${changed} of them not the default; ${shown.length} shown.`;
     set_text(this.note, words_of);
+    for (const part of [this.table, this.choice, this.search]) part.hidden = this.settings.length === 0;
   }
 }
