@@ -21,6 +21,7 @@
 #include "tools/commands.hpp"
 #include "tools/import/import_source.hpp"
 #include "tools/import/scratch_folder.hpp"
+#include "tools/import/unreadable.hpp"
 #include "tools/import_options.hpp"
 #include "tools/method_option.hpp"
 #include "tools/overridden_settings.hpp"
@@ -46,8 +47,10 @@ struct ReplayOptions {
 /// The recording that a foreign source becomes: in the folder of --keep, else in a temporary one that goes with the object.
 class ImportedRecording {
  public:
-  explicit ImportedRecording(const ReplayOptions& options) : folder_(options.recording) {
-    if (!is_importable(options.recording)) return;
+  explicit ImportedRecording(const ReplayOptions& options)
+      : source_(options.recording), folder_(options.recording) {
+    if (is_recording(source_)) return;
+    if (!is_importable(source_)) throw DataError(why_unreadable(source_));
     ImportRequest request = options.import;
     request.source = options.recording;
     request.out = options.keep;
@@ -60,8 +63,18 @@ class ImportedRecording {
     folder_ = request.out;
   }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  /// A text about a file of the temporary folder, about the source instead: the folder is gone when it is read.
+  [[nodiscard]] std::string about_source(std::string text) const {
+    if (!temporary_) return text;
+    for (const std::string& name : {(folder_ / "lidar.pcap").string(), folder_.string()}) {
+      const std::size_t at = text.find(name);
+      if (at != std::string::npos) return text.replace(at, name.size(), source_.string());
+    }
+    return text;
+  }
 
  private:
+  std::filesystem::path source_;
   std::filesystem::path folder_;
   std::optional<ScratchFolder> temporary_;
 };
@@ -86,28 +99,64 @@ void print_written(const std::filesystem::path& out) {
   std::printf("written: %s/%s\n", out.c_str(), names.c_str());
 }
 
-void print_summary(const ReplaySummary& summary, const std::filesystem::path& out) {
-  for (const std::string& warning : summary.warnings) std::printf("note: %s\n", warning.c_str());
-  if (!summary.base_clock.empty()) std::printf("base station clock: %s\n", summary.base_clock.c_str());
-  for (const files::RunCount& count : summary.counts) {
-    if (count.count == 0 || is_ordinary(count.name) || count.name == "contradiction")
-      continue;  // a note already
-    std::printf("counted: %s: %llu%s%s\n", count.name.c_str(), static_cast<unsigned long long>(count.count),
-                count.first_message.empty() ? "" : "; first: ", count.first_message.c_str());
-  }
-  std::printf("%llu scans: %llu poses registered, %llu from the prior; %llu map points\n",
-              static_cast<unsigned long long>(summary.scans),
+/// The scans by what became of them.
+void print_scans(const ReplaySummary& summary) {
+  const std::uint64_t began = summary.poses - summary.registered - summary.from_prior;
+  std::printf("%llu scans: %llu began the map, %llu poses registered, %llu from the prior; %llu map points\n",
+              static_cast<unsigned long long>(summary.scans), static_cast<unsigned long long>(began),
               static_cast<unsigned long long>(summary.registered),
               static_cast<unsigned long long>(summary.from_prior),
               static_cast<unsigned long long>(summary.map_points));
   std::printf("%.1f s of recording in %.1f s, %.1f times real time\n", summary.recorded_s, summary.wall_s,
               summary.wall_s > 0.0 ? summary.recorded_s / summary.wall_s : 0.0);
+}
+
+void print_summary(const ReplaySummary& summary, const ImportedRecording& recording) {
+  for (const std::string& warning : summary.warnings) {
+    std::printf("note: %s\n", recording.about_source(warning).c_str());
+  }
+  if (!summary.base_clock.empty()) std::printf("base station clock: %s\n", summary.base_clock.c_str());
+  for (const files::RunCount& count : summary.counts) {
+    if (count.count == 0 || is_ordinary(count.name) || count.name == "contradiction")
+      continue;  // a note already
+    const bool is_said = std::find(summary.warnings.begin(), summary.warnings.end(), count.first_message) !=
+                         summary.warnings.end();
+    std::printf("counted: %s: %llu%s%s\n", count.name.c_str(), static_cast<unsigned long long>(count.count),
+                count.first_message.empty() || is_said ? "" : "; first: ",
+                is_said ? "" : recording.about_source(count.first_message).c_str());
+  }
+  print_scans(summary);
   if (summary.loops > 0) {
     std::printf(
         "%llu loops, places that the robot saw again: trajectory-corrected.tum is corrected by them\n",
         static_cast<unsigned long long>(summary.loops));
   }
-  print_written(out);
+}
+
+/// A path as a shell takes it.
+std::string shell_word(const std::string& path) {
+  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+,:@%";
+  if (!path.empty() && path.find_first_not_of(kPlain) == std::string::npos) return path;
+  std::string word = "'";
+  for (const char c : path) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
+
+/// What is next: the commands that show the run.
+void print_next(const std::filesystem::path& out) {
+  const std::string run = shell_word(out.string());
+  std::printf("to see it: isobar web %s (in a browser), or isobar report %s (one HTML file)\n", run.c_str(),
+              run.c_str());
+}
+
+/// Folder of the run where none is named: beside nothing of the user's, in the current folder, with the source's name.
+std::filesystem::path default_out(const std::filesystem::path& source) {
+  std::error_code error;
+  std::filesystem::path whole = std::filesystem::absolute(source, error).lexically_normal();
+  if (!whole.has_filename()) whole = whole.parent_path();
+  std::string name = std::filesystem::is_directory(whole, error) ? whole.filename() : whole.stem();
+  if (name.empty()) name = "isobar";
+  return name + "-run";
 }
 
 /// A run that is already in the folder is kept unless its removal is asked for.
@@ -147,7 +196,8 @@ Config config_of(const ReplayOptions& options, Config config) {
   return config;
 }
 
-void run_replay(const ReplayOptions& options) {
+void run_replay(ReplayOptions options) {
+  if (options.out.empty()) options.out = default_out(options.recording);
   refuse_own_map(options);
   refuse_run(options);
   const LoadedConfig loaded = options.config.empty() ? LoadedConfig{} : load_layers(options.config);
@@ -163,7 +213,9 @@ void run_replay(const ReplayOptions& options) {
   const ReplaySummary summary =
       replay(recording.folder(), config, options.out, [&](double fraction) { progress.update(fraction); });
   progress.finish();
-  print_summary(summary, options.out);
+  print_summary(summary, recording);
+  print_written(options.out);
+  print_next(options.out);
 }
 
 }  // namespace
@@ -180,9 +232,10 @@ void add_replay_command(CLI::App& app) {
   command.add_option("--config", options.config,
                      "TOML file; its sensors and mounts are replaced by the recording's");
   command.add_option("--method", options.method, method_names() + " (default: the configuration's)");
-  command
-      .add_option("--out", options.out, "folder for trajectory.tum, map.ply, map/, status.csv, settings.toml")
-      ->required();
+  command.add_option(
+      "--out", options.out,
+      "folder for trajectory.tum, map.ply, map/, status.csv, settings.toml (default: NAME-run in the "
+      "current folder, for a recording NAME)");
   command.add_option("--map", options.map,
                      "stored map in which the robot is, the folder of a run or of a map; it stays as it is");
   command.add_option(

@@ -61,10 +61,11 @@ PlyHeader read_ply_header(PointText& text, recording::CloudRecord& cloud) {
 
 }  // namespace
 
-recording::CloudRecord read_ply(const std::filesystem::path& file) {
+recording::CloudRecord read_ply(const std::filesystem::path& file, std::uint64_t& stated_points) {
   PointText text(file);
   recording::CloudRecord cloud;
   const PlyHeader header = read_ply_header(text, cloud);
+  stated_points = header.points;
   if (cloud.point_step == 0) text.fail("its points have no properties");
   cloud.height = 1;
   if (header.format == "ascii") {
@@ -108,12 +109,17 @@ bool is_point_file(const std::filesystem::path& file) {
   return extension == ".pcd" || extension == ".ply" || extension == ".bin";
 }
 
-recording::CloudRecord read_point_file(const std::filesystem::path& file) {
+recording::CloudRecord read_point_file(const std::filesystem::path& file, std::string* damage) {
   const std::string extension = file.extension();
-  recording::CloudRecord cloud = extension == ".pcd"   ? read_pcd(file)
-                                 : extension == ".ply" ? read_ply(file)
+  std::uint64_t stated_points = 0;
+  recording::CloudRecord cloud = extension == ".pcd"   ? read_pcd(file, stated_points)
+                                 : extension == ".ply" ? read_ply(file, stated_points)
                                                        : read_kitti_bin(file);
   if (cloud.width == 0) throw DataError(file.string() + ": holds no points");
+  if (damage != nullptr && cloud.width < stated_points) {
+    *damage = file.string() + ": ends after point " + std::to_string(cloud.width) + " of " +
+              std::to_string(stated_points);
+  }
   return cloud;
 }
 

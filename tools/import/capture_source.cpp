@@ -66,7 +66,8 @@ std::string calibration_of(const ImportRequest& request) {
   return std::filesystem::is_regular_file(beside, error) ? beside.string() : std::string();
 }
 
-std::vector<PortFindings> look_at_all(const ImportRequest& request, const std::string& calibration) {
+std::vector<PortFindings> look_at_all(const ImportRequest& request, const std::string& calibration,
+                                      std::vector<std::string>& notes) {
   recording::PcapPackets packets(request.source, {0, 0}, {});
   recording::StampedPacket packet;
   while (packets.next(packet)) continue;
@@ -78,6 +79,9 @@ std::vector<PortFindings> look_at_all(const ImportRequest& request, const std::s
       if (tally->count > 0) why += "; " + tally->first_message;
     }
     throw DataError(request.source.string() + ": " + why);
+  }
+  if (packets.tallies().file_truncated.count > 0) {
+    notes.push_back("damaged: " + packets.tallies().file_truncated.first_message);
   }
   std::vector<PortFindings> ports;
   for (unsigned port = 1; port <= 65'535; ++port) {
@@ -132,7 +136,7 @@ bool is_capture(const std::filesystem::path& file) {
 CaptureFindings find_lidar(const ImportRequest& request, ImportReport& report) {
   report.container = "capture";
   const std::string calibration = calibration_of(request);
-  const std::vector<PortFindings> ports = look_at_all(request, calibration);
+  const std::vector<PortFindings> ports = look_at_all(request, calibration, report.notes);
   const PortFindings& chosen = choose_port(request, ports);
   const std::string name = request.model.empty() ? chosen.model : request.model;
   const LidarModel* model = find_lidar_model(name);
@@ -141,6 +145,9 @@ CaptureFindings find_lidar(const ImportRequest& request, ImportReport& report) {
   if (model->needs_calibration && calibration.empty()) {
     throw UsageError("--calibration: the packets of an " + name +
                      " need the sensor's metadata: say --calibration FILE.json");
+  }
+  if (!chosen.mismatch.empty() && request.model.empty()) {
+    report.notes.push_back("lidar: " + chosen.mismatch + ", and is taken; --model says otherwise");
   }
   CaptureFindings findings;
   findings.lidar.model = name;

@@ -14,6 +14,7 @@
 #include "tools/import/import_plan.hpp"
 #include "tools/import/new_folder.hpp"
 #include "tools/import/scan_files.hpp"
+#include "tools/import/unreadable.hpp"
 
 namespace isobar::tools {
 namespace {
@@ -58,6 +59,18 @@ void import_messages(const ImportRequest& request, AddedLogs& logs, ImportReport
   writer.close();
 }
 
+/// The mount of --mount; without it the lidar's frame is the robot's.
+void place_lidar(const std::map<std::string, Mount>& mounts, recording::LidarEntry& lidar,
+                 ImportReport& report) {
+  if (const auto mount = mounts.find("lidar"); mount != mounts.end()) {
+    lidar.mount = mount->second;
+    return;
+  }
+  report.notes.emplace_back(
+      "mounts: where the lidar sits on the robot is not known: poses are those of the lidar; "
+      "--mount lidar=x,y,z,roll,pitch,yaw says it");
+}
+
 /// A capture of a lidar's packets.
 void import_capture(const ImportRequest& request, AddedLogs& logs, ImportReport& report,
                     const std::function<void(double)>& progress) {
@@ -72,14 +85,7 @@ void import_capture(const ImportRequest& request, AddedLogs& logs, ImportReport&
   writer.close();
   place_capture(request, findings, request.out);
   manifest.lidar = findings.lidar;
-  const auto mounts = request.mounts();
-  if (const auto mount = mounts.find("lidar"); mount != mounts.end()) {
-    manifest.lidar->mount = mount->second;
-  } else {
-    report.notes.emplace_back(
-        "mounts: where the lidar sits on the robot is not known: poses are those of the lidar; "
-        "--mount lidar=x,y,z,roll,pitch,yaw says it");
-  }
+  place_lidar(request.mounts(), *manifest.lidar, report);
   recording::write_manifest(request.out, manifest);
 }
 
@@ -94,7 +100,7 @@ void import_scans(const ImportRequest& request, AddedLogs& logs, ImportReport& r
   manifest.lidar->model = recording::kCloudModel;
   manifest.lidar->file = "lidar.clouds";
   const auto mounts = request.mounts();
-  if (const auto mount = mounts.find("lidar"); mount != mounts.end()) manifest.lidar->mount = mount->second;
+  place_lidar(mounts, *manifest.lidar, report);
   if (!files.oxts.empty() && request.imu.empty() && mounts.contains("imu") && request.rate_hz <= 0.0) {
     logs.use_imu(read_oxts(files.oxts), files.oxts.string(), "KITTI oxts");
   } else if (!files.oxts.empty() && request.imu.empty()) {
@@ -122,12 +128,12 @@ void import_log(const ImportRequest& request, AddedLogs& logs, ImportReport& rep
   writer.close();
 }
 
+}  // namespace
+
 bool is_recording(const std::filesystem::path& source) {
   std::error_code error;
   return std::filesystem::exists(source / recording::kManifestFile, error);
 }
-
-}  // namespace
 
 bool is_importable(const std::filesystem::path& source) {
   return !is_recording(source) && (imports::holds_messages(source) || is_capture(source) ||
@@ -135,9 +141,6 @@ bool is_importable(const std::filesystem::path& source) {
 }
 
 ImportReport import_source(const ImportRequest& request, const std::function<void(double)>& progress) {
-  std::error_code error;
-  if (!std::filesystem::exists(request.source, error))
-    throw DataError(request.source.string() + ": no such file or folder");
   if (is_recording(request.source)) {
     throw UsageError(request.source.string() + ": is a recording already; isobar replay reads it as it is");
   }
@@ -154,10 +157,7 @@ ImportReport import_source(const ImportRequest& request, const std::function<voi
   } else if (is_sample_log(request.source)) {
     import_log(request, logs, report);
   } else {
-    throw DataError(
-        request.source.string() +
-        ": is nothing that is read: rosbag1, rosbag2, MCAP, pcap, PCD, PLY, KITTI, ULog, dataflash, and the "
-        "bytes of a VN-100 or Xsens are; a CSV comes with --imu or --pressure beside one of them");
+    throw DataError(why_unreadable(request.source));
   }
   folder.keep();
   return report;

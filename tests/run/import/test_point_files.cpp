@@ -110,7 +110,9 @@ TEST_CASE("a file of points that is cut gives the whole ones, and a wrong one na
   const auto cut = folder.write("cut.pcd", std::string(kPcdHead) + "binary\n" + bytes_of_floats({1, 2, 3}) +
                                                "..\x07\x01"
                                                "zz");
-  CHECK(imports::read_point_file(cut).width == 1);
+  std::string damage;
+  CHECK(imports::read_point_file(cut, &damage).width == 1);
+  CHECK(damage.find(": ends after point 1 of ") != std::string::npos);
   const auto refusal = [&](const std::string& name, const std::string& bytes) {
     const auto file = folder.write(name, bytes);
     return message_of([&] { (void)imports::read_point_file(file); });
