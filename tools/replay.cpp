@@ -17,10 +17,10 @@
 #include "core/nearest_word.hpp"
 #include "daemon/stage_settings.hpp"
 #include "run/files/run_layout.hpp"
+#include "run/import/scratch_folder.hpp"
 #include "run/recording/manifest.hpp"
 #include "tools/commands.hpp"
 #include "tools/import/import_source.hpp"
-#include "tools/import/scratch_folder.hpp"
 #include "tools/import/unreadable.hpp"
 #include "tools/import_options.hpp"
 #include "tools/method_option.hpp"
@@ -76,7 +76,7 @@ class ImportedRecording {
  private:
   std::filesystem::path source_;
   std::filesystem::path folder_;
-  std::optional<ScratchFolder> temporary_;
+  std::optional<imports::ScratchFolder> temporary_;
 };
 
 /// Counters of normal operation, which are not printed; the others are printed unless zero.

@@ -7,6 +7,7 @@
 
 #include "core/errors.hpp"
 #include "core/printable_text.hpp"
+#include "run/import/bag_folder.hpp"
 #include "run/recording/recording_writer.hpp"
 #include "tools/import/added_logs.hpp"
 #include "tools/import/capture_source.hpp"
@@ -33,6 +34,10 @@ void import_messages(const ImportRequest& request, AddedLogs& logs, ImportReport
                      const std::function<void(double)>& progress) {
   const TopicSurvey survey =
       survey_topics(request.source, [&](double fraction) { progress(kLookShare * fraction); });
+  if (const auto next = imports::next_part(request.source)) {
+    report.notes.push_back(request.source.filename().string() + " is one part of a bag, " + printable(*next) +
+                           " follows it: name the folder to read all parts");
+  }
   ImportPlan plan = plan_import(survey, logs.without(request), report);
   if (plan.lidar) logs.align(survey.topics[plan.lidar->index].first_log_ns);
   logs.add_to(plan.manifest, request);

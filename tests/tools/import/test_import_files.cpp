@@ -136,7 +136,9 @@ TEST_CASE("what is nothing that is read is refused, with what would be") {
   CHECK(
       refusal(folder.path() / "b.bag").find("b.bag: begins with bytes of no format that is known; rosbag1") !=
       std::string::npos);
-  CHECK(refusal(folder.path()).find("it holds ") != std::string::npos);
+  std::filesystem::create_directory(folder.path() / "logs");
+  std::ofstream(folder.path() / "logs" / "a.csv") << "a,b";
+  CHECK(refusal(folder.path() / "logs").find("it holds a.csv") != std::string::npos);
   CHECK(refusal(folder.path() / "gone").find("gone: no such file or folder") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(folder.path() / "r"));
 }
