@@ -26,6 +26,7 @@
 #include "tools/method_option.hpp"
 #include "tools/overridden_settings.hpp"
 #include "tools/progress.hpp"
+#include "tools/stop_signals.hpp"
 #include "tools/subcommand.hpp"
 
 namespace isobar::tools {
@@ -196,10 +197,42 @@ Config config_of(const ReplayOptions& options, Config config) {
   return config;
 }
 
+/// Replays; of a run that is stopped by a signal, or has no scan, nothing stays.
+ReplaySummary replay_or_remove(const std::filesystem::path& recording, const Config& config,
+                               const std::filesystem::path& out) {
+  std::error_code error;
+  const bool is_new = !std::filesystem::exists(out, error);
+  const auto remove = [&] {
+    if (!is_new) return files::remove_run(out);
+    std::filesystem::remove_all(out, error);
+  };
+  try {
+    Progress progress("replaying");
+    return replay(recording, config, out, [&](double fraction) {
+      StopSignals::check();
+      progress.update(fraction);
+    });
+  } catch (const Stopped&) {
+    remove();
+    throw;
+  } catch (const DataError&) {
+    remove();
+    throw;
+  } catch (const ServiceError& full) {
+    if (files::has_no_pose(out, files::newest_session(out))) {
+      remove();
+      throw;
+    }
+    throw ServiceError(std::string(full.what()) + "; " + out.string() +
+                       " holds what was written before, and is no whole run");
+  }
+}
+
 void run_replay(ReplayOptions options) {
   if (options.out.empty()) options.out = default_out(options.recording);
   refuse_own_map(options);
   refuse_run(options);
+  const StopSignals signals;
   const LoadedConfig loaded = options.config.empty() ? LoadedConfig{} : load_layers(options.config);
   const Config config = config_of(options, loaded.config);
   const ImportedRecording recording(options);
@@ -209,10 +242,7 @@ void run_replay(ReplayOptions options) {
   for (const std::string& sentence : overridden_settings(loaded, with_sensors_of(manifest, loaded.config)))
     std::printf("note: %s\n", sentence.c_str());
   if (files::holds_run(options.out)) files::remove_run(options.out);
-  Progress progress("replaying");
-  const ReplaySummary summary =
-      replay(recording.folder(), config, options.out, [&](double fraction) { progress.update(fraction); });
-  progress.finish();
+  const ReplaySummary summary = replay_or_remove(recording.folder(), config, options.out);
   print_summary(summary, recording);
   print_written(options.out);
   print_next(options.out);

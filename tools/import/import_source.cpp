@@ -55,8 +55,10 @@ void import_messages(const ImportRequest& request, AddedLogs& logs, ImportReport
   plan.manifest.description = description_of(request, report);
   recording::RecordingWriter writer(request.out, plan.manifest);
   if (!plan.lidar_metadata.empty()) {
-    std::ofstream(request.out / plan.manifest.lidar->calibration_file, std::ios::binary)
-        << plan.lidar_metadata;
+    const auto file = request.out / plan.manifest.lidar->calibration_file;
+    std::ofstream calibration(file, std::ios::binary);
+    calibration << plan.lidar_metadata;
+    if (!calibration.flush()) throw ServiceError(file.string() + ": cannot be written");
   }
   write_messages(request, plan, writer, report.notes,
                  [&](double fraction) { progress(kLookShare + (1.0 - kLookShare) * fraction); });
@@ -79,8 +81,8 @@ void place_lidar(const std::map<std::string, Mount>& mounts, recording::LidarEnt
 /// A capture of a lidar's packets.
 void import_capture(const ImportRequest& request, AddedLogs& logs, ImportReport& report,
                     const std::function<void(double)>& progress) {
-  const CaptureFindings findings = find_lidar(logs.without(request), report);
-  progress(kLookShare);
+  const CaptureFindings findings =
+      find_lidar(logs.without(request), report, [&](double fraction) { progress(kLookShare * fraction); });
   logs.align(findings.first_ns);
   recording::Manifest manifest;
   logs.add_to(manifest, request);
