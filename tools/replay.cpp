@@ -55,6 +55,7 @@ class ImportedRecording {
     ImportRequest request = options.import;
     request.source = options.recording;
     request.out = options.keep;
+    request.asks_nothing = true;
     if (options.keep.empty()) {
       temporary_.emplace();
       request.out = temporary_->path() / "recording";
