@@ -87,7 +87,8 @@ bool is_ordinary(const std::string& name) {
          name == "imu samples" || name == "barometer samples" || name == "base samples" ||
          name == "wheel samples" || name == "lidar position packets" || name == "map cells seen through" ||
          name == "map tiles stored" || name == "map tiles brought back" ||
-         name == "map tiles moved between files" || name.starts_with("loop");
+         name == "map tiles moved between files" || name == "lidar: packets" || name == "lidar: clouds" ||
+         name.ends_with(": good rows") || name.starts_with("loop");
 }
 
 /// A run that localises has no map of its own.
@@ -240,6 +241,10 @@ void run_replay(ReplayOptions options) {
   // Before a run is removed: a recording that cannot be read must not cost it.
   std::vector<std::string> warnings;
   const recording::Manifest manifest = recording::read_manifest(recording.folder(), warnings);
+  if (!manifest.lidar && !is_recording(options.recording)) {
+    throw DataError(options.recording.string() +
+                    ": holds no lidar that is read (the table says what it holds): there is nothing to map");
+  }
   for (const std::string& sentence : overridden_settings(loaded, with_sensors_of(manifest, loaded.config)))
     std::printf("note: %s\n", sentence.c_str());
   if (files::holds_run(options.out)) files::remove_run(options.out);

@@ -85,22 +85,30 @@ recording::CloudRecord read_ply(const std::filesystem::path& file, std::uint64_t
 }
 
 recording::CloudRecord read_kitti_bin(const std::filesystem::path& file) {
-  constexpr std::uint32_t kStep = 16;  // x, y, z, reflectance 0 … 1
   const PointText text(file);
   const auto bytes = text.rest();
+  // KITTI: x, y, z, reflectance 0 … 1. nuScenes ("….pcd.bin"): x, y, z, intensity 0 … 255, ring.
+  const bool is_nuscenes = file.stem().extension() == ".pcd";
   recording::CloudRecord cloud;
   cloud.height = 1;
-  cloud.point_step = kStep;
-  cloud.width = static_cast<std::uint32_t>(bytes.size() / kStep);
-  cloud.row_step = cloud.width * kStep;
+  cloud.point_step = is_nuscenes ? 20 : 16;
+  cloud.width = static_cast<std::uint32_t>(bytes.size() / cloud.point_step);
+  cloud.row_step = cloud.width * cloud.point_step;
   cloud.fields = {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"intensity", 12, 7}};
+  if (is_nuscenes) cloud.fields.push_back({"ring", 16, 7});
   cloud.data.assign(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(cloud.row_step));
-  for (std::size_t at = 12; at < cloud.data.size(); at += kStep) {
-    float reflectance = 0.0F;
-    std::memcpy(&reflectance, &cloud.data[at], sizeof(reflectance));
-    reflectance *= 255.0F;
-    std::memcpy(&cloud.data[at], &reflectance, sizeof(reflectance));
+  std::uint32_t far = 0;
+  for (std::size_t at = 0; at < cloud.data.size(); at += cloud.point_step) {
+    std::array<float, 4> point{};
+    std::memcpy(point.data(), &cloud.data[at], sizeof(point));
+    constexpr float kFarthestM = 1'000.0F;
+    far += std::hypot(point[0], point[1], point[2]) < kFarthestM ? 0 : 1;  // also of NaN
+    if (is_nuscenes) continue;
+    point[3] *= 255.0F;
+    std::memcpy(&cloud.data[at + 12], &point[3], sizeof(float));
   }
+  // Other data sets name other layouts .bin, too.
+  if (far > cloud.width / 10) text.fail("is no scan of KITTI's form: its bytes are not four floats a point");
   return cloud;
 }
 

@@ -65,7 +65,9 @@ std::vector<fs::path> point_files_in(const fs::path& folder) {
 
 /// The folder that holds the point files of a source.
 fs::path folder_of_scans(const fs::path& source) {
-  for (const char* below : {"", "velodyne_points/data", "velodyne", "velodyne_points", "data"}) {
+  for (const char* below :
+       {"", "velodyne_points/data", "velodyne", "velodyne_points", "data", "Ouster", "sensor_data/Ouster",
+        "ouster_scan", "lidar", "pcd", "scans", "clouds", "points"}) {
     if (!point_files_in(source / below).empty()) return source / below;
   }
   return {};
