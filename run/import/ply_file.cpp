@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstring>
 #include <string>
 
 #include "core/printable_text.hpp"
