@@ -89,6 +89,7 @@ BlackBox::BlackBox(const Config& config)
   (void)head.add_description(RobotClock::offset_ns(), recording::manifest_text(manifest_of(config)),
                              settings_in_force(config));
   ring_->set_head(head);
+  tap_.take_scans(config.lidar.source == LidarSource::kDds);
   state_.limit_bytes = ring_->limit_bytes();
   spdlog::info("black box: the last {:.0f} s of all inputs, at most {} MB, in {}", config.black_box.span_s,
                ring_->limit_bytes() / 1'000'000, memory_.string());

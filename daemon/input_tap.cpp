@@ -27,6 +27,11 @@ void InputTap::drain_base_stations(recording::InputLog& log) {
   }
 }
 
+void InputTap::take_scans(bool wanted) {
+  if (!wanted) scans_.reset();
+  if (wanted && !scans_) scans_.emplace(ipc::topics::kLidarScan);
+}
+
 void InputTap::drain(recording::InputLog& log) {
   while (const auto sample = imu_.take()) {
     if (imu_path_.check(*sample)) log.add(*sample);
@@ -37,10 +42,16 @@ void InputTap::drain(recording::InputLog& log) {
     if (wheel_path_.check(*sample)) log.add(*sample);
   }
   drain_packets(log);
+  while (scans_) {
+    const auto scan = scans_->take();
+    if (!scan) break;
+    log.add_scan(*scan);
+  }
 }
 
 std::uint64_t InputTap::lost() const noexcept {
-  return lost_packets_ + imu_.dropped() + barometer_.dropped() + base_barometer_.dropped() + wheel_.dropped();
+  return lost_packets_ + imu_.dropped() + barometer_.dropped() + base_barometer_.dropped() +
+         wheel_.dropped() + (scans_ ? scans_->dropped() : 0);
 }
 
 }  // namespace isobar

@@ -19,6 +19,8 @@ class InputTap {
   /// 0.12 s of the busiest lidar (PacketTap::kMaxAgeNs), that of the IMU 0.25 s at 1 kHz.
   static constexpr std::int64_t kDrainEveryNs = 50'000'000;
 
+  /// Whether the lidar's scans are inputs, which they are where they come as clouds over DDS; of packets they are made.
+  void take_scans(bool wanted);
   /// Appends all waiting inputs to `log`.
   void drain(recording::InputLog& log);
 
@@ -39,6 +41,7 @@ class InputTap {
   PathChoice imu_path_{PathChoice::kSensorTakeoverNs};
   PathChoice wheel_path_{PathChoice::kSensorTakeoverNs};
   ipc::Subscriber<WheelSample> wheel_{ipc::topics::kWheel};
+  std::optional<ipc::Subscriber<Scan>> scans_;
   std::optional<std::uint64_t> next_packet_;  ///< LidarPackets::first_number of the next group
   std::uint64_t lost_packets_ = 0;
 };

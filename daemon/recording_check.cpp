@@ -15,6 +15,7 @@
 #include "daemon/stage_settings.hpp"
 #include "drivers/lidar/scan_assembler.hpp"
 #include "drivers/lidar_models/lidar_models.hpp"
+#include "run/text/number_text.hpp"
 
 namespace isobar {
 
@@ -139,6 +140,17 @@ void add_what_was_found(const recording::RecordingReader& reader, const CheckedI
   }
 }
 
+/// An IMU that is over about when its attitude begins: no scan before that has a pose, and the map would stay empty.
+void leave_out_short_imu(const Config& used, RecordingCheck& out) {
+  const double start_s = used.prior.attitude.start_time_s;
+  const StreamTimes& imu = out.times[static_cast<std::size_t>(CheckedSensor::kImu)];
+  if (!used.imu.present() || imu.count() == 0 || imu.length_s() >= 2.0 * start_s) return;
+  out.usable.imu = false;
+  out.notes.push_back("imu: " + text::number_text(std::round(imu.length_s() * 100.0) / 100.0) +
+                      " s of readings are too short: its attitude begins after " +
+                      text::number_text(start_s) + " s; the run goes without it");
+}
+
 /// The finding that leaves no pose with gravity: wheels or a barometer without a common time are left out.
 const Finding* missing_overlap(const Findings& findings) {
   for (const Finding& finding : findings.all()) {
@@ -176,6 +188,7 @@ RecordingCheck check_recording(const std::filesystem::path& recording, const Con
   for (std::size_t i = 0; i < kCheckedSensors; ++i) {
     out.times[i] = inputs.check().times(static_cast<CheckedSensor>(i));
   }
+  leave_out_short_imu(used, out);
   if (out.findings.empty()) add_shifted_files(out, out.notes);
   add_what_was_found(reader, inputs, out);
   out.warnings = reader.warnings();
@@ -184,6 +197,8 @@ RecordingCheck check_recording(const std::filesystem::path& recording, const Con
 }
 
 recording::Manifest without_unusable(recording::Manifest manifest, const UsableSensors& usable) {
+  // The lidar's own IMU comes with its other packets.
+  if (!usable.imu && !manifest.imu && manifest.lidar) manifest.lidar->info_port = 0;
   if (!usable.imu) manifest.imu.reset();
   if (!usable.wheels) manifest.wheel.reset();
   if (!usable.barometers) manifest.barometer.reset();

@@ -25,7 +25,6 @@
 #include "run/recording/recording_reader.hpp"
 
 namespace isobar {
-
 namespace {
 
 /// Scans from which on their rate is judged.
@@ -118,8 +117,9 @@ std::vector<files::RunCount> collect_counts(const recording::RecordingReader& re
 }
 
 void warn_of_no_pose(ReplaySummary& summary) {
-  if (summary.registered > 0) return;
-  summary.warnings.emplace_back("no scan could be registered: all poses are the prior's");
+  const char* few = "too few scans: those that begin the map are all";
+  const char* none = "no scan could be registered: all poses are the prior's";
+  if (summary.registered == 0) summary.warnings.emplace_back(summary.from_prior > 0 ? none : few);
 }
 
 /// Warns of sensors in the manifest without a single usable sample. counters.csv has the reasons.

@@ -20,6 +20,12 @@ recording::Manifest manifest_of(const Config& config) {
   if (!config.lidar.calibration_file.empty()) {
     manifest.lidar->calibration_file = std::filesystem::absolute(config.lidar.calibration_file).string();
   }
+  if (config.lidar.source == LidarSource::kDds) {
+    manifest.lidar->model = recording::kCloudModel;
+    manifest.lidar->file = "lidar.clouds";
+    manifest.lidar->info_port = 0;
+    manifest.lidar->calibration_file.clear();
+  }
   manifest.imu->mount = imu_mount(config);
   manifest.barometer->mount = config.barometer.mount;
   manifest.base_barometer->robot_clock = true;

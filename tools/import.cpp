@@ -5,12 +5,14 @@
 
 #include "tools/commands.hpp"
 #include "tools/import_options.hpp"
+#include "tools/stop_signals.hpp"
 #include "tools/subcommand.hpp"
 
 namespace isobar::tools {
 namespace {
 
 void run_import(const ImportRequest& request) {
+  const StopSignals signals;
   import_and_print(request);
   std::printf("written: %s\n", request.out.c_str());
 }

@@ -5,6 +5,7 @@
 
 #include "tools/import/import_source.hpp"
 #include "tools/progress.hpp"
+#include "tools/stop_signals.hpp"
 
 namespace isobar::tools {
 
@@ -42,7 +43,10 @@ void add_import_options(CLI::App& command, ImportRequest& request) {
 
 void import_and_print(const ImportRequest& request) {
   Progress progress("importing");
-  const ImportReport report = import_source(request, [&](double fraction) { progress.update(fraction); });
+  const ImportReport report = import_source(request, [&](double fraction) {
+    StopSignals::check();
+    progress.update(fraction);
+  });
   progress.finish();
   std::printf("%s: %s\n", request.source.c_str(), report.container.c_str());
   for (const std::string& line : table_of(report)) std::printf("%s\n", line.c_str());

@@ -35,10 +35,11 @@ void RecordProgress::update(const RecordFigures& now) {
     return static_cast<double>(count - before) / elapsed_s;
   };
   std::fprintf(stderr,
-               "%s%.0f s  per second: %.0f packets, %.0f imu, %.0f barometer, %.0f base, %.0f wheel  "
+               "%s%.0f s  per second: %.0f %s, %.0f imu, %.0f barometer, %.0f base, %.0f wheel  "
                "%.1f MB, %.0f MB free, %llu lost%s",
                terminal_ ? "\r\033[K" : "", static_cast<double>(now.now_ns - started_ns_) * 1e-9,
-               rate(now.counts.packets, last_.counts.packets), rate(now.counts.imu, last_.counts.imu),
+               rate(now.counts.packets + now.counts.clouds, last_.counts.packets + last_.counts.clouds),
+               now.counts.clouds > 0 ? "clouds" : "packets", rate(now.counts.imu, last_.counts.imu),
                rate(now.counts.pressure, last_.counts.pressure),
                rate(now.counts.base_pressure, last_.counts.base_pressure),
                rate(now.counts.wheel, last_.counts.wheel), static_cast<double>(now.bytes) / kBytesPerMb,

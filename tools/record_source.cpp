@@ -100,6 +100,14 @@ class LogPipe {
   std::uint64_t dropped_ = 0;
 };
 
+/// Whether the lidar of a described run gives clouds.
+bool holds_clouds(std::string_view manifest_text) {
+  std::vector<std::string> ignored;
+  const recording::Manifest manifest =
+      recording::parse_manifest(manifest_text, "description of isobard", ignored);
+  return manifest.lidar && manifest.lidar->holds_clouds();
+}
+
 /// Ends with the parent, also when that is killed. Again after a change of user, which clears it.
 void end_with(pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -151,6 +159,7 @@ class Source {
     if (const auto description = descriptions_.take_latest()) {
       described_ = log.add_description(description->robot_clock_offset_ns, description->manifest(),
                                        description->settings());
+      tap_.take_scans(holds_clouds(description->manifest()));
     }
     if (healths_.take_latest()) last_health_ns_ = now_ns;
     if (!described_) return;  // a recording begins with its manifest

@@ -94,7 +94,8 @@ const char* CloudDecoder::check(const CloudView& cloud, Fields& fields) const {
             *y,
             *z,
             find(cloud, {"ring", "line", "channel", "laser_id"}),
-            find(cloud, {"time", "t", "timestamp", "time_stamp", "offset_time"}),
+            find(cloud, {"time", "t", "timestamp", "time_stamp", "offset_time", "time_offset", "timestamps",
+                         "stamp"}),
             find(cloud, {"intensity", "reflectivity", "i"})};
   return nullptr;
 }

@@ -35,7 +35,7 @@ struct CloudCounters {
 /// Converts the clouds of any lidar driver to scans.
 ///
 /// Drivers do not agree on the fields of a cloud beside x, y, z. The laser is `ring`, `line`, `channel` or
-/// `laser_id`; the time of a point is `time`, `t`, `timestamp`, `time_stamp` or `offset_time`, in seconds,
+/// `laser_id`; the time of a point is `time`, `t`, `timestamp`, `time_stamp`, `offset_time` …, in seconds,
 /// milliseconds, microseconds or nanoseconds, absolute or relative to the header's stamp, before or after it. The
 /// unit is told by the values: a scan lasts 5 to 260 ms, and no two units are that near. Without times all points
 /// count as measured at the header's stamp: nothing is deskewed. Without rings the elevation tells the laser.

@@ -6,10 +6,6 @@
 
 #include "core/errors.hpp"
 #include "core/printable_text.hpp"
-#include "run/import/file_bytes.hpp"
-#include "run/import/mcap_stream.hpp"
-#include "run/import/sqlite_stream.hpp"
-#include "run/mcap/mcap_format.hpp"
 #include "run/text/number_text.hpp"
 #include "run/text/small_file.hpp"
 
@@ -31,6 +27,17 @@ bool stays_inside(const std::filesystem::path& name) {
          std::none_of(name.begin(), name.end(), [](const auto& part) { return part == ".."; });
 }
 
+/// The name without the endings of compression and container, in that order; empty for any other file.
+std::string bare_name(const std::string& file_name) {
+  std::filesystem::path name = file_name;
+  const std::string packing = name.extension();
+  if (packing == ".zstd" || packing == ".zst" || packing == ".gz") name = name.stem();
+  if (name.extension() == ".active") name = name.stem();
+  const std::string container = name.extension();
+  const bool is_bag = container == ".db3" || container == ".mcap" || container == ".bag";
+  return is_bag ? name.stem().string() : std::string();
+}
+
 /// "bag_10.db3" comes after "bag_9.db3".
 bool comes_before(const std::string& a, const std::string& b) {
   return a.size() != b.size() ? a.size() < b.size() : a < b;
@@ -40,11 +47,32 @@ std::vector<std::string> bag_files_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    const std::string extension = entry.path().extension();
-    if (extension == ".db3" || extension == ".mcap") names.push_back(entry.path().filename());
+    const std::string name = entry.path().filename();
+    if (!bare_name(name).empty() && entry.is_regular_file(error)) names.push_back(name);
   }
-  std::sort(names.begin(), names.end(), comes_before);
+  const bool has_numbers =
+      std::all_of(names.begin(), names.end(), [](const std::string& name) { return part_number(name); });
+  // rosbag1 puts the time of each part before its number.
+  std::sort(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
+    return has_numbers && part_number(a) != part_number(b) ? part_number(a) < part_number(b)
+                                                           : comes_before(a, b);
+  });
   return names;
+}
+
+/// Files that a folder without metadata holds are one bag where they count 0, 1, 2 …, or share their name before the number.
+bool are_parts(const std::vector<std::string>& names) {
+  const auto base = [](const std::string& name) {
+    const std::string bare = bare_name(name);
+    return bare.substr(0, bare.find_last_not_of("0123456789") + 1);
+  };
+  bool counts = true;
+  bool shares = true;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    counts = counts && part_number(names[i]) == static_cast<std::int64_t>(i);
+    shares = shares && part_number(names[i]) && base(names[i]) == base(names[0]);
+  }
+  return names.size() == 1 || counts || shares;
 }
 
 }  // namespace
@@ -86,18 +114,39 @@ BagMetadata find_bag(const std::filesystem::path& folder) {
     std::error_code error;
     return !std::filesystem::exists(folder / name, error);
   });
+  metadata.is_listed = !metadata.files.empty();
   // A bag that was renamed keeps the old names in its metadata.
-  if (metadata.files.empty()) metadata.files = bag_files_in(folder);
+  if (!metadata.is_listed) metadata.files = bag_files_in(folder);
   return metadata;
 }
 
+std::optional<std::int64_t> part_number(const std::string& file_name) {
+  const std::string bare = bare_name(file_name);
+  const std::size_t at = bare.find_last_not_of("0123456789");
+  std::int64_t number = 0;
+  if (at == std::string::npos || bare[at] != '_' || !text::parse_number(bare.substr(at + 1), number))
+    return std::nullopt;
+  return number;
+}
+
+std::optional<std::string> next_part(const std::filesystem::path& file) {
+  const std::string name = file.filename();
+  const auto number = part_number(name);
+  if (!number) return std::nullopt;
+  const std::string bare = bare_name(name);
+  const std::string next = bare.substr(0, bare.find_last_not_of("0123456789") + 1) +
+                           std::to_string(*number + 1) + name.substr(bare.size());
+  std::error_code error;
+  return std::filesystem::exists(file.parent_path() / next, error) ? std::optional(next) : std::nullopt;
+}
+
 BagFolder::BagFolder(const std::filesystem::path& folder) : folder_(folder), metadata_(find_bag(folder)) {
-  if (metadata_.files.empty())
-    throw DataError(folder.string() + ": holds no .db3 or .mcap file of a rosbag2");
-  if (metadata_.compression_mode == "file") {
-    throw DataError(folder.string() + ": the bag's files are compressed as a whole: run `zstd -d " +
-                    printable((folder / metadata_.files.front()).string()) +
-                    "` for each, and name the .db3 or .mcap that comes out");
+  if (metadata_.files.empty()) throw DataError(folder.string() + ": holds no .db3, .mcap or .bag file");
+  if (!metadata_.is_listed && !are_parts(metadata_.files)) {
+    std::string names;
+    for (const std::string& name : metadata_.files) names += (names.empty() ? "" : ", ") + name;
+    throw DataError(folder.string() + ": holds several bags: " + printable(names, 500) +
+                    "; name one of them");
   }
   open_next();
 }
@@ -106,12 +155,7 @@ void BagFolder::open_next() {
   const std::filesystem::path file = folder_ / metadata_.files[opened_++];
   channel_of_file_.clear();
   try {
-    if (head_of(file, mcap::kMagic.size()) == mcap::kMagic) {
-      file_ = std::make_unique<McapStream>(file);
-    } else {
-      file_ = std::make_unique<SqliteStream>(
-          file, metadata_.compression_mode == "message" ? metadata_.compression_format : std::string());
-    }
+    file_ = open_message_file(file, metadata_.message_compression());
     container_ = metadata_.files.size() == 1
                      ? file_->container()
                      : file_->container() + ", " + std::to_string(metadata_.files.size()) + " files";

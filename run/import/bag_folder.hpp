@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,19 +17,31 @@ struct BagMetadata {
   std::vector<std::string> files;  ///< below the folder, in their order
   std::string compression_format;  ///< "zstd" or empty
   std::string compression_mode;    ///< "file", "message" or empty
+  bool is_listed = false;          ///< the files are those that metadata.yaml names
+
+  /// How each message is compressed; empty: it is not.
+  [[nodiscard]] std::string message_compression() const {
+    return compression_mode == "message" ? compression_format : std::string();
+  }
 };
 
 /// Reads the lines of a metadata.yaml that rosbag2 writes; any other text gives nothing.
 [[nodiscard]] BagMetadata parse_bag_metadata(std::string_view text);
 
-/// Files of a rosbag2 in a folder, by its metadata.yaml; where that is missing, or names none that exists, the .db3 and
-/// .mcap files in the order of their numbers.
+/// Files of a bag in a folder, by the metadata.yaml of a rosbag2; where that is missing, or names none that exists, the .db3,
+/// .mcap and .bag files, compressed or not, in the order of their numbers.
 [[nodiscard]] BagMetadata find_bag(const std::filesystem::path& folder);
 
-/// The files of a rosbag2, one after the other.
+/// Number of a part of a divided bag: 3 of "name_3.bag" and "name_3.db3.zstd".
+[[nodiscard]] std::optional<std::int64_t> part_number(const std::string& file_name);
+
+/// Name of the part that follows a file, where it lies beside it: "name_4.bag" beside "name_3.bag".
+[[nodiscard]] std::optional<std::string> next_part(const std::filesystem::path& file);
+
+/// The files of a bag, one after the other.
 class BagFolder : public MessageStream {
  public:
-  /// @throws DataError when the folder holds none that can be read
+  /// @throws DataError when the folder holds none that can be read, or several bags that are no parts of one
   explicit BagFolder(const std::filesystem::path& folder);
 
   bool next(Message& message) override;

@@ -41,6 +41,9 @@ class ByteCursor {
     return {reinterpret_cast<const char*>(part.data()), part.size()};
   }
 
+  /// What follows is of no known form.
+  void fail() { ok_ = false; }
+
   [[nodiscard]] bool ok() const { return ok_; }
   [[nodiscard]] std::size_t at() const { return at_; }
   [[nodiscard]] std::size_t left() const { return ok_ ? bytes_.size() - at_ : 0; }

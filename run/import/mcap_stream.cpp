@@ -25,30 +25,14 @@ Encoding encoding_of(std::string_view name) {
 
 }  // namespace
 
-McapStream::McapStream(const std::filesystem::path& file) : file_(file) {
+McapStream::McapStream(const std::filesystem::path& file) : RecordStream(file) {
   std::array<std::uint8_t, mcap::kMagic.size()> magic{};
   if (!file_.read(magic) || std::memcmp(magic.data(), mcap::kMagic.data(), magic.size()) != 0) {
     throw DataError(file_.name() + ": is no MCAP file of version 0");
   }
 }
 
-double McapStream::progress() const {
-  return static_cast<double>(file_.position()) / static_cast<double>(file_.size());
-}
-
-void McapStream::note(std::uint64_t at, const char* rule) {
-  damage_.add([&] { return file_.place(at) + rule; });
-}
-
-bool McapStream::next(Message& message) {
-  Record record;
-  for (;;) {
-    if (!next_in_chunk(record) && !next_in_file(record)) return false;
-    if (take(record, message)) return true;
-  }
-}
-
-bool McapStream::next_in_file(Record& record) {
+bool McapStream::next_in_file(McapRecord& record) {
   if (ended_) return false;
   record.at = file_.position();
   std::array<std::uint8_t, kRecordHeadBytes> head{};
@@ -76,31 +60,19 @@ bool McapStream::next_in_file(Record& record) {
   return true;
 }
 
-bool McapStream::next_in_chunk(Record& record) {
-  if (chunk_used_ >= chunk_.size()) return false;
-  ByteCursor cursor(std::span<const std::uint8_t>(chunk_).subspan(chunk_used_));
-  record.at = chunk_at_;
+void McapStream::read_record(ByteCursor& cursor, McapRecord& record) const {
   record.opcode = cursor.get<std::uint8_t>();
   record.content = cursor.take(cursor.get<std::uint64_t>());
-  if (!cursor.ok()) {
-    chunk_used_ = chunk_.size();
-    note(chunk_at_, "a record ends beyond its chunk");
-    return false;
-  }
-  chunk_used_ += cursor.at();
-  return true;
 }
 
-void McapStream::open_chunk(const Record& record) {
+void McapStream::open_chunk(const McapRecord& record) {
   ByteCursor cursor(record.content);
   cursor.take(2 * sizeof(std::uint64_t));  // span of time
   const auto size = cursor.get<std::uint64_t>();
   const auto crc = cursor.get<std::uint32_t>();
   const std::string_view method = cursor.text();
   const auto data = cursor.take(cursor.get<std::uint64_t>());
-  chunk_at_ = record.at;
-  chunk_used_ = 0;
-  chunk_.clear();
+  if (!begin_chunk(record.at)) return;
   if (!cursor.ok()) return note(record.at, "a chunk is shorter than its fields");
   if (size > kMostRecordBytes) return note(record.at, "a chunk is longer than 512 MiB");
   if (const char* rule = decompress(method, data, size, chunk_); rule != nullptr) {
@@ -113,7 +85,7 @@ void McapStream::open_chunk(const Record& record) {
   }
 }
 
-bool McapStream::take(const Record& record, Message& message) {
+bool McapStream::take(const McapRecord& record, Message& message) {
   ByteCursor cursor(record.content);
   switch (record.opcode) {
     case opcode::kSchema:

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "run/import/byte_cursor.hpp"
 #include "run/import/message_stream.hpp"
 
 namespace isobar::imports {
@@ -23,10 +24,14 @@ class MessageCursor {
     if (is_ros1_) return;
     constexpr std::size_t kEncapsulationBytes = 4;
     // CDR_BE and CDR_LE; the others (XCDR2, parameter lists) lay fields out in another way.
-    ok_ = encoding == Encoding::kCdr && bytes.size() >= kEncapsulationBytes && bytes[0] == 0 && bytes[1] <= 1;
-    if (!ok_) return;
+    const bool is_cdr =
+        encoding == Encoding::kCdr && bytes.size() >= kEncapsulationBytes && bytes[0] == 0 && bytes[1] <= 1;
+    if (!is_cdr) {
+      bytes_.fail();
+      return;
+    }
     swaps_ = bytes[1] == 0;
-    bytes_ = bytes.subspan(kEncapsulationBytes);
+    bytes_ = ByteCursor(bytes.subspan(kEncapsulationBytes));
   }
 
   template <typename Value>
@@ -45,22 +50,14 @@ class MessageCursor {
     return value;
   }
   /// Bytes as they are: an array of a fixed length.
-  std::span<const std::uint8_t> take(std::size_t size) {
-    if (!ok_ || size > bytes_.size() - at_) {
-      ok_ = false;
-      return {};
-    }
-    const auto part = bytes_.subspan(at_, size);
-    at_ += size;
-    return part;
-  }
+  std::span<const std::uint8_t> take(std::uint64_t size) { return bytes_.take(size); }
   /// A sequence of bytes.
   std::span<const std::uint8_t> blob() { return take(get<std::uint32_t>()); }
   /// Length of a sequence whose elements take at least `least_bytes` each; 0 where they would not fit.
   std::uint32_t count(std::size_t least_bytes) {
     const auto number = get<std::uint32_t>();
-    if (ok_ && std::size_t{number} * least_bytes > bytes_.size() - at_) ok_ = false;
-    return ok_ ? number : 0;
+    if (std::size_t{number} * least_bytes > left()) bytes_.fail();
+    return ok() ? number : 0;
   }
   std::string_view text() {
     const auto part = blob();
@@ -79,22 +76,20 @@ class MessageCursor {
     for (std::size_t i = 0; i < values; ++i) get<Value>();
   }
 
-  [[nodiscard]] bool ok() const { return ok_; }
+  [[nodiscard]] bool ok() const { return bytes_.ok(); }
   [[nodiscard]] bool is_ros1() const { return is_ros1_; }
-  [[nodiscard]] std::size_t left() const { return ok_ ? bytes_.size() - at_ : 0; }
+  [[nodiscard]] std::size_t left() const { return bytes_.left(); }
 
  private:
   void align(std::size_t size) {
     if (is_ros1_) return;
-    const std::size_t beyond = at_ % size;
+    const std::size_t beyond = bytes_.at() % size;
     if (beyond != 0) take(size - beyond);
   }
 
-  std::span<const std::uint8_t> bytes_;
-  std::size_t at_ = 0;
+  ByteCursor bytes_;
   bool is_ros1_;
   bool swaps_ = false;
-  bool ok_ = true;
 };
 
 }  // namespace isobar::imports

@@ -60,9 +60,15 @@ class MessageStream {
 /// metadata.yaml or its files.
 [[nodiscard]] bool holds_messages(const std::filesystem::path& source);
 
-/// Opens a rosbag1, MCAP or rosbag2 file (.db3), or the folder of a rosbag2.
+/// Opens a rosbag1, MCAP or rosbag2 file (.db3), compressed as a whole or not, or the folder of the files of one bag.
 /// @throws DataError when it is missing or none of them
 [[nodiscard]] std::unique_ptr<MessageStream> open_messages(const std::filesystem::path& source);
+
+/// Opens one file of these.
+/// @param message_compression of a rosbag2 in SQLite whose messages are compressed one by one: "zstd"; else empty
+/// @throws DataError when it is missing or none of them
+[[nodiscard]] std::unique_ptr<MessageStream> open_message_file(const std::filesystem::path& file,
+                                                               const std::string& message_compression);
 
 /// "sensor_msgs/Imu" of "sensor_msgs/msg/Imu".
 [[nodiscard]] std::string plain_type(const std::string& type);

@@ -132,9 +132,10 @@ void read_compressed(PointText& text, const PcdHeader& header, recording::CloudR
 
 }  // namespace
 
-recording::CloudRecord read_pcd(const std::filesystem::path& file) {
+recording::CloudRecord read_pcd(const std::filesystem::path& file, std::uint64_t& stated_points) {
   PointText text(file);
   const PcdHeader header = read_header(text);
+  stated_points = header.points;
   recording::CloudRecord cloud;
   cloud.height = 1;
   cloud.point_step = static_cast<std::uint32_t>(header.point_step);

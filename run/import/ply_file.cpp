@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstring>
 #include <string>
 
 #include "core/printable_text.hpp"
@@ -61,10 +63,11 @@ PlyHeader read_ply_header(PointText& text, recording::CloudRecord& cloud) {
 
 }  // namespace
 
-recording::CloudRecord read_ply(const std::filesystem::path& file) {
+recording::CloudRecord read_ply(const std::filesystem::path& file, std::uint64_t& stated_points) {
   PointText text(file);
   recording::CloudRecord cloud;
   const PlyHeader header = read_ply_header(text, cloud);
+  stated_points = header.points;
   if (cloud.point_step == 0) text.fail("its points have no properties");
   cloud.height = 1;
   if (header.format == "ascii") {
@@ -84,22 +87,30 @@ recording::CloudRecord read_ply(const std::filesystem::path& file) {
 }
 
 recording::CloudRecord read_kitti_bin(const std::filesystem::path& file) {
-  constexpr std::uint32_t kStep = 16;  // x, y, z, reflectance 0 … 1
   const PointText text(file);
   const auto bytes = text.rest();
+  // KITTI: x, y, z, reflectance 0 … 1. nuScenes ("….pcd.bin"): x, y, z, intensity 0 … 255, ring.
+  const bool is_nuscenes = file.stem().extension() == ".pcd";
   recording::CloudRecord cloud;
   cloud.height = 1;
-  cloud.point_step = kStep;
-  cloud.width = static_cast<std::uint32_t>(bytes.size() / kStep);
-  cloud.row_step = cloud.width * kStep;
+  cloud.point_step = is_nuscenes ? 20 : 16;
+  cloud.width = static_cast<std::uint32_t>(bytes.size() / cloud.point_step);
+  cloud.row_step = cloud.width * cloud.point_step;
   cloud.fields = {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"intensity", 12, 7}};
+  if (is_nuscenes) cloud.fields.push_back({"ring", 16, 7});
   cloud.data.assign(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(cloud.row_step));
-  for (std::size_t at = 12; at < cloud.data.size(); at += kStep) {
-    float reflectance = 0.0F;
-    std::memcpy(&reflectance, &cloud.data[at], sizeof(reflectance));
-    reflectance *= 255.0F;
-    std::memcpy(&cloud.data[at], &reflectance, sizeof(reflectance));
+  std::uint32_t far = 0;
+  for (std::size_t at = 0; at < cloud.data.size(); at += cloud.point_step) {
+    std::array<float, 4> point{};
+    std::memcpy(point.data(), &cloud.data[at], sizeof(point));
+    constexpr float kFarthestM = 1'000.0F;
+    far += std::hypot(point[0], point[1], point[2]) < kFarthestM ? 0 : 1;  // also of NaN
+    if (is_nuscenes) continue;
+    point[3] *= 255.0F;
+    std::memcpy(&cloud.data[at + 12], &point[3], sizeof(float));
   }
+  // Other data sets name other layouts .bin, too.
+  if (far > cloud.width / 10) text.fail("is no scan of KITTI's form: its bytes are not four floats a point");
   return cloud;
 }
 
@@ -108,12 +119,17 @@ bool is_point_file(const std::filesystem::path& file) {
   return extension == ".pcd" || extension == ".ply" || extension == ".bin";
 }
 
-recording::CloudRecord read_point_file(const std::filesystem::path& file) {
+recording::CloudRecord read_point_file(const std::filesystem::path& file, std::string* damage) {
   const std::string extension = file.extension();
-  recording::CloudRecord cloud = extension == ".pcd"   ? read_pcd(file)
-                                 : extension == ".ply" ? read_ply(file)
+  std::uint64_t stated_points = 0;
+  recording::CloudRecord cloud = extension == ".pcd"   ? read_pcd(file, stated_points)
+                                 : extension == ".ply" ? read_ply(file, stated_points)
                                                        : read_kitti_bin(file);
   if (cloud.width == 0) throw DataError(file.string() + ": holds no points");
+  if (damage != nullptr && cloud.width < stated_points) {
+    *damage = file.string() + ": ends after point " + std::to_string(cloud.width) + " of " +
+              std::to_string(stated_points);
+  }
   return cloud;
 }
 

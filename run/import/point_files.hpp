@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "run/recording/cloud_file.hpp"
 
@@ -16,7 +17,9 @@ inline constexpr std::uint64_t kMostFilePoints = 20'000'000;
 [[nodiscard]] bool is_point_file(const std::filesystem::path& file);
 
 /// Reads a file by the ending of its name. The cloud has all fields of the file, its stamp is 0.
+/// @param damage set to "FILE: ends after point …" where the file was cut; may be null
 /// @throws DataError "FILE: rule" when it cannot be read, or has no points with x, y and z
-[[nodiscard]] recording::CloudRecord read_point_file(const std::filesystem::path& file);
+[[nodiscard]] recording::CloudRecord read_point_file(const std::filesystem::path& file,
+                                                     std::string* damage = nullptr);
 
 }  // namespace isobar::imports

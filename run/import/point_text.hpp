@@ -107,8 +107,8 @@ inline void read_text_points(PointText& text, std::uint64_t points, recording::C
   cloud.width = static_cast<std::uint32_t>(cloud.data.size() / cloud.point_step);
 }
 
-recording::CloudRecord read_pcd(const std::filesystem::path& file);
-recording::CloudRecord read_ply(const std::filesystem::path& file);
+recording::CloudRecord read_pcd(const std::filesystem::path& file, std::uint64_t& stated_points);
+recording::CloudRecord read_ply(const std::filesystem::path& file, std::uint64_t& stated_points);
 recording::CloudRecord read_kitti_bin(const std::filesystem::path& file);
 
 /// Datatype of sensor_msgs/PointField.

@@ -46,30 +46,14 @@ std::string text(std::span<const std::uint8_t> header, std::string_view name) {
 
 }  // namespace
 
-Rosbag1Stream::Rosbag1Stream(const std::filesystem::path& file) : file_(file) {
+Rosbag1Stream::Rosbag1Stream(const std::filesystem::path& file) : RecordStream(file) {
   std::array<std::uint8_t, kRosbag1Magic.size()> magic{};
   if (!file_.read(magic) || std::memcmp(magic.data(), kRosbag1Magic.data(), magic.size()) != 0) {
     throw DataError(file_.name() + ": is no ROS 1 bag of version 2.0");
   }
 }
 
-double Rosbag1Stream::progress() const {
-  return static_cast<double>(file_.position()) / static_cast<double>(file_.size());
-}
-
-void Rosbag1Stream::note(std::uint64_t at, const char* rule) {
-  damage_.add([&] { return file_.place(at) + rule; });
-}
-
-bool Rosbag1Stream::next(Message& message) {
-  Record record;
-  for (;;) {
-    if (!next_in_chunk(record) && !next_in_file(record)) return false;
-    if (take(record, message)) return true;
-  }
-}
-
-bool Rosbag1Stream::next_in_file(Record& record) {
+bool Rosbag1Stream::next_in_file(Rosbag1Record& record) {
   if (ended_) return false;
   record.at = file_.position();
   if (file_.left() == 0) {
@@ -95,22 +79,12 @@ bool Rosbag1Stream::next_in_file(Record& record) {
   return true;
 }
 
-bool Rosbag1Stream::next_in_chunk(Record& record) {
-  if (chunk_used_ >= chunk_.size()) return false;
-  ByteCursor cursor(std::span<const std::uint8_t>(chunk_).subspan(chunk_used_));
-  record.at = chunk_at_;
+void Rosbag1Stream::read_record(ByteCursor& cursor, Rosbag1Record& record) const {
   record.header = cursor.counted();
   record.data = cursor.counted();
-  if (!cursor.ok()) {
-    chunk_used_ = chunk_.size();
-    note(chunk_at_, "a record ends beyond its chunk");
-    return false;
-  }
-  chunk_used_ += cursor.at();
-  return true;
 }
 
-bool Rosbag1Stream::take(const Record& record, Message& message) {
+bool Rosbag1Stream::take(const Rosbag1Record& record, Message& message) {
   const auto op = number<std::uint8_t>(record.header, "op");
   if (!op) {
     note(record.at, "a record says no kind");
@@ -134,18 +108,16 @@ bool Rosbag1Stream::take(const Record& record, Message& message) {
   return true;
 }
 
-void Rosbag1Stream::open_chunk(const Record& record) {
+void Rosbag1Stream::open_chunk(const Rosbag1Record& record) {
   const auto size = number<std::uint32_t>(record.header, "size");
-  chunk_at_ = record.at;
-  chunk_used_ = 0;
-  chunk_.clear();
+  if (!begin_chunk(record.at)) return;
   if (!size || *size > kMostRecordBytes) return note(record.at, "a chunk without a size, or above 512 MiB");
   if (const char* rule = decompress(text(record.header, "compression"), record.data, *size, chunk_)) {
     note(record.at, rule);  // what came out is read
   }
 }
 
-void Rosbag1Stream::add_connection(const Record& record) {
+void Rosbag1Stream::add_connection(const Rosbag1Record& record) {
   const auto id = number<std::uint32_t>(record.header, "conn");
   if (!id || channel_of_id_.contains(*id) || channels_.size() >= kMostConnections) return;
   Channel channel;

@@ -3,6 +3,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <type_traits>
@@ -151,6 +152,19 @@ bool InputLog::add_datagram(LogKind kind, std::int64_t stamp_ns, std::uint32_t s
   return true;
 }
 
+void InputLog::add_scan(const Scan& scan) {
+  constexpr std::uint32_t kPointsOfPart = (kMaxLogRecordBytes - 16) / sizeof(ScanPoint);
+  const std::uint32_t count = std::min(scan.point_count, Scan::kMaxPoints);
+  for (std::uint32_t first = 0; first < count; first += kPointsOfPart) {
+    begin(LogKind::kScanPart);
+    put(scan.stamp_ns);
+    put(count);
+    put(first);
+    put_bytes(scan.points + first, std::min(kPointsOfPart, count - first) * sizeof(ScanPoint));
+    end();
+  }
+}
+
 void InputLog::add(const ImuSample& sample) {
   begin(LogKind::kImu);
   put(sample.stamp_ns);
@@ -234,6 +248,14 @@ bool InputLogReader::parse(LogKind kind, std::span<const std::uint8_t> payload, 
       entry.sender_ipv4 = fields.take<std::uint32_t>();
       entry.packet = fields.take_bytes(fields.left());
       break;
+    case LogKind::kScanPart:
+      entry.stamp_ns = fields.take<std::int64_t>();
+      entry.scan_points = fields.take<std::uint32_t>();
+      entry.scan_first = fields.take<std::uint32_t>();
+      entry.packet = fields.take_bytes(fields.left());
+      // So that a damaged record cannot ask for memory.
+      return fields.ok() && entry.scan_points <= Scan::kMaxPoints &&
+             entry.packet.size() % sizeof(ScanPoint) == 0;
     case LogKind::kImu:
       take(fields, entry.imu);
       break;

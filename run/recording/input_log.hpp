@@ -25,14 +25,18 @@ enum class LogKind : std::uint8_t {
   kDescription,  ///< sensors and settings of the run that the following records belong to
   kLosses,       ///< number of inputs lost so far on the way into this log
   kInformation,  ///< datagram of the lidar to its second port: position, device information, IMU
+  kScanPart,     ///< points of a scan of a lidar that gives clouds; the parts of a scan follow each other
 };
 
 /// One record. Only the members that `kind` names are valid; views refer to the log.
 struct LogEntry {
   LogKind kind = LogKind::kLosses;
-  std::int64_t stamp_ns = 0;  ///< of kPacket and kInformation: time of receipt, robot clock
+  /// Robot clock: of kPacket and kInformation the time of receipt, of kScanPart that of the scan's first point.
+  std::int64_t stamp_ns = 0;
   std::uint32_t sender_ipv4 = 0;
-  std::span<const std::uint8_t> packet;
+  std::span<const std::uint8_t> packet;  ///< of kScanPart: its points, each as a ScanPoint lies in memory
+  std::uint32_t scan_points = 0;         ///< of kScanPart: of the whole scan
+  std::uint32_t scan_first = 0;          ///< of kScanPart: number of the part's first point in it
   ImuSample imu;
   PressureSample pressure;  ///< of kPressure and kBasePressure
   WheelSample wheel;
@@ -54,6 +58,7 @@ class InputLog {
   /// The same of the lidar's second port.
   bool add_information(std::int64_t stamp_ns, std::uint32_t sender_ipv4,
                        std::span<const std::uint8_t> payload);
+  void add_scan(const Scan& scan);
   void add(const ImuSample& sample);
   void add(const WheelSample& sample);
   void add_pressure(const PressureSample& sample);

@@ -97,13 +97,22 @@ void LiveRecording::add_datagram(const LogEntry& entry, std::uint16_t port) {
   ++counts_.packets;
 }
 
+void LiveRecording::add_scan_part(const LogEntry& entry) {
+  const CloudRecord* cloud = scan_parts_.add(entry);
+  if (cloud != nullptr && writer_->add_cloud(*cloud)) ++counts_.clouds;
+}
+
 void LiveRecording::add(const LogEntry& entry) {
+  const bool has_packets = all_.lidar && !all_.lidar->holds_clouds();
   switch (entry.kind) {
     case LogKind::kPacket:
-      if (all_.lidar) add_datagram(entry, all_.lidar->port);
+      if (has_packets) add_datagram(entry, all_.lidar->port);
       return;
     case LogKind::kInformation:
-      if (all_.lidar && all_.lidar->info_port != 0) add_datagram(entry, all_.lidar->info_port);
+      if (has_packets && all_.lidar->info_port != 0) add_datagram(entry, all_.lidar->info_port);
+      return;
+    case LogKind::kScanPart:
+      if (all_.lidar && all_.lidar->holds_clouds()) add_scan_part(entry);
       return;
     case LogKind::kImu:
       if (!all_.imu) return;
@@ -132,11 +141,11 @@ void LiveRecording::add(const LogEntry& entry) {
 }
 
 void LiveRecording::note_seen() {
-  for (const bool first :
-       {first_of(counts_.packets, all_.lidar, seen_.lidar), first_of(counts_.imu, all_.imu, seen_.imu),
-        first_of(counts_.pressure, all_.barometer, seen_.barometer),
-        first_of(counts_.base_pressure, all_.base_barometer, seen_.base_barometer),
-        first_of(counts_.wheel, all_.wheel, seen_.wheel)}) {
+  for (const bool first : {first_of(counts_.packets + counts_.clouds, all_.lidar, seen_.lidar),
+                           first_of(counts_.imu, all_.imu, seen_.imu),
+                           first_of(counts_.pressure, all_.barometer, seen_.barometer),
+                           first_of(counts_.base_pressure, all_.base_barometer, seen_.base_barometer),
+                           first_of(counts_.wheel, all_.wheel, seen_.wheel)}) {
     manifest_is_old_ = manifest_is_old_ || first;
   }
 }

@@ -10,19 +10,23 @@
 #include "run/recording/input_log.hpp"
 #include "run/recording/manifest.hpp"
 #include "run/recording/recording_writer.hpp"
+#include "run/recording/scan_parts.hpp"
 
 namespace isobar::recording {
 
 /// Numbers of written inputs.
 struct LiveCounts {
   std::uint64_t packets = 0;  ///< of both ports of the lidar
+  std::uint64_t clouds = 0;   ///< of a lidar that gives clouds
   std::uint64_t imu = 0;
   std::uint64_t pressure = 0;
   std::uint64_t base_pressure = 0;
   std::uint64_t wheel = 0;
   std::uint64_t too_long = 0;  ///< datagrams longer than UDP allows, left out
 
-  [[nodiscard]] std::uint64_t all() const { return packets + imu + pressure + base_pressure + wheel; }
+  [[nodiscard]] std::uint64_t all() const {
+    return packets + clouds + imu + pressure + base_pressure + wheel;
+  }
 };
 
 /// Writes the records of an input log to a new recording folder as they come. The manifest names the sensors
@@ -48,6 +52,7 @@ class LiveRecording {
 
  private:
   void add_datagram(const LogEntry& entry, std::uint16_t port);
+  void add_scan_part(const LogEntry& entry);
   void note_seen();
 
   std::filesystem::path folder_;
@@ -55,6 +60,7 @@ class LiveRecording {
   Manifest seen_;  // those that have
   bool manifest_is_old_ = true;
   LiveCounts counts_;
+  ScanParts scan_parts_;
   std::unique_ptr<RecordingWriter> writer_;
 };
 

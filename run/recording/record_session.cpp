@@ -18,6 +18,7 @@ constexpr std::int64_t kMaxClockChangeNs = 1'000'000'000;
 
 LiveCounts sum(LiveCounts a, const LiveCounts& b) {
   a.packets += b.packets;
+  a.clouds += b.clouds;
   a.imu += b.imu;
   a.pressure += b.pressure;
   a.base_pressure += b.base_pressure;

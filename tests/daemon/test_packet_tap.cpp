@@ -74,6 +74,33 @@ double cost(const Traffic& traffic, const Tap& tap, const Drain& drain) {
 
 }  // namespace
 
+TEST_CASE("scans are taken only where they are the lidar's input") {
+  const ipc::Broker broker;
+  InputTap inputs;
+  ipc::Publisher<Scan> publisher{ipc::topics::kLidarScan};
+  const auto publish = [&](std::int64_t stamp_ns) {
+    Scan* scan = publisher.loan();
+    REQUIRE(scan != nullptr);
+    scan->stamp_ns = stamp_ns;
+    scan->point_count = 1;
+    scan->points[0] = {1.0F, 2.0F, 3.0F, 4, 5, 6};
+    publisher.publish(scan);
+  };
+  recording::InputLog log;
+  publish(kStart);
+  inputs.drain(log);
+  CHECK(log.records() == 0);
+  inputs.take_scans(true);
+  publish(kStart + 1);
+  inputs.drain(log);
+  recording::InputLogReader reader(log.bytes());
+  recording::LogEntry entry;
+  REQUIRE(reader.next(entry));
+  CHECK(entry.kind == recording::LogKind::kScanPart);
+  CHECK(entry.stamp_ns == kStart + 1);
+  CHECK(entry.scan_points == 1);
+}
+
 TEST_CASE("a subscriber receives every packet unchanged, also the last ones before a silence") {
   const ipc::Broker broker;
   const Traffic traffic;

@@ -65,6 +65,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       pwrite(memory, data + skip, size - skip, 0) != static_cast<ssize_t>(size - skip)) {
     return 0;
   }
+  std::uint64_t stated_points = 0;
   try {
     if (is_container && data[0] == '#') {
       Rosbag1Stream stream(file);
@@ -73,9 +74,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       McapStream stream(file);
       read_all(stream);
     } else if (data[0] == 0) {
-      (void)read_pcd(file);
+      (void)read_pcd(file, stated_points);
     } else if (data[0] == 1) {
-      (void)read_ply(file);
+      (void)read_ply(file, stated_points);
     } else if (data[0] == 2) {
       (void)read_ulog(file);
     } else if (data[0] == 3) {

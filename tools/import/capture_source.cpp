@@ -26,7 +26,8 @@ struct PortFindings {
   std::int64_t last_ns = 0;
 };
 
-PortFindings look_at(const std::filesystem::path& file, std::uint16_t port, const std::string& calibration) {
+PortFindings look_at(const std::filesystem::path& file, std::uint16_t port, const std::string& calibration,
+                     const std::function<void(double)>& progress) {
   PortFindings found;
   found.port = port;
   ModelVotes votes;
@@ -47,6 +48,7 @@ PortFindings look_at(const std::filesystem::path& file, std::uint16_t port, cons
   while (packets.next(packet)) {
     if (found.packets++ == 0) found.first_ns = packet.stamp_ns;
     found.last_ns = packet.stamp_ns;
+    if (found.packets % 4096 == 0) progress(0.5);
     votes.add(packet.payload);
     for (const auto& ouster : ousters) {
       if (ouster->is_data(packet.payload)) found.model = std::string(ouster->model());
@@ -66,10 +68,14 @@ std::string calibration_of(const ImportRequest& request) {
   return std::filesystem::is_regular_file(beside, error) ? beside.string() : std::string();
 }
 
-std::vector<PortFindings> look_at_all(const ImportRequest& request, const std::string& calibration) {
+std::vector<PortFindings> look_at_all(const ImportRequest& request, const std::string& calibration,
+                                      std::vector<std::string>& notes,
+                                      const std::function<void(double)>& progress) {
+  // Packets for no port: the ports are counted.
   recording::PcapPackets packets(request.source, {0, 0}, {});
   recording::StampedPacket packet;
   while (packets.next(packet)) continue;
+  progress(0.5);
   const recording::PortsSeen& seen = packets.extractor().other_ports();
   if (seen.empty()) {
     std::string why = "holds no UDP packets";
@@ -79,10 +85,13 @@ std::vector<PortFindings> look_at_all(const ImportRequest& request, const std::s
     }
     throw DataError(request.source.string() + ": " + why);
   }
+  if (packets.tallies().file_truncated.count > 0) {
+    notes.push_back("damaged: " + packets.tallies().file_truncated.first_message);
+  }
   std::vector<PortFindings> ports;
   for (unsigned port = 1; port <= 65'535; ++port) {
     if (seen.count(static_cast<std::uint16_t>(port)) == 0) continue;
-    ports.push_back(look_at(request.source, static_cast<std::uint16_t>(port), calibration));
+    ports.push_back(look_at(request.source, static_cast<std::uint16_t>(port), calibration, progress));
   }
   return ports;
 }
@@ -129,10 +138,11 @@ bool is_capture(const std::filesystem::path& file) {
   return false;
 }
 
-CaptureFindings find_lidar(const ImportRequest& request, ImportReport& report) {
+CaptureFindings find_lidar(const ImportRequest& request, ImportReport& report,
+                           const std::function<void(double)>& progress) {
   report.container = "capture";
   const std::string calibration = calibration_of(request);
-  const std::vector<PortFindings> ports = look_at_all(request, calibration);
+  const std::vector<PortFindings> ports = look_at_all(request, calibration, report.notes, progress);
   const PortFindings& chosen = choose_port(request, ports);
   const std::string name = request.model.empty() ? chosen.model : request.model;
   const LidarModel* model = find_lidar_model(name);
@@ -141,6 +151,9 @@ CaptureFindings find_lidar(const ImportRequest& request, ImportReport& report) {
   if (model->needs_calibration && calibration.empty()) {
     throw UsageError("--calibration: the packets of an " + name +
                      " need the sensor's metadata: say --calibration FILE.json");
+  }
+  if (!chosen.mismatch.empty() && request.model.empty()) {
+    report.notes.push_back("lidar: " + chosen.mismatch + ", and is taken; --model says otherwise");
   }
   CaptureFindings findings;
   findings.lidar.model = name;
@@ -174,7 +187,14 @@ void place_capture(const ImportRequest& request, const CaptureFindings& findings
       std::filesystem::copy_file(from, folder / name, std::filesystem::copy_options::overwrite_existing,
                                  error);
     }
-    if (error) throw DataError((folder / name).string() + ": cannot be written: " + error.message());
+    // The library says no more of a full disk than that writing failed.
+    std::error_code ignored;
+    const bool is_full = error && std::filesystem::space(folder, ignored).available <
+                                      std::filesystem::file_size(from, ignored);
+    if (error) {
+      throw DataError((folder / name).string() +
+                      ": cannot be written: " + (is_full ? "no space left on the disk" : error.message()));
+    }
   };
   place(request.source, findings.lidar.file);
   if (!findings.calibration.empty()) place(findings.calibration, findings.lidar.calibration_file);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 
 #include "run/recording/manifest.hpp"
 #include "tools/import/request.hpp"
@@ -21,8 +22,10 @@ struct CaptureFindings {
 };
 
 /// Finds the port and the model of the lidar by the packets.
+/// @param progress called with 0 … 1
 /// @throws UsageError naming --lidar, --model or --calibration; DataError when the file holds no packets
-[[nodiscard]] CaptureFindings find_lidar(const ImportRequest& request, ImportReport& report);
+[[nodiscard]] CaptureFindings find_lidar(const ImportRequest& request, ImportReport& report,
+                                         const std::function<void(double)>& progress);
 
 /// Puts the capture and the calibration into the folder.
 /// @throws DataError when they cannot be written

@@ -7,6 +7,7 @@
 #include "tools/import/topic_choice.hpp"
 #include "tools/import/topic_clocks.hpp"
 #include "tools/import/topic_mounts.hpp"
+#include "tools/import/topic_preferences.hpp"
 #include "tools/import/unit_guess.hpp"
 
 namespace isobar::tools {
@@ -32,11 +33,12 @@ class Planner {
       : survey_(survey), request_(request), report_(report), becomes_(survey.topics.size()) {}
 
   ImportPlan make() {
-    choose_lidar(survey_, request_, plan_, becomes_, report_.notes);
-    choose_imu();
-    choose_pressures();
-    choose_motion();
-    place_sensors(survey_, request_, plan_, report_.notes);
+    ask([this] { choose_lidar(survey_, request_, plan_, becomes_, report_.notes); });
+    ask_of_imu([this] { choose_imu(); });
+    ask([this] { choose_pressures(); });
+    ask([this] { choose_motion(); });
+    ask_of_imu([this] { place_sensors(survey_, request_, plan_, report_.notes); });
+    if (!questions_.empty()) throw UsageError(questions_);
     align_clocks(survey_, plan_, report_.notes);
     fill_rows();
     return std::move(plan_);
@@ -45,9 +47,37 @@ class Planner {
  private:
   const TopicFindings& at(std::size_t index) const { return survey_.topics[index]; }
 
+  /// Collects what a person must answer, so that all is asked at once.
+  template <typename Choose>
+  void ask(const Choose& choose) {
+    try {
+      choose();
+    } catch (const UsageError& question) {
+      questions_ += (questions_.empty() ? "" : "\n") + std::string(question.what());
+    }
+  }
+  /// The same of an IMU that nobody named; a run goes without it where nobody is asked.
+  template <typename Choose>
+  void ask_of_imu(const Choose& choose) {
+    const std::size_t notes = report_.notes.size();
+    try {
+      choose();
+    } catch (const UsageError& question) {
+      if (!request_.asks_nothing || !request_.imu.empty() || !plan_.manifest.lidar) return ask(choose);
+      if (plan_.imu) becomes_[plan_.imu->index] = "nothing: its mount is not known";
+      plan_.imu.reset();
+      plan_.manifest.imu.reset();
+      report_.notes.resize(notes);
+      report_.notes.push_back("imu: left out: " + std::string(question.what()));
+      place_sensors(survey_, request_, plan_, report_.notes);
+    }
+  }
+
   void choose_imu() {
     const auto is_imu = [](const TopicFindings& topic) { return topic.kind == TopicKind::kImu; };
-    const auto index = choose_topic(survey_, request_.imu, "--imu", is_imu, is_imu);
+    const auto imus = likely_imus(survey_, request_, plan_.lidar ? &at(plan_.lidar->index) : nullptr);
+    const auto index = choose_topic(survey_, request_.imu, "--imu", is_imu,
+                                    [&](const TopicFindings& topic) { return is_among(topic, imus); });
     if (!index) return;
     const TopicFindings& topic = at(*index);
     const UnitGuess accel = guess_accel_unit(request_.accel_unit, topic.first_values);
@@ -68,8 +98,9 @@ class Planner {
 
   void choose_pressures() {
     const auto is_pressure = [](const TopicFindings& topic) { return topic.kind == TopicKind::kPressure; };
-    const auto is_of_base = [](const TopicFindings& topic) {
-      return topic.kind == TopicKind::kPressure && names_one_of(topic.channel.topic, {"base", "station"}) &&
+    const auto barometers = likely_barometers(survey_);
+    const auto is_of_base = [&](const TopicFindings& topic) {
+      return is_among(topic, barometers) && names_one_of(topic.channel.topic, {"base", "station"}) &&
              !names_one_of(topic.channel.topic, {"base_link"});
     };
     const auto base = choose_topic(survey_, request_.base_pressure, "--base-pressure", is_pressure,
@@ -78,7 +109,7 @@ class Planner {
                                    });
     const auto robot =
         choose_topic(survey_, request_.pressure, "--pressure", is_pressure, [&](const TopicFindings& topic) {
-          return is_pressure(topic) && !(base && &topic == &at(*base)) && !is_of_base(topic);
+          return is_among(topic, barometers) && !(base && &topic == &at(*base)) && !is_of_base(topic);
         });
     if (robot) {
       plan_.pressure = PlannedTopic{*robot};
@@ -141,8 +172,9 @@ class Planner {
     const auto reference =
         choose_topic(survey_, request_.reference, "--reference", has_pose, [&](const TopicFindings& topic) {
           return has_pose(topic) &&
-                 names_one_of(topic.channel.topic, {"ground_truth", "groundtruth", "truth", "vicon", "mocap",
-                                                    "optitrack", "reference"});
+                 names_one_of(topic.channel.topic,
+                              {"ground_truth", "groundtruth", "truth", "vicon", "mocap", "optitrack", "vrpn",
+                               "qualisys", "leica", "/gt", "_gt", "reference"});
         });
     if (!reference) return;
     plan_.reference = PlannedTopic{*reference};
@@ -178,6 +210,7 @@ class Planner {
   ImportReport& report_;
   ImportPlan plan_;
   std::vector<std::string> becomes_;  // by topic
+  std::string questions_;
 };
 
 }  // namespace

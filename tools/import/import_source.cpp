@@ -7,6 +7,7 @@
 
 #include "core/errors.hpp"
 #include "core/printable_text.hpp"
+#include "run/import/bag_folder.hpp"
 #include "run/recording/recording_writer.hpp"
 #include "tools/import/added_logs.hpp"
 #include "tools/import/capture_source.hpp"
@@ -14,6 +15,7 @@
 #include "tools/import/import_plan.hpp"
 #include "tools/import/new_folder.hpp"
 #include "tools/import/scan_files.hpp"
+#include "tools/import/unreadable.hpp"
 
 namespace isobar::tools {
 namespace {
@@ -32,6 +34,10 @@ void import_messages(const ImportRequest& request, AddedLogs& logs, ImportReport
                      const std::function<void(double)>& progress) {
   const TopicSurvey survey =
       survey_topics(request.source, [&](double fraction) { progress(kLookShare * fraction); });
+  if (const auto next = imports::next_part(request.source)) {
+    report.notes.push_back(request.source.filename().string() + " is one part of a bag, " + printable(*next) +
+                           " follows it: name the folder to read all parts");
+  }
   ImportPlan plan = plan_import(survey, logs.without(request), report);
   if (plan.lidar) logs.align(survey.topics[plan.lidar->index].first_log_ns);
   logs.add_to(plan.manifest, request);
@@ -49,8 +55,10 @@ void import_messages(const ImportRequest& request, AddedLogs& logs, ImportReport
   plan.manifest.description = description_of(request, report);
   recording::RecordingWriter writer(request.out, plan.manifest);
   if (!plan.lidar_metadata.empty()) {
-    std::ofstream(request.out / plan.manifest.lidar->calibration_file, std::ios::binary)
-        << plan.lidar_metadata;
+    const auto file = request.out / plan.manifest.lidar->calibration_file;
+    std::ofstream calibration(file, std::ios::binary);
+    calibration << plan.lidar_metadata;
+    if (!calibration.flush()) throw ServiceError(file.string() + ": cannot be written");
   }
   write_messages(request, plan, writer, report.notes,
                  [&](double fraction) { progress(kLookShare + (1.0 - kLookShare) * fraction); });
@@ -58,11 +66,23 @@ void import_messages(const ImportRequest& request, AddedLogs& logs, ImportReport
   writer.close();
 }
 
+/// The mount of --mount; without it the lidar's frame is the robot's.
+void place_lidar(const std::map<std::string, Mount>& mounts, recording::LidarEntry& lidar,
+                 ImportReport& report) {
+  if (const auto mount = mounts.find("lidar"); mount != mounts.end()) {
+    lidar.mount = mount->second;
+    return;
+  }
+  report.notes.emplace_back(
+      "mounts: where the lidar sits on the robot is not known: poses are those of the lidar; "
+      "--mount lidar=x,y,z,roll,pitch,yaw says it");
+}
+
 /// A capture of a lidar's packets.
 void import_capture(const ImportRequest& request, AddedLogs& logs, ImportReport& report,
                     const std::function<void(double)>& progress) {
-  const CaptureFindings findings = find_lidar(logs.without(request), report);
-  progress(kLookShare);
+  const CaptureFindings findings =
+      find_lidar(logs.without(request), report, [&](double fraction) { progress(kLookShare * fraction); });
   logs.align(findings.first_ns);
   recording::Manifest manifest;
   logs.add_to(manifest, request);
@@ -72,14 +92,7 @@ void import_capture(const ImportRequest& request, AddedLogs& logs, ImportReport&
   writer.close();
   place_capture(request, findings, request.out);
   manifest.lidar = findings.lidar;
-  const auto mounts = request.mounts();
-  if (const auto mount = mounts.find("lidar"); mount != mounts.end()) {
-    manifest.lidar->mount = mount->second;
-  } else {
-    report.notes.emplace_back(
-        "mounts: where the lidar sits on the robot is not known: poses are those of the lidar; "
-        "--mount lidar=x,y,z,roll,pitch,yaw says it");
-  }
+  place_lidar(request.mounts(), *manifest.lidar, report);
   recording::write_manifest(request.out, manifest);
 }
 
@@ -94,7 +107,7 @@ void import_scans(const ImportRequest& request, AddedLogs& logs, ImportReport& r
   manifest.lidar->model = recording::kCloudModel;
   manifest.lidar->file = "lidar.clouds";
   const auto mounts = request.mounts();
-  if (const auto mount = mounts.find("lidar"); mount != mounts.end()) manifest.lidar->mount = mount->second;
+  place_lidar(mounts, *manifest.lidar, report);
   if (!files.oxts.empty() && request.imu.empty() && mounts.contains("imu") && request.rate_hz <= 0.0) {
     logs.use_imu(read_oxts(files.oxts), files.oxts.string(), "KITTI oxts");
   } else if (!files.oxts.empty() && request.imu.empty()) {
@@ -122,12 +135,12 @@ void import_log(const ImportRequest& request, AddedLogs& logs, ImportReport& rep
   writer.close();
 }
 
+}  // namespace
+
 bool is_recording(const std::filesystem::path& source) {
   std::error_code error;
   return std::filesystem::exists(source / recording::kManifestFile, error);
 }
-
-}  // namespace
 
 bool is_importable(const std::filesystem::path& source) {
   return !is_recording(source) && (imports::holds_messages(source) || is_capture(source) ||
@@ -135,9 +148,6 @@ bool is_importable(const std::filesystem::path& source) {
 }
 
 ImportReport import_source(const ImportRequest& request, const std::function<void(double)>& progress) {
-  std::error_code error;
-  if (!std::filesystem::exists(request.source, error))
-    throw DataError(request.source.string() + ": no such file or folder");
   if (is_recording(request.source)) {
     throw UsageError(request.source.string() + ": is a recording already; isobar replay reads it as it is");
   }
@@ -154,10 +164,7 @@ ImportReport import_source(const ImportRequest& request, const std::function<voi
   } else if (is_sample_log(request.source)) {
     import_log(request, logs, report);
   } else {
-    throw DataError(
-        request.source.string() +
-        ": is nothing that is read: rosbag1, rosbag2, MCAP, pcap, PCD, PLY, KITTI, ULog, dataflash, and the "
-        "bytes of a VN-100 or Xsens are; a CSV comes with --imu or --pressure beside one of them");
+    throw DataError(why_unreadable(request.source));
   }
   folder.keep();
   return report;

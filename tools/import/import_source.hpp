@@ -9,6 +9,9 @@
 
 namespace isobar::tools {
 
+/// Whether `source` is a recording folder.
+[[nodiscard]] bool is_recording(const std::filesystem::path& source);
+
 /// Whether `source` is something that import_source() may read; a recording folder is not.
 [[nodiscard]] bool is_importable(const std::filesystem::path& source);
 

@@ -6,6 +6,7 @@
 #include "drivers/lidar_models/lidar_models.hpp"
 #include "run/text/small_file.hpp"
 #include "tools/import/topic_choice.hpp"
+#include "tools/import/topic_preferences.hpp"
 
 namespace isobar::tools {
 namespace {
@@ -29,12 +30,13 @@ class LidarChoice {
           return request_.lidar.empty() && !model_of(topic, metadata).empty() && !is_information(topic);
         });
     if (packets) return use_packets(*packets, metadata);
+    const auto clouds = likely_clouds(survey_);
     const auto cloud = choose_topic(
         survey_, request_.lidar, "--lidar",
         [](const TopicFindings& topic) {
           return topic.kind == TopicKind::kCloud || topic.kind == TopicKind::kLivox;
         },
-        [](const TopicFindings&) { return true; });
+        [&](const TopicFindings& topic) { return is_among(topic, clouds); });
     if (cloud) return use_cloud(*cloud);
     for (const TopicFindings& topic : survey_.topics) {
       if (topic.kind == TopicKind::kPackets && topic.is_usable()) say_unknown_model(topic);

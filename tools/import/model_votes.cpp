@@ -16,11 +16,12 @@ void ModelVotes::add(std::span<const std::uint8_t> payload) {
   if (packets_ >= kMostPackets) return;
   ++packets_;
   for (const auto& decoder : decoders_) {
-    if (!decoder->is_data(payload)) continue;
+    // Before read(), which learns from a packet what the next ones are.
+    const bool is_its = decoder->is_data(payload);
     PacketColumns columns;
     const DecodeStatus status = decoder->read(payload, columns);
     if (status == DecodeStatus::kOk) ++accepted_[std::string(decoder->model())];
-    if (status == DecodeStatus::kWrongModel && mismatch_.empty()) mismatch_ = decoder->mismatch();
+    if (status == DecodeStatus::kWrongModel && is_its && mismatch_.empty()) mismatch_ = decoder->mismatch();
   }
 }
 

@@ -37,7 +37,9 @@ struct ImportRequest {
   std::string gyro_unit{};      ///< "rad/s", "deg/s"; empty: by its values
   std::string accel_unit{};     ///< "m/s2", "g"; empty: by its values
   std::string pressure_unit{};  ///< "Pa", "hPa", "kPa"; empty: by its values
-  bool link_files = false;      ///< captures are linked to instead of copied: for a temporary recording
+  /// An IMU that a person would have to be asked about is left out, and said: a lidar alone runs.
+  bool asks_nothing = false;
+  bool link_files = false;  ///< captures are linked to instead of copied: for a temporary recording
 
   [[nodiscard]] std::map<std::string, Mount> mounts() const;
 };

@@ -21,6 +21,8 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kNsPerS = 1'000'000'000;
 constexpr std::int64_t kYear2000S = 946'684'800;
+/// Scans a second of most lidars that turn.
+constexpr double kAssumedRateHz = 10.0;
 
 /// "9.pcd" comes before "10.pcd": digits compare as numbers.
 bool comes_first(const fs::path& a, const fs::path& b) {
@@ -63,7 +65,9 @@ std::vector<fs::path> point_files_in(const fs::path& folder) {
 
 /// The folder that holds the point files of a source.
 fs::path folder_of_scans(const fs::path& source) {
-  for (const char* below : {"", "velodyne_points/data", "velodyne", "velodyne_points", "data"}) {
+  for (const char* below :
+       {"", "velodyne_points/data", "velodyne", "velodyne_points", "data", "Ouster", "sensor_data/Ouster",
+        "ouster_scan", "lidar", "pcd", "scans", "clouds", "points"}) {
     if (!point_files_in(source / below).empty()) return source / below;
   }
   return {};
@@ -115,6 +119,21 @@ bool use_names(ScanFiles& files) {
   }
   files.timing = "times are those in the names of the files";
   return true;
+}
+
+void count_from_zero(double rate_hz, ScanFiles& files) {
+  for (std::size_t i = 0; i < files.scans.size(); ++i) {
+    files.scans[i].stamp_ns = std::llround(static_cast<double>(i) / rate_hz * 1e9);
+  }
+}
+
+/// Whether logs come beside the scans, whose times would have to fit.
+bool has_other_logs(const ImportRequest& request) {
+  for (const std::string* log :
+       {&request.imu, &request.pressure, &request.base_pressure, &request.wheel, &request.reference}) {
+    if (!log->empty() && *log != kNoTopic) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -172,13 +191,19 @@ ScanFiles find_scans(const ImportRequest& request) {
     if (fs::is_directory(oxts / "data", error) && files.type == "KITTI") files.oxts = oxts.lexically_normal();
   }
   if (request.rate_hz > 0.0) {
-    for (std::size_t i = 0; i < files.scans.size(); ++i) {
-      files.scans[i].stamp_ns = std::llround(static_cast<double>(i) / request.rate_hz * 1e9);
-    }
+    count_from_zero(request.rate_hz, files);
     files.timing = "times are counted from 0 by --rate";
     return files;
   }
   if (files.scans.size() == 1 || use_file_of_times(folder, files) || use_names(files)) return files;
+  if (files.oxts.empty() && !has_other_logs(request)) {
+    // Of a lidar alone the rate only scales times and speeds: path and map are the same.
+    count_from_zero(kAssumedRateHz, files);
+    files.timing =
+        "neither a times.txt nor the names of the files tell when the scans were taken: 10 a second "
+        "are assumed, which scales times and speeds; --rate says otherwise";
+    return files;
+  }
   throw UsageError("--rate: neither a times.txt nor the names of the files (" +
                    printable(files.scans.front().file.filename().string()) +
                    " …) tell when the scans were taken; say --rate HZ, such as --rate 10");
@@ -188,10 +213,13 @@ void write_scans(const ScanFiles& files, recording::RecordingWriter& writer, Imp
                  const std::function<void(double)>& progress) {
   std::uint64_t written = 0;
   std::string first_error;
+  recording::Tally cut;
   for (std::size_t i = 0; i < files.scans.size(); ++i) {
     progress(static_cast<double>(i) / static_cast<double>(files.scans.size()));
     try {
-      recording::CloudRecord cloud = imports::read_point_file(files.scans[i].file);
+      std::string damage;
+      recording::CloudRecord cloud = imports::read_point_file(files.scans[i].file, &damage);
+      if (!damage.empty()) cut.add([&] { return damage; });
       cloud.stamp_ns = files.scans[i].stamp_ns;
       written += writer.add_cloud(cloud) ? 1 : 0;
     } catch (const DataError& error) {
@@ -199,15 +227,19 @@ void write_scans(const ScanFiles& files, recording::RecordingWriter& writer, Imp
     }
   }
   if (written == 0) throw DataError(first_error);
+  if (cut.count > 0) {
+    report.notes.push_back("damaged: " + cut.first_message +
+                           (cut.count > 1 ? " (and " + std::to_string(cut.count - 1) + " more files)" : ""));
+  }
   if (written < files.scans.size()) {
     report.notes.push_back(std::to_string(files.scans.size() - written) +
                            " files are left out, the first: " + first_error);
   }
   const double span_s =
       static_cast<double>(files.scans.back().stamp_ns - files.scans.front().stamp_ns) * 1e-9;
-  report.rows.push_back({files.scans.front().file.filename().string() + " …", files.type, written,
-                         span_s > 0.0 ? static_cast<double>(files.scans.size() - 1) / span_s : 0.0,
-                         "lidar.clouds"});
+  report.rows.push_back(
+      {files.scans.front().file.filename().string() + (files.scans.size() > 1 ? " …" : ""), files.type,
+       written, span_s > 0.0 ? static_cast<double>(files.scans.size() - 1) / span_s : 0.0, "lidar.clouds"});
   if (!files.timing.empty()) report.notes.push_back("clock: " + files.timing);
 }
 

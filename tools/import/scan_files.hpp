@@ -28,8 +28,9 @@ struct ScanFiles {
 /// Whether a source is a file of points, or a folder that holds such files, also as KITTI lays them.
 [[nodiscard]] bool holds_scans(const std::filesystem::path& source);
 
-/// Finds the files and their times: of times.txt or timestamps.txt, else of the names, else by --rate.
-/// @throws UsageError naming --rate where nothing tells them; DataError for a file of times that does not fit
+/// Finds the files and their times: of times.txt or timestamps.txt, else of the names, else by --rate; of a lidar alone, else 10
+/// a second.
+/// @throws UsageError naming --rate where nothing tells them and logs come beside the scans; DataError for a file of times that does not fit
 [[nodiscard]] ScanFiles find_scans(const ImportRequest& request);
 
 /// Stamp in a name: "1700000000.123456789", "1700000000_123456789", or a count of ns, us or ms since 1970; nothing for

@@ -82,13 +82,22 @@ bool is_loss(std::string_view name) {
 }
 
 std::string poses_sentence(const RunFolder& run, double& registered_share) {
-  const auto registered = std::count_if(run.status.begin(), run.status.end(),
-                                        [](const StatusRow& row) { return row.mode == "registered"; });
+  const auto count = [&](const char* mode) {
+    return std::count_if(run.status.begin(), run.status.end(),
+                         [&](const StatusRow& row) { return row.mode == mode; });
+  };
+  const auto rows = static_cast<std::ptrdiff_t>(run.status.size());
+  const auto began = count("initializing");
   registered_share =
-      run.status.empty() ? 1.0 : static_cast<double>(registered) / static_cast<double>(run.status.size());
+      rows > began ? static_cast<double>(count("registered")) / static_cast<double>(rows - began) : 1.0;
   std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(), "%zu poses in %.0f s, %.1f %% of them by lidar",
-                run.trajectory.poses.size(), run.trajectory.duration_s(), 100.0 * registered_share);
+  if (rows > 0 && rows == began) {
+    std::snprintf(text.data(), text.size(), "%zu poses: too few scans to register one, they begin the map",
+                  run.trajectory.poses.size());
+  } else {
+    std::snprintf(text.data(), text.size(), "%zu poses in %.0f s, %.1f %% of them by lidar",
+                  run.trajectory.poses.size(), run.trajectory.duration_s(), 100.0 * registered_share);
+  }
   return text.data();
 }
 
@@ -116,7 +125,10 @@ Json health_json(const RunFolder& run, const std::vector<Counted>& counters,
   const std::string sentence = poses_sentence(run, registered_share);
   Json health = Json::array();
   health.push_back(note_json("poses", registered_share < kFewRegistered ? "warning" : "ok", sentence));
-  if (!run.status.empty()) health.push_back(altimeter_note(run));
+  const bool has_altimeter = std::any_of(run.status.begin(), run.status.end(), [](const StatusRow& row) {
+    return std::isfinite(row.altimeter_height_m);
+  });
+  if (has_altimeter) health.push_back(altimeter_note(run));
   for (const Counted& counter : counters) {
     if (counter.count == 0 || !is_loss(counter.name)) continue;
     health.push_back(
@@ -141,9 +153,11 @@ Json sensors_json(const std::vector<Counted>& counters, double duration_s) {
                        {"rejected", nullptr},
                        {"dropped", nullptr}});
   };
+  std::int64_t scans = 0;
   for (const Counted& counter : counters) {
-    if (counter.name == "lidar scans") add("lidar", counter.count);
+    if (counter.name == "lidar scans" || counter.name == "lidar: clouds") scans += counter.count;
   }
+  add("lidar", scans);
   for (const Counted& counter : counters) {
     if (counter.name.ends_with(kGood)) {
       add(counter.name.substr(0, counter.name.size() - kGood.size()), counter.count);

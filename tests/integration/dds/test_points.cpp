@@ -4,12 +4,15 @@
 
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "run/recording/recording_reader.hpp"
 #include "tests/integration/dds/base_station_peers.hpp"
 
 namespace isobar::test::test_points {
@@ -55,6 +58,11 @@ class LidarNode {
  private:
   static constexpr int kColumns = 450;
   static constexpr int kBeams = 16;
+
+ public:
+  static constexpr std::uint32_t kPoints = kColumns * kBeams;
+
+ private:
   static constexpr std::uint32_t kStep = 20;
   static constexpr std::int64_t kTurnNs = 100'000'000;
 
@@ -84,10 +92,24 @@ class LidarNode {
   std::vector<std::uint8_t> data_;
 };
 
+/// Clouds of a recording, of which each must hold all points of a turn.
+int whole_clouds(const std::filesystem::path& folder) {
+  recording::RecordingReader reader(folder);
+  int clouds = 0;
+  recording::Event event;
+  while (reader.next(event)) {
+    REQUIRE(event.kind == recording::EventKind::kCloud);
+    CHECK(event.cloud->width == LidarNode::kPoints);
+    ++clouds;
+  }
+  return clouds;
+}
+
 TEST_CASE("a lidar's clouds over DDS are registered, a broken cloud is refused and said, and silence is") {
   const std::string config =
       write_config("points",
                    "lidar.source = \"dds\"\nimu.source = \"none\"\nbarometer.source = \"none\"\n"
+                   "black_box.directory = \"/tmp/box\"\n"
                    "[input]\nexpect_base_station = false\n");
   auto participant = std::make_shared<dds::Participant>(dds::ParticipantSettings{});
   Listener<dds::PoseMessage> poses(participant, dds::topics::kPose);
@@ -115,6 +137,15 @@ TEST_CASE("a lidar's clouds over DDS are registered, a broken cloud is refused a
     CHECK(bridge.read_until(
         "lidar clouds: times from t in ns, relative to the stamp; rings from ring; no intensity", 5s));
     CHECK(bridge.read_until("a cloud is refused: data is shorter than its points", 10s));
+    // Recorder and black box keep them.
+    ChildProcess recorder({ISOBAR_TOOL, "record", "/tmp/recorded", "--for", "2", "--min-free", "1"});
+    CHECK(recorder.wait(30s) == 0);
+    CHECK(whole_clouds("/tmp/recorded") >= 10);
+    daemon.signal(SIGUSR1);
+    CHECK(daemon.read_until("black box saved (signal)", 20s));
+    for (const auto& saved : std::filesystem::directory_iterator("/tmp/box")) {
+      CHECK(whole_clouds(saved.path()) >= 10);
+    }
   }
   CHECK(diagnostics.receive(1, [](const auto& message) {
     return says(message, "isobar: lidar", kError) &&

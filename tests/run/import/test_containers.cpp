@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "core/errors.hpp"
+#include "run/import/bag_folder.hpp"
 #include "run/import/message_stream.hpp"
 #include "tests/run/import/bag_builder.hpp"
 #include "tests/support/message_of.hpp"
@@ -87,6 +88,50 @@ TEST_CASE("the files of a divided rosbag2 follow each other, and a topic keeps i
   check_reads_back(folder.path(), imports::Encoding::kCdr);
 }
 
+TEST_CASE("parts of a ROS 1 bag follow each other by their numbers; several bags are not mixed") {
+  const TemporaryFolder folder;
+  const std::vector<BagMessage> all = some_messages();
+  // rosbag record --split names each part by its time and its number.
+  write_bytes(folder.path() / "run_2026-11-30-10-05-00_1.bag",
+              rosbag1_file(kTopics, {all.begin() + 2, all.end()}, "bz2"));
+  write_bytes(folder.path() / "run_2026-11-30-09-00-00_0.bag",
+              rosbag1_file(kTopics, {all[0], all[1]}, "lz4"));
+  check_reads_back(folder.path(), imports::Encoding::kRos1);
+  write_bytes(folder.path() / "other.bag", rosbag1_file(kTopics, all, "none"));
+  const std::string refusal = message_of([&] { (void)imports::open_messages(folder.path()); });
+  CHECK(refusal.find("holds several bags: ") != std::string::npos);
+  CHECK(refusal.find("other.bag") != std::string::npos);
+  CHECK(imports::part_number("a_12.db3.zstd") == 12);
+  CHECK_FALSE(imports::part_number("a12.db3"));
+  write_bytes(folder.path() / "n_0.bag", "");
+  write_bytes(folder.path() / "n_1.bag", "");
+  CHECK(imports::next_part(folder.path() / "n_0.bag") == "n_1.bag");
+  CHECK_FALSE(imports::next_part(folder.path() / "n_1.bag"));
+}
+
+TEST_CASE(
+    "bags that are compressed as a whole are decompressed, and a cut one gives what is before the cut") {
+  const TemporaryFolder folder;
+  write_db3(folder.path() / "bag_0.db3", kTopics, some_messages());
+  std::ifstream in(folder.path() / "bag_0.db3", std::ios::binary);
+  const std::string whole((std::istreambuf_iterator<char>(in)), {});
+  std::filesystem::remove(folder.path() / "bag_0.db3");
+  const auto file = folder.path() / "bag_0.db3.zstd";
+  write_bytes(file, compressed("zstd", whole));
+  write_bytes(folder.path() / "metadata.yaml",
+              "  compression_format: zstd\n  compression_mode: FILE\n  relative_file_paths:\n    - "
+              "bag_0.db3.zstd\n");
+  CHECK(imports::holds_messages(file));
+  check_reads_back(file, imports::Encoding::kCdr);
+  check_reads_back(folder.path(), imports::Encoding::kCdr);
+  const std::string bag = compressed("zstd", rosbag1_file(kTopics, some_messages(), "none"));
+  write_bytes(folder.path() / "cut.bag.zst", bag.substr(0, bag.size() - 8));
+  const auto stream = imports::open_messages(folder.path() / "cut.bag.zst");
+  imports::Message message;
+  while (stream->next(message)) continue;
+  CHECK(stream->damage().first_message.find("cut.bag.zst: byte ") != std::string::npos);
+}
+
 TEST_CASE("messages that rosbag2 compressed one by one are decompressed") {
   const TemporaryFolder folder;
   std::vector<BagMessage> messages = some_messages();
@@ -109,7 +154,8 @@ TEST_CASE("what is no container is refused with its name") {
   CHECK(refusal("y.bag").find("y.bag: is no rosbag1, rosbag2 or MCAP") != std::string::npos);
   CHECK(refusal("gone").find("gone: is no rosbag1") != std::string::npos);
   CHECK(imports::holds_messages(folder.path() / "y.bag") == false);
-  CHECK(imports::holds_messages(folder.path()) == false);
+  std::filesystem::create_directory(folder.path() / "folder");
+  CHECK(imports::holds_messages(folder.path() / "folder") == false);
 }
 
 }  // namespace isobar::test::test_containers

@@ -6,6 +6,7 @@
 
 #include "core/errors.hpp"
 #include "run/import/decompress.hpp"
+#include "run/import/mcap_stream.hpp"
 #include "run/import/message_stream.hpp"
 #include "tests/run/import/bag_builder.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -122,6 +123,30 @@ TEST_CASE("bytes that were changed at random never break a reader") {
       CHECK(read_all(folder.path() / "changed").stamps.size() <= 12);
     }
   }
+}
+
+TEST_CASE("a chunk within a chunk is left out, and what surrounds it is read") {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "nested";
+  const std::string schema =
+      mcap_record(3, little(std::uint16_t{1}) + counted("a/B") + counted("") + counted(""));
+  const std::string channel = mcap_record(
+      4, little(std::uint16_t{1}) + little(std::uint16_t{1}) + counted("/a") + counted("cdr") + counted(""));
+  const std::string message =
+      mcap_record(5, little(std::uint16_t{1}) + little(std::uint32_t{0}) + std::string(16, '\0') + "bytes");
+  const auto chunk = [](const std::string& content) {
+    const std::string data = compressed("lz4", content);
+    return mcap_record(6, std::string(16, '\0') + little(static_cast<std::uint64_t>(content.size())) +
+                              little(std::uint32_t{0}) + counted("lz4") +
+                              little(static_cast<std::uint64_t>(data.size())) + data);
+  };
+  write_bytes(file, std::string("\x89MCAP0\r\n", 8) + chunk(schema + channel + chunk(message) + message));
+  imports::McapStream mcap(file);
+  imports::Message read;
+  REQUIRE(mcap.next(read));
+  CHECK(std::string(read.bytes.begin(), read.bytes.end()) == "bytes");
+  CHECK_FALSE(mcap.next(read));
+  CHECK(mcap.damage().first_message.find("a chunk within a chunk") != std::string::npos);
 }
 
 TEST_CASE("decompression stops at the size that was stated") {

@@ -105,12 +105,29 @@ TEST_CASE("a KITTI scan gives four floats a point, with reflectance up to 255") 
   CHECK(field_of<float>(cloud, "intensity", 0) == 127.5F);
 }
 
+TEST_CASE("a nuScenes scan gives five floats a point, and bytes of another layout are no scan") {
+  const Folder folder;
+  const auto scan = folder.write("a.pcd.bin", bytes_of_floats({1, 2, 3, 40, 7, 4, 5, 6, 80, 8}));
+  const recording::CloudRecord cloud = imports::read_point_file(scan);
+  CHECK(cloud.width == 2);
+  CHECK(field_of<float>(cloud, "intensity", 1) == 80.0F);
+  CHECK(field_of<float>(cloud, "ring", 1) == 8.0F);
+  // NCLT: 16-bit coordinates.
+  std::string packed;
+  for (int i = 0; i < 400; ++i) packed += static_cast<char>(i * 37);
+  const auto other = folder.write("b.bin", packed);
+  CHECK(message_of([&] { (void)imports::read_point_file(other); }).find("is no scan of KITTI's form") !=
+        std::string::npos);
+}
+
 TEST_CASE("a file of points that is cut gives the whole ones, and a wrong one names its rule") {
   const Folder folder;
   const auto cut = folder.write("cut.pcd", std::string(kPcdHead) + "binary\n" + bytes_of_floats({1, 2, 3}) +
                                                "..\x07\x01"
                                                "zz");
-  CHECK(imports::read_point_file(cut).width == 1);
+  std::string damage;
+  CHECK(imports::read_point_file(cut, &damage).width == 1);
+  CHECK(damage.find(": ends after point 1 of ") != std::string::npos);
   const auto refusal = [&](const std::string& name, const std::string& bytes) {
     const auto file = folder.write(name, bytes);
     return message_of([&] { (void)imports::read_point_file(file); });

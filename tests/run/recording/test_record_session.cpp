@@ -2,8 +2,10 @@
 // Recordings that are written live: complete at every time, from an input log.
 #include <doctest/doctest.h>
 
+#include <cstring>
 #include <fstream>
 #include <limits>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -211,6 +213,45 @@ TEST_CASE("a folder that holds anything is never written to") {
   CHECK(message_of([&] { session.add(description(manifest)); }).find("exists already") != std::string::npos);
   CHECK(text_of(scratch.path() / "note.txt") == "mine");
   CHECK_FALSE(std::filesystem::exists(scratch.path() / kManifestFile));
+}
+
+TEST_CASE("scans of a lidar that gives clouds are recorded as clouds; one with a missing part is left out") {
+  const Scratch scratch;
+  Manifest manifest = robot_manifest();
+  manifest.lidar->model = kCloudModel;
+  manifest.lidar->file = "lidar.clouds";
+  const auto scan = std::make_unique<Scan>();
+  InputLog log;
+  for (int i = 0; i < 3; ++i) {
+    scan->stamp_ns = kStart + i * 100 * kMs;
+    scan->point_count = 20'000;  // three records
+    for (std::uint32_t k = 0; k < scan->point_count; ++k) {
+      scan->points[k] = {1.0F + static_cast<float>(k),      2.0F, 3.0F, static_cast<std::uint16_t>(k),
+                         static_cast<std::uint8_t>(k % 16), 7};
+    }
+    log.add_scan(*scan);
+  }
+  RecordSession session(scratch.path() / "r");
+  session.add(description(manifest_text(manifest)));
+  InputLogReader reader(log.bytes());
+  LogEntry entry;
+  for (int i = 0; reader.next(entry); ++i) {
+    if (i != 4) session.add(entry);  // the middle of the second scan
+  }
+  CHECK(session.counts().clouds == 2);
+  session.close();
+  RecordingReader recording(scratch.path() / "r");
+  std::vector<std::int64_t> stamps;
+  Event event;
+  while (recording.next(event)) {
+    REQUIRE(event.kind == EventKind::kCloud);
+    stamps.push_back(event.stamp_ns);
+    CHECK(event.cloud->width == 20'000);
+    float x_m = 0.0F;
+    std::memcpy(&x_m, &event.cloud->data[std::size_t{19'999} * event.cloud->point_step], sizeof x_m);
+    CHECK(x_m == 20'000.0F);
+  }
+  CHECK(stamps == std::vector<std::int64_t>{kStart, kStart + 200 * kMs});
 }
 
 }  // namespace isobar::test::test_record_session

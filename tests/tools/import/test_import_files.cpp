@@ -54,7 +54,7 @@ TEST_CASE("a KITTI sequence takes its times from times.txt, and scans in the ord
   CHECK(first_x == std::vector<float>{1.0F, 2.0F, 10.0F});
 }
 
-TEST_CASE("scans without times are asked for their rate; one that is broken is left out and said") {
+TEST_CASE("scans without times count 10 a second, or --rate; a broken one is left out and said") {
   const TemporaryFolder folder;
   std::filesystem::create_directories(folder.path() / "scans");
   for (int i = 0; i < 3; ++i) {
@@ -63,12 +63,20 @@ TEST_CASE("scans without times are asked for their rate; one that is broken is l
         << (i == 1 ? "broken\n" : "1 2 3\n");
   }
   ImportRequest request{.source = folder.path() / "scans", .out = folder.path() / "r"};
+  // Beside other logs a guess would be wrong: it is asked for.
+  request.imu = folder.path() / "imu.csv";
+  std::ofstream(request.imu) << "t_ns,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2\n0,0,0,0,0,0,9.8\n";
   CHECK(message_of([&] { import_source(request, [](double) {}); }).find("--rate: neither a times.txt") == 0);
   CHECK_FALSE(std::filesystem::exists(request.out));
+  request.imu.clear();
+  const ImportReport assumed = import_source(request, [](double) {});
+  CHECK(cloud_stamps(request.out) == std::vector<std::int64_t>{0, 200'000'000});
+  CHECK(assumed.notes.back().find("10 a second are assumed") != std::string::npos);
+  request.out = folder.path() / "by-rate";
   request.rate_hz = 5.0;
   const ImportReport report = import_source(request, [](double) {});
   CHECK(cloud_stamps(request.out) == std::vector<std::int64_t>{0, 400'000'000});
-  CHECK(report.notes.front().find("1 files are left out") == 0);
+  CHECK(report.notes[1].find("1 files are left out") == 0);
 }
 
 TEST_CASE("logs beside scans become the IMU and the barometer; their mount and clock are asked for") {
@@ -117,8 +125,20 @@ TEST_CASE("what is nothing that is read is refused, with what would be") {
   const auto refusal = [&](const std::filesystem::path& source) {
     return message_of([&] { import_source({.source = source, .out = folder.path() / "r"}, [](double) {}); });
   };
-  CHECK(refusal(folder.path() / "x.txt").find("x.txt: is nothing that is read: rosbag1") !=
+  CHECK(refusal(folder.path() / "x.txt").find("x.txt: is text, beginning with \"some text\"; a log ") !=
         std::string::npos);
+  std::ofstream(folder.path() / "empty.bag").flush();
+  CHECK(refusal(folder.path() / "empty.bag").find("empty.bag: is empty") != std::string::npos);
+  std::ofstream(folder.path() / "a.bag") << "PK\x03\x04" << std::string(40, '\0');
+  CHECK(refusal(folder.path() / "a.bag").find("a.bag: is a zip archive; unpack it first") !=
+        std::string::npos);
+  std::ofstream(folder.path() / "b.bag") << std::string(40, '\1');
+  CHECK(
+      refusal(folder.path() / "b.bag").find("b.bag: begins with bytes of no format that is known; rosbag1") !=
+      std::string::npos);
+  std::filesystem::create_directory(folder.path() / "logs");
+  std::ofstream(folder.path() / "logs" / "a.csv") << "a,b";
+  CHECK(refusal(folder.path() / "logs").find("it holds a.csv") != std::string::npos);
   CHECK(refusal(folder.path() / "gone").find("gone: no such file or folder") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(folder.path() / "r"));
 }

@@ -77,9 +77,35 @@ TEST_CASE(
   // The scans' noise is 1 cm, of some thousand points.
   const Eigen::Vector3d way = poses.back().T_map_base.translation() - poses.front().T_map_base.translation();
   CHECK((way - Eigen::Vector3d(kStepM * (kClouds - 1), 0.0, 0.0)).norm() < 0.05);
+  // Without --out the run goes to the current folder, with the bag's name; it is not replaced unasked.
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  CHECK(run({}) == 0);
+  CHECK(run({}) == 64);
+  std::filesystem::current_path(before);
+  CHECK(std::filesystem::exists(folder.path() / "foreign-run" / "map.ply"));
   // What cannot be: exit code 64, and nothing is written.
   CHECK(run({"--out", (folder.path() / "none").string(), "--lidar", "/other"}) == 64);
   CHECK_FALSE(std::filesystem::exists(folder.path() / "none"));
+}
+
+TEST_CASE("an IMU too short for its attitude to begin costs the map nothing") {
+  const TemporaryFolder folder;
+  std::mt19937 random(3);
+  std::vector<BagMessage> messages;
+  for (int i = 0; i < 4; ++i) {
+    const std::int64_t ns = kFirstNs + i * std::int64_t{100'000'000};
+    messages.push_back({0, ns, cloud_message(Form::kRos1, ns, "lidar", room_from(0.0, random))});
+    messages.push_back({1, ns, imu_message(Form::kRos1, ns, "lidar", {0, 0, 0, 1}, {0, 0, 0}, {0, 0, 9.81})});
+  }
+  write_bytes(
+      folder.path() / "short.bag",
+      rosbag1_file({{"/points", "sensor_msgs/PointCloud2"}, {"/imu", "sensor_msgs/Imu"}}, messages, ""));
+  const auto run = folder.path() / "run";
+  REQUIRE(exit_code(tools::add_replay_command,
+                    {"replay", (folder.path() / "short.bag").string(), "--out", run.string()}) == 0);
+  CHECK(std::filesystem::file_size(run / "map.ply") > 5'000);
+  CHECK(recording::read_tum(run / "trajectory.tum").size() == 4);
 }
 
 }  // namespace isobar::test::test_replay_foreign

@@ -13,13 +13,14 @@ uniform float floors_m[FLOORS];
 uniform int floor_count;
 uniform float pixels_per_m;
 uniform float larger;
+uniform float least_px;
 uniform sampler2D colours;
 varying vec3 colour;
 void main() {
   vec4 world = modelMatrix * vec4(position * step_m, 1.0);
   vec4 seen = viewMatrix * world;
   gl_Position = projectionMatrix * seen;
-  gl_PointSize = larger * clamp(pixels_per_m / max(0.1, -seen.z), 1.0, 5.0);
+  gl_PointSize = larger * clamp(pixels_per_m / max(0.1, -seen.z), least_px, 5.0);
   bool shown = world.z >= slice_m.x && world.z <= slice_m.y;
   bool in_slab = floor_count == 0;
   for (int i = 0; i < FLOORS; ++i) {
@@ -41,8 +42,11 @@ void main() {
 const kPointM = 0.07;
 /** Thinned points are at most so much larger: beyond, they look like another map. */
 const kMostLarger = 3;
-/** One of this many points is kept for the extent of the map. */
+/** One of this many points is kept for the extent of the map; of a few points more. */
 const kSampleStep = 61;
+const kLeastSamples = 100;
+/** A map of fewer points than this is drawn in points of 3 pixels: single ones of one pixel can hardly be seen. */
+const kSparsePoints = 100_000;
 /** Floors without their ceilings are shown between these heights above the ground [m]. */
 const kSlabM = [-0.5, 1.9];
 const kMostFloors = 32;
@@ -86,6 +90,7 @@ export class MapPoints {
       floor_count: { value: 0 },
       pixels_per_m: { value: 50 },
       larger: { value: 1 },
+      least_px: { value: 1 },
       colours: { value: null },
     },
   });
@@ -125,6 +130,17 @@ export class MapPoints {
     const told = floors_m.slice(0, kMostFloors);
     this.material.uniforms.floors_m.value = [...told, ...new Array(kMostFloors - told.length).fill(0)];
     this.material.uniforms.floor_count.value = told.length;
+  }
+
+  /** Share of the map that cut_above() leaves of it, 0 … 1. */
+  share_left(floors_m: number[]): number {
+    let all = 0;
+    let left = 0;
+    for (const { z } of this.samples()) {
+      ++all;
+      if (floors_m.some((floor_m) => z - floor_m > kSlabM[0] && z - floor_m < kSlabM[1])) ++left;
+    }
+    return all > 0 ? left / all : 1;
   }
 
   set_range(lowest_m: number, highest_m: number): void {
@@ -172,8 +188,10 @@ export class MapPoints {
     shuffle(data);
     const buffer = new THREE.InterleavedBuffer(data, 4);
     geometry.setAttribute('position', new THREE.InterleavedBufferAttribute(buffer, 3, 0));
-    const samples = new Float32Array(3 * Math.ceil(data.length / 4 / kSampleStep));
-    for (let from = 0, to = 0; from < data.length; from += 4 * kSampleStep, to += 3) {
+    const count = data.length / 4;
+    const step = Math.max(1, Math.min(kSampleStep, Math.floor(count / kLeastSamples)));
+    const samples = new Float32Array(3 * Math.ceil(count / step));
+    for (let from = 0, to = 0; from < data.length; from += 4 * step, to += 3) {
       for (let axis = 0; axis < 3; ++axis) samples[to + axis] = corner_m[axis] + data[from + axis] * step_m;
     }
     const edge_m = 65_536 * step_m;
@@ -182,13 +200,18 @@ export class MapPoints {
     points.position.set(...corner_m);
     this.group.add(points);
     this.chunks.set(key, { points, samples_m: samples });
-    this.total += data.length / 4;
+    this.note_total(count);
+  }
+
+  private note_total(added: number): void {
+    this.total += added;
+    this.material.uniforms.least_px.value = this.total < kSparsePoints ? 3 : 1;
   }
 
   private remove(key: string): void {
     const drawn = this.chunks.get(key);
     if (!drawn) return;
-    this.total -= drawn.points.geometry.getAttribute('position').count;
+    this.note_total(-drawn.points.geometry.getAttribute('position').count);
     this.group.remove(drawn.points);
     drawn.points.geometry.dispose();
     this.chunks.delete(key);

@@ -12,11 +12,22 @@ import { FrameBudget } from './frame_budget';
 import { PathLine, RobotMarker, type Line3 } from './map_tracks';
 
 const kFieldOfViewDeg = 50;
+/** Least share of the map that is left without its ceilings. */
+const kLeastLeft = 1 / 3;
 const kDarkQuery = '(prefers-color-scheme: dark)';
 /** Of a screen with many pixels only so many are drawn per CSS pixel: points stay points, at half the work. */
 const kMostPixelRatio = 1.5;
 /** A map that grows moves the view only where it would move by more than this share of its distance. */
 const kGentleShare = 0.04;
+
+/** Leaves out single places far beyond all others, as a return through a window: the map would be small in the picture. */
+function without_strays(places: THREE.Vector3[]): THREE.Vector3[] {
+  if (places.length === 0) return places;
+  const part = (values: number[], share: number) => values.sort((a, b) => a - b)[Math.round(share * (values.length - 1))];
+  const centre = new THREE.Vector3(...(['x', 'y', 'z'] as const).map((axis) => part(places.map((place) => place[axis]), 0.5)));
+  const farthest = 1.5 * part(places.map((place) => place.distanceTo(centre)), 0.98);
+  return places.filter((place) => place.distanceTo(centre) <= farthest);
+}
 
 export class MapView {
   readonly root = element('div', 'map-view');
@@ -37,6 +48,7 @@ export class MapView {
   private range_m: [number, number] | null = null;
   private slice_m: [number, number] | null = null;
   private fitted: THREE.Vector3[] = [];
+  private floors_m: number[] = [];
   private touched = false;
   private readonly budget: FrameBudget;
   /** The picture of the points: how much of it is drawn, 0 … 1; shown at once, thinned, or when it is whole; outdated. */
@@ -80,8 +92,11 @@ export class MapView {
   apply(piece: MapPiece): void {
     const is_first = this.points.count === 0;
     this.points.apply(piece);
-    if (!piece.more) this.take_range();
-    if (!this.touched && !piece.more) this.fit_places([...this.points.samples()], false, true);
+    if (!piece.more) {
+      this.take_range();
+      this.cut();
+    }
+    if (!this.touched && !piece.more) this.fit_places(without_strays([...this.points.samples()]), false, true);
     this.draw_anew(is_first);
   }
 
@@ -144,13 +159,19 @@ export class MapView {
 
   /** Leaves out the ceilings over these floors; none: shows all. */
   cut_above(floors_m: number[]): void {
-    this.points.cut_above(floors_m);
+    this.floors_m = floors_m;
+    this.cut();
     this.draw_anew();
+  }
+
+  /** Where most of the map lies elsewhere (a lidar on a mast of unknown height, open land) nothing is cut. */
+  private cut(): void {
+    this.points.cut_above(this.points.share_left(this.floors_m) < kLeastLeft ? [] : this.floors_m);
   }
 
   /** The whole map, from obliquely above or from the top. */
   fit(from_top = false): void {
-    this.fit_places([...this.points.samples()], from_top);
+    this.fit_places(without_strays([...this.points.samples()]), from_top);
   }
 
   private fit_path(path: Line3): void {

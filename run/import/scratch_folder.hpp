@@ -12,7 +12,7 @@
 
 #include "core/errors.hpp"
 
-namespace isobar::tools {
+namespace isobar::imports {
 
 /// A new folder for temporary files, for this user only (TMPDIR, else /tmp), removed by the destructor.
 class ScratchFolder {
@@ -35,4 +35,4 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-}  // namespace isobar::tools
+}  // namespace isobar::imports
