@@ -19,7 +19,7 @@
 #include "tools/pressure_log.hpp"
 #include "tools/progress.hpp"
 #include "tools/report/calibration_report.hpp"
-#include "tools/report/svg.hpp"
+#include "tools/report/number_text.hpp"
 #include "tools/subcommand.hpp"
 
 namespace isobar::tools {

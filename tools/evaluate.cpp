@@ -30,7 +30,6 @@ struct EvaluateArguments {
   std::string names;  ///< separated by commas
   std::string title;
   std::string report;
-  std::string picture;
   std::string json;
   std::string alignment = "start";
   std::optional<double> max_gap_s;
@@ -91,7 +90,6 @@ void run_evaluate(const EvaluateArguments& arguments, const std::string& command
   std::printf("\n");
   if (!arguments.first_session.empty()) print_in_first_frame(arguments.first_session, input.run);
   if (!arguments.json.empty()) write_output(arguments.json, report::figures_json(input.run));
-  if (!arguments.picture.empty()) write_output(arguments.picture, report::render_overview_svg(input));
   if (!arguments.report.empty()) write_output(arguments.report, report::render_report(input));
 }
 
@@ -133,8 +131,6 @@ void add_evaluate_command(CLI::App& app) {
   command.add_option("--title", options.title, "headline of the report");
   command.add_option("--report", options.report, "HTML file for the report; it opens without a network")
       ->check(written_as({".html", ".htm"}));
-  command.add_option("--picture", options.picture, "SVG file for the overview picture")
-      ->check(written_as({".svg"}));
   command.add_option("--json", options.json, "JSON file for all figures")->check(written_as({".json"}));
 }
 

@@ -150,7 +150,6 @@ void evaluate_all(const ExperimentOptions& options, const std::filesystem::path&
   }
   write_output(options.out / "report.html", report::render_report(input));
   write_output(options.out / "figures.json", report::figures_json(input.run));
-  write_output(options.out / "overview.svg", report::render_overview_svg(input));
 }
 
 void run_experiment(ExperimentOptions options, const std::string& command) {

@@ -18,7 +18,7 @@
 #include "tools/pressure_log.hpp"
 #include "tools/report/aligned_rows.hpp"
 #include "tools/report/sensitivity_report.hpp"
-#include "tools/report/svg.hpp"
+#include "tools/report/number_text.hpp"
 #include "tools/sensitivity_recording.hpp"
 #include "tools/sensitivity_study.hpp"
 #include "tools/subcommand.hpp"
