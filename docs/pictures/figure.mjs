@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Saves a figure of a report as PNG, as Debian's Chromium shows it on a light page.
-// Usage: node figure.mjs REPORT.html FILE.png CAPTION [CAPTION...]     a figure whose caption begins with CAPTION; of
-// several the area that holds all
+// Usage: node figure.mjs REPORT.html FILE.png CAPTION...     the figures whose captions begin so, below each other;
+// "2:CAPTION" is the second that does
 import { createRequire } from 'node:module';
 import { resolve } from 'node:path';
 
@@ -21,7 +21,10 @@ try {
   await page.waitForSelector('figure canvas', { timeout: 20_000 });
   await page.evaluate((wanted) => {
     const figures = [...document.querySelectorAll('figure')];
-    const chosen = wanted.map((words) => figures.find((figure) => figure.querySelector('figcaption')?.textContent.startsWith(words)));
+    const chosen = wanted.map((words) => {
+      const [, number, caption] = words.match(/^(?:(\d+):)?(.*)$/s);
+      return figures.filter((figure) => figure.querySelector('figcaption')?.textContent.startsWith(caption))[(number ?? 1) - 1];
+    });
     if (chosen.includes(undefined)) throw new Error(`no figure "${wanted[chosen.indexOf(undefined)]}"`);
     for (const figure of chosen) figure.querySelector('figcaption').remove();
     const place = document.createElement('div');
