@@ -75,6 +75,9 @@ void print_in_first_frame(const std::vector<std::string>& first_session,
 }
 
 void run_evaluate(const EvaluateArguments& arguments, const std::string& command) {
+  require_path(arguments.reference, "a .tum file, or a recording with reference.tum");
+  for (const auto& estimate : arguments.estimates)
+    require_path(estimate, "a .tum file, or the folder of a run with trajectory.tum");
   const std::vector<evaluation::EstimateSource> sources = sources_of(arguments);
   std::optional<std::filesystem::path> segments;
   if (!arguments.segments.empty()) segments = arguments.segments;

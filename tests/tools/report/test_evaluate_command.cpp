@@ -46,7 +46,7 @@ TEST_CASE("isobar evaluate writes report and figures, and each mistake has its e
   CHECK(exit_code({"evaluate", path("bad.tum"), path("r.tum")}) == 65);
   CHECK(exit_code({"evaluate", folder.path().string(), path("r.tum")}) == 65);
   CHECK(exit_code({"evaluate", path("r.tum"), path("r.tum"), "--segments", path("bad.csv")}) == 65);
-  CHECK(exit_code({"evaluate", path("r.tum"), path("r.tum"), "--report", path("no/such/folder.html")}) == 69);
+  CHECK(exit_code({"evaluate", path("r.tum"), path("r.tum"), "--report", path("no/such/folder.html")}) == 64);
 }
 
 }  // namespace isobar::test::test_evaluate_command
