@@ -2,8 +2,11 @@
 #include "simulation/lidar_plan.hpp"
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include "core/errors.hpp"
+#include "core/nearest_word.hpp"
 
 namespace isobar::simulation {
 
@@ -234,8 +237,13 @@ const LidarPlan& find_lidar_plan(std::string_view name) {
       std::find_if(kPlans.begin(), kPlans.end(), [name](const auto& plan) { return plan.name == name; });
   if (at != kPlans.end()) return *at;
   std::string known;
-  for (const LidarPlan& plan : kPlans) known += (known.empty() ? "" : ", ") + std::string(plan.name);
-  throw UsageError("lidar: \"" + std::string(name) + "\" is unknown; known are " + known);
+  std::vector<std::string> names;
+  for (const LidarPlan& plan : kPlans) {
+    names.emplace_back(plan.name);
+    known += (known.empty() ? "" : ", ") + names.back();
+  }
+  throw UsageError("lidar: \"" + std::string(name) + "\" is unknown" + did_you_mean(name, names) +
+                   "; known are " + known);
 }
 
 }  // namespace isobar::simulation

@@ -19,8 +19,9 @@
 #include "tools/pressure_log.hpp"
 #include "tools/progress.hpp"
 #include "tools/report/calibration_report.hpp"
-#include "tools/report/svg.hpp"
+#include "tools/report/number_text.hpp"
 #include "tools/subcommand.hpp"
+#include "tools/typed_words.hpp"
 
 namespace isobar::tools {
 
@@ -159,6 +160,7 @@ void add_calibrate_command(CLI::App& app) {
       ->capture_default_str()
       ->excludes(shift);
   command.add_option("--model", options.model, "write this model instead of the recommended one")
+      ->check(one_of({"offset", "A_p", "A_simple", "A_ind", "A_m", "A_full"}))
       ->option_text("offset|A_p|A_simple|A_ind|A_m|A_full");
   command.add_flag("--pressure-only", options.pressure_only,
                    "accept a single temperature: fit offset and A_p only, which need no other");

@@ -10,7 +10,7 @@
 #include "core/calibration/calibration_pairs.hpp"
 #include "core/errors.hpp"
 #include "core/statistics/distribution.hpp"
-#include "tools/report/svg.hpp"
+#include "tools/report/number_text.hpp"
 
 namespace isobar::tools {
 

@@ -14,7 +14,7 @@
 #include "tools/commands.hpp"
 #include "tools/mount_replay.hpp"
 #include "tools/progress.hpp"
-#include "tools/report/svg.hpp"
+#include "tools/report/number_text.hpp"
 #include "tools/subcommand.hpp"
 
 namespace isobar::tools {

@@ -14,6 +14,7 @@
 #include "daemon/replay.hpp"
 #include "run/evaluation/evaluated_run.hpp"
 #include "run/files/run_layout.hpp"
+#include "simulation/scenario_list.hpp"
 #include "simulation/simulate.hpp"
 #include "tools/commands.hpp"
 #include "tools/comparison.hpp"
@@ -101,7 +102,11 @@ void print_settings(const evaluation::EvaluatedRun& run) {
   std::vector<report::Cells> rows{{"setting", "A", "B"}};
   for (const report::DifferingSetting& setting : report::differing_settings(run))
     rows.push_back({setting.key, setting.values[0], setting.values[1]});
-  if (rows.size() > 1) std::printf("%s\n", report::aligned_rows(rows).c_str());
+  if (rows.size() > 1) {
+    std::printf("%s\n", report::aligned_rows(rows).c_str());
+  } else {
+    std::printf("No setting is known that differs between the runs (settings.toml of each)\n\n");
+  }
 }
 
 void print_verdicts(const evaluation::EvaluatedRun& run, const std::string& recording) {
@@ -113,9 +118,14 @@ void print_verdicts(const evaluation::EvaluatedRun& run, const std::string& reco
   }
 }
 
-/// @throws UsageError
+/// @throws UsageError, or DataError where nothing is there
 void check(const CompareOptions& options) {
   const bool configs = is_config(options.sides[0]);
+  for (const fs::path& side : options.sides) {
+    require_path(side, "the folder of a run, or a configuration (.toml)");
+    if (fs::is_directory(side) && !files::holds_run(side))
+      throw DataError(side.string() + ": is no run; a run is a folder with trajectory.tum");
+  }
   if (configs != is_config(options.sides[1]))
     throw UsageError("A and B: must be two runs or two configurations (.toml)");
   if (configs && options.recordings.empty() && options.scenario.empty())
@@ -124,6 +134,9 @@ void check(const CompareOptions& options) {
   if (!configs && (options.recordings.size() != 1 || !options.scenario.empty()))
     throw UsageError(
         "--recordings: two runs are compared with one reference, the recording of both or a .tum file");
+  for (const fs::path& recording : options.recordings)
+    require_path(recording, "a recording with a reference, or a .tum file");
+  if (!options.scenario.empty()) (void)simulation::find_scenario(options.scenario);
 }
 
 void write_files(const CompareOptions& options, const std::vector<ComparedFigure>& figures,
@@ -157,12 +170,15 @@ void run_compare(const CompareOptions& options, const std::string& command) {
   }
   if (!configs) print_settings(last);
   const std::vector<ComparedFigure> figures = compare_figures(recordings);
-  std::printf(
-      "%zu recording%s; A and B: medians; better or worse: by more than 95 %% of the scatter explains\n%s\n",
-      recordings.size(), recordings.size() == 1 ? "" : "s", comparison_table(figures).c_str());
-  if (recordings.size() == 1)
-    std::printf(
-        "One recording says nothing of scatter: compare configurations on several, or with --seeds.\n");
+  const bool is_single = recordings.size() == 1;
+  std::printf("%s\n%s\n%s\n",
+              is_single
+                  ? "1 recording"
+                  : (std::to_string(recordings.size()) +
+                     " recordings. A and B: medians over them; B - A: mean of the differences, with its 95 % "
+                     "interval; better or worse: beyond it")
+                        .c_str(),
+              comparison_table(figures).c_str(), comparison_summary(figures).c_str());
   write_files(options, figures, recordings, std::move(last), command);
 }
 

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/comparison.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 
 #include "core/statistics/distribution.hpp"
 #include "tools/report/aligned_rows.hpp"
 #include "tools/report/figure_rows.hpp"
+#include "tools/report/number_text.hpp"
 #include "tools/report/provenance.hpp"
-#include "tools/report/svg.hpp"
 
 namespace isobar::tools {
 
@@ -48,7 +50,8 @@ std::vector<ComparedFigure> compare_figures(const std::vector<ComparedRecording>
     if (first.empty()) continue;
     const PairedDifference difference = paired_difference(first, second);
     all.push_back({std::string(row.group) + ": " + row.label, row.unit, row.decimals, median(first),
-                   median(second), difference, verdict_on(difference, row.larger_is_better)});
+                   median(second), difference, verdict_on(difference, row.larger_is_better),
+                   row.larger_is_better});
   }
   return all;
 }
@@ -67,6 +70,37 @@ const char* verdict_word(ComparisonVerdict verdict) {
   return "";
 }
 
+namespace {
+
+/// For the reader of a table: one recording shows what B is there, though not what it is elsewhere.
+std::string table_word(const ComparedFigure& figure) {
+  if (figure.difference.mean == 0.0 && !(figure.difference.margin > 0.0)) return "the same";
+  if (figure.verdict != ComparisonVerdict::kUnknown) return verdict_word(figure.verdict);
+  return (figure.difference.mean > 0.0) == figure.larger_is_better ? "better here" : "worse here";
+}
+
+std::size_t count_of(const std::vector<ComparedFigure>& figures, const std::string& word) {
+  return static_cast<std::size_t>(std::count_if(figures.begin(), figures.end(), [&](const auto& figure) {
+    return table_word(figure).starts_with(word);
+  }));
+}
+
+}  // namespace
+
+std::string comparison_summary(const std::vector<ComparedFigure>& figures) {
+  const bool is_single = !figures.empty() && figures.front().verdict == ComparisonVerdict::kUnknown;
+  std::string text = "B is better in " + std::to_string(count_of(figures, "better")) + " of " +
+                     std::to_string(figures.size()) + " figures, worse in " +
+                     std::to_string(count_of(figures, "worse")) + ", the same in " +
+                     std::to_string(count_of(figures, "the same"));
+  if (is_single) {
+    return text +
+           ". One recording says nothing of scatter: compare configurations on several, or with --seeds.";
+  }
+  return text + "; in " + std::to_string(count_of(figures, "within")) +
+         " the difference is within the scatter of the recordings.";
+}
+
 std::string comparison_table(const std::vector<ComparedFigure>& figures) {
   std::vector<std::vector<std::string>> rows{{"figure", "unit", "A", "B", "B - A", "+- (95 %)", "B is"}};
   for (const ComparedFigure& figure : figures) {
@@ -75,7 +109,7 @@ std::string comparison_table(const std::vector<ComparedFigure>& figures) {
     };
     rows.push_back({figure.label, "[" + figure.unit + "]", text(figure.first_median),
                     text(figure.second_median), text(figure.difference.mean), text(figure.difference.margin),
-                    verdict_word(figure.verdict)});
+                    table_word(figure)});
   }
   return report::aligned_rows(rows);
 }

@@ -28,6 +28,7 @@ struct ComparedFigure {
   double second_median = 0.0;
   PairedDifference difference;                              ///< second minus first
   ComparisonVerdict verdict = ComparisonVerdict::kUnknown;  ///< on the second side
+  bool larger_is_better = false;
 };
 
 /// Every ranked figure that both sides have on some recording. A verdict needs two recordings; equal figures are within
@@ -37,8 +38,11 @@ std::vector<ComparedFigure> compare_figures(const std::vector<ComparedRecording>
 /// "better", "worse", "within scatter" or "one recording".
 const char* verdict_word(ComparisonVerdict verdict);
 
-/// As a table for the terminal.
+/// As a table for the terminal; of one recording with "better here" or "worse here".
 std::string comparison_table(const std::vector<ComparedFigure>& figures);
+
+/// A sentence or two: in how many figures the second side is better, worse, the same or within scatter.
+std::string comparison_summary(const std::vector<ComparedFigure>& figures);
 
 /// As JSON: figures, and those of each recording.
 std::string comparison_json(const std::vector<ComparedFigure>& figures,

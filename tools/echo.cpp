@@ -17,6 +17,7 @@
 #include "ipc/dds/endpoints.hpp"
 #include "ipc/dds/library_log.hpp"
 #include "tools/commands.hpp"
+#include "tools/dds_options.hpp"
 #include "tools/echo_lines.hpp"
 #include "tools/number_option.hpp"
 #include "tools/typed_words.hpp"
@@ -28,9 +29,7 @@ using Clock = std::chrono::steady_clock;
 
 struct EchoOptions {
   std::vector<std::string> topics{"pose"};
-  int domain = 0;
-  std::string network_interface;
-  std::string ros_namespace;
+  DdsOptions dds;
   double rate_hz = 1.0;
   long count = 0;
   double timeout_s = 10.0;
@@ -71,7 +70,7 @@ class TopicEcho : public Echo {
         period_(std::chrono::duration_cast<Clock::duration>(
             std::chrono::duration<double>(1.0 / options.rate_hz))),
         is_latched_(topic.delivery == dds::Delivery::kLatched),
-        reader_(participant, topic, options.ros_namespace) {}
+        reader_(participant, topic, options.dds.ros_namespace) {}
 
   [[nodiscard]] dds_entity_t reader() const override { return reader_.get(); }
 
@@ -105,42 +104,35 @@ class TopicEcho : public Echo {
   dds::Reader<Message> reader_;
 };
 
-template <class Message>
-void add_if(const std::string& wanted, const dds::DdsTopic<Message>& topic, dds_entity_t participant,
-            const EchoOptions& options, std::vector<std::unique_ptr<Echo>>& echoes) {
-  if (wanted == topic.name) {
-    echoes.push_back(std::make_unique<TopicEcho<Message>>(participant, topic, options));
-  }
+/// Calls with every topic that isobar-dds writes or reads.
+template <class Call>
+void for_each_topic(Call call) {
+  using namespace dds::topics;
+  const auto each = [&](const auto&... topics) { (call(topics), ...); };
+  each(kPose, kOdom, kAltitude, kTf, kTfStatic, kRegisteredScan, kMapCloud, kMap, kFloor, kFloorName,
+       kDiagnostics, kPressure, kBaseTemperature, kPoints, kImu, kWheel, kWheelTwist, kInitialPose);
+}
+
+std::vector<std::string> topic_names() {
+  std::vector<std::string> names;
+  for_each_topic([&](const auto& topic) { names.emplace_back(topic.name); });
+  return names;
 }
 
 std::vector<std::unique_ptr<Echo>> make_echoes(dds_entity_t participant, const EchoOptions& options) {
   std::vector<std::unique_ptr<Echo>> echoes;
   for (const std::string& wanted : options.topics) {
-    add_if(wanted, dds::topics::kPose, participant, options, echoes);
-    add_if(wanted, dds::topics::kOdom, participant, options, echoes);
-    add_if(wanted, dds::topics::kAltitude, participant, options, echoes);
-    add_if(wanted, dds::topics::kTf, participant, options, echoes);
-    add_if(wanted, dds::topics::kTfStatic, participant, options, echoes);
-    add_if(wanted, dds::topics::kMap, participant, options, echoes);
-    add_if(wanted, dds::topics::kRegisteredScan, participant, options, echoes);
-    add_if(wanted, dds::topics::kMapCloud, participant, options, echoes);
-    add_if(wanted, dds::topics::kPressure, participant, options, echoes);
-    add_if(wanted, dds::topics::kFloor, participant, options, echoes);
-    add_if(wanted, dds::topics::kFloorName, participant, options, echoes);
-    add_if(wanted, dds::topics::kDiagnostics, participant, options, echoes);
+    for_each_topic([&]<class Message>(const dds::DdsTopic<Message>& topic) {
+      if (wanted == topic.name)
+        echoes.push_back(std::make_unique<TopicEcho<Message>>(participant, topic, options));
+    });
   }
   return echoes;
 }
 
 void run(const EchoOptions& options) {
   dds::set_library_log(&print_library_line);
-  dds::ParticipantSettings settings;
-  settings.domain_id = options.domain;
-  settings.network_interface = options.network_interface;
-  const dds::Participant participant(settings);
-  if (const auto& missing = participant.interfaces().missing; !missing.empty()) {
-    throw ServiceError("no network interface that is up has the name or address " + missing.front());
-  }
+  const dds::Participant participant = join_dds(options.dds);
   const std::vector<std::unique_ptr<Echo>> echoes = make_echoes(participant.get(), options);
   const dds::Entity waitset = dds::checked(dds_create_waitset(participant.get()), "wait set");
   for (const std::unique_ptr<Echo>& echo : echoes) {
@@ -166,7 +158,8 @@ void run(const EchoOptions& options) {
     if (waits) std::this_thread::sleep_for(std::chrono::milliseconds(20));
     if (options.timeout_s > 0.0 && now - last > patience) {
       throw ServiceError("no message for " + std::to_string(std::lround(options.timeout_s)) +
-                         " s on DDS domain " + std::to_string(options.domain) + "; is isobar-dds running?");
+                         " s on DDS domain " + std::to_string(options.dds.domain) +
+                         "; is isobar-dds running?");
     }
   }
 }
@@ -177,26 +170,13 @@ void add_echo_command(CLI::App& app) {
   auto options = std::make_shared<EchoOptions>();
   CLI::App* command = app.add_subcommand("echo", "Print received DDS messages, one line each");
   command
-      ->add_option("TOPIC", options->topics,
-                   "pose, odom, altitude, tf, tf_static, registered_scan, map_cloud, map, floor, floor_name, "
-                   "diagnostics, "
-                   "fluid_pressure (--namespace base: of a base station); one or more")
-      ->check(one_of({"pose", "odom", "altitude", "tf", "tf_static", "registered_scan", "map_cloud", "map",
-                      "floor", "floor_name", "diagnostics", "fluid_pressure"}))
-      ->capture_default_str();
-  command->add_option("--domain", options->domain, "DDS domain")
-      ->envname("ROS_DOMAIN_ID")
-      ->check(number_within(0, 232))
-      ->capture_default_str();
-  command
       ->add_option(
-          "--interface", options->network_interface,
-          "network interfaces beside loopback, by name or address, separated by commas; default: all")
-      ->type_name("NAMES");
-  command
-      ->add_option("--namespace", options->ros_namespace,
-                   "namespace of the robot, dds.ros_namespace of its configuration")
-      ->type_name("NAME");
+          "TOPIC", options->topics,
+          "topics that isobar-dds writes or reads; a base station's fluid_pressure and temperature with "
+          "--namespace base; renamed ones (dds.topics) are not found")
+      ->check(one_of(topic_names()))
+      ->capture_default_str();
+  add_dds_options(*command, options->dds);
   command->add_option("--rate", options->rate_hz, "highest rate of lines per topic [Hz]")
       ->check(number_within(1e-3, 1e6))
       ->capture_default_str();

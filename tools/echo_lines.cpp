@@ -88,6 +88,26 @@ void print_line(const char* topic, const dds::PressureMessage& message) {
               std::sqrt(std::max(0.0, message.variance)), shown(message.header.frame_id));
 }
 
+void print_line(const char* topic, const dds::TemperatureMessage& message) {
+  std::printf("%s  t %.3f s  %.2f degC  %s\n", topic, seconds(message.header), message.temperature,
+              shown(message.header.frame_id));
+}
+
+void print_line(const char* topic, const dds::ImuMessage& message) {
+  const auto& rate = message.angular_velocity;
+  const auto& accel = message.linear_acceleration;
+  std::printf("%s  t %.3f s  rate %8.4f %8.4f %8.4f rad/s  accel %8.3f %8.3f %8.3f m/s^2  %s\n", topic,
+              seconds(message.header), rate.x, rate.y, rate.z, accel.x, accel.y, accel.z,
+              shown(message.header.frame_id));
+}
+
+void print_line(const char* topic, const dds::TwistMessage& message) {
+  const auto& twist = message.twist.twist;
+  std::printf("%s  t %.3f s  forward %7.3f m/s  left %7.3f m/s  yaw rate %7.4f rad/s  %s\n", topic,
+              seconds(message.header), twist.linear.x, twist.linear.y, twist.angular.z,
+              shown(message.header.frame_id));
+}
+
 void print_line(const char* topic, const dds::Int32Message& message) {
   std::printf("%s  %d\n", topic, message.data);
 }

@@ -30,7 +30,6 @@ struct EvaluateArguments {
   std::string names;  ///< separated by commas
   std::string title;
   std::string report;
-  std::string picture;
   std::string json;
   std::string alignment = "start";
   std::optional<double> max_gap_s;
@@ -76,6 +75,9 @@ void print_in_first_frame(const std::vector<std::string>& first_session,
 }
 
 void run_evaluate(const EvaluateArguments& arguments, const std::string& command) {
+  require_path(arguments.reference, "a .tum file, or a recording with reference.tum");
+  for (const auto& estimate : arguments.estimates)
+    require_path(estimate, "a .tum file, or the folder of a run with trajectory.tum");
   const std::vector<evaluation::EstimateSource> sources = sources_of(arguments);
   std::optional<std::filesystem::path> segments;
   if (!arguments.segments.empty()) segments = arguments.segments;
@@ -91,7 +93,6 @@ void run_evaluate(const EvaluateArguments& arguments, const std::string& command
   std::printf("\n");
   if (!arguments.first_session.empty()) print_in_first_frame(arguments.first_session, input.run);
   if (!arguments.json.empty()) write_output(arguments.json, report::figures_json(input.run));
-  if (!arguments.picture.empty()) write_output(arguments.picture, report::render_overview_svg(input));
   if (!arguments.report.empty()) write_output(arguments.report, report::render_report(input));
 }
 
@@ -133,8 +134,6 @@ void add_evaluate_command(CLI::App& app) {
   command.add_option("--title", options.title, "headline of the report");
   command.add_option("--report", options.report, "HTML file for the report; it opens without a network")
       ->check(written_as({".html", ".htm"}));
-  command.add_option("--picture", options.picture, "SVG file for the overview picture")
-      ->check(written_as({".svg"}));
   command.add_option("--json", options.json, "JSON file for all figures")->check(written_as({".json"}));
 }
 

@@ -16,8 +16,10 @@
 #include "config/config_io.hpp"
 #include "core/errors.hpp"
 #include "core/names.hpp"
+#include "core/nearest_word.hpp"
 #include "daemon/replay.hpp"
 #include "run/evaluation/evaluated_run.hpp"
+#include "simulation/lidar_plan.hpp"
 #include "simulation/scenario_list.hpp"
 #include "simulation/simulate.hpp"
 #include "tools/commands.hpp"
@@ -150,7 +152,6 @@ void evaluate_all(const ExperimentOptions& options, const std::filesystem::path&
   }
   write_output(options.out / "report.html", report::render_report(input));
   write_output(options.out / "figures.json", report::figures_json(input.run));
-  write_output(options.out / "overview.svg", report::render_overview_svg(input));
 }
 
 void run_experiment(ExperimentOptions options, const std::string& command) {
@@ -159,12 +160,30 @@ void run_experiment(ExperimentOptions options, const std::string& command) {
   const std::string name = simulation::recording_name(options.request);
   if (options.out.empty()) options.out = "out/" + name;
   const std::vector<Method> methods = chosen_methods(options.methods);
-  (void)simulation::find_scenario(options.request.name);  // before a folder is made for an unknown one
+  // Before a folder is made for unknown ones.
+  (void)simulation::find_scenario(options.request.name);
+  (void)simulation::find_lidar_plan(options.request.lidar);
   std::filesystem::create_directories(options.out);
   const std::filesystem::path recording = options.out / ("recording-" + name);
   simulate_with_progress(options, recording);
   replay_all(options, recording, methods);
   evaluate_all(options, recording, methods, command);
+}
+
+/// A word beside the scenarios' names that is nearly the name of a subcommand.
+CLI::Validator no_misspelt_command(const CLI::App& command) {
+  const auto check = [&command](const std::string& word) -> std::string {
+    std::vector<std::string> commands;
+    for (const CLI::App* below : command.get_subcommands([](const CLI::App*) { return true; }))
+      commands.push_back(below->get_name());
+    std::vector<std::string> names = commands;
+    for (const simulation::ScenarioInfo& scenario : simulation::scenarios()) names.push_back(scenario.name);
+    const std::string nearest = nearest_word(word, names);
+    const bool is_command = std::find(commands.begin(), commands.end(), nearest) != commands.end();
+    return is_command ? "unknown scenario '" + word + "'; did you mean isobar experiment " + nearest + "?"
+                      : std::string();
+  };
+  return {check, "", ""};
 }
 
 }  // namespace
@@ -176,8 +195,10 @@ void add_experiment_command(CLI::App& app) {
   add_sensitivity_command(command);
   add_experiment_all_command(command);
   add_experiment_sessions_command(command);
-  command.add_option("SCENARIO", options.request.name,
-                     "three-floors, elevator, moulin; `isobar simulate --list` shows all");
+  command
+      .add_option("SCENARIO", options.request.name,
+                  "three-floors, elevator, moulin; `isobar simulate --list` shows all")
+      ->check(no_misspelt_command(command));
   command.add_option("--seed", options.request.seed, "random seed of world and sensor errors")
       ->capture_default_str()
       ->check(number_from_zero());

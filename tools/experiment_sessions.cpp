@@ -19,6 +19,7 @@
 #include "daemon/replay.hpp"
 #include "run/evaluation/evaluated_run.hpp"
 #include "run/evaluation/second_session.hpp"
+#include "simulation/scenario_list.hpp"
 #include "simulation/simulate.hpp"
 #include "tools/commands.hpp"
 #include "tools/deviation_options.hpp"
@@ -154,6 +155,7 @@ void run_experiment_sessions(SessionOptions options) {
   if (options.out.empty()) options.out = "out/sessions-" + simulation::recording_name(options.request);
   std::vector<SessionResult> sessions = sessions_of(options);
   const Config config = options.config.empty() ? Config{} : load_config(options.config);
+  (void)simulation::find_scenario(options.request.name);  // before a folder is made
   fs::create_directories(options.out);
   const fs::path first = recording_of(options, options.request);
   simulate_if_missing(options.request, first, {});

@@ -26,6 +26,7 @@ struct ExportOptions {
 
 void run_export(const ExportOptions& options) {
   if (!options.mcap) throw UsageError("--mcap: missing; it is the format that is written");
+  require_path(options.run, "the folder of a run with trajectory.tum");
   const std::filesystem::path out = options.out.empty() ? beside(options.run, ".mcap") : options.out;
   Progress progress("exporting");
   const mcap::ExportedRun done =

@@ -21,9 +21,9 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::ParseError& error) {
-    const bool asked_for_help = error.get_exit_code() == 0;
-    app.exit(error);
-    return asked_for_help ? 0 : 64;
+    if (error.get_exit_code() != 0) throw isobar::UsageError(isobar::tools::parse_problem(app, error));
+    app.exit(error);  // prints what was asked for: help or version
+    return 0;
   }
 }
 

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "core/version.hpp"
+#include "tools/command_examples.hpp"
 #include "tools/commands.hpp"
 
 namespace isobar::tools {
@@ -45,6 +46,7 @@ void add_all_commands(CLI::App& app) {
   add_echo_command(app);
   add_foxglove_command(app);
 #endif
+  add_examples(app);
 }
 
 }  // namespace isobar::tools

@@ -19,6 +19,7 @@
 #include "run/merge/height_relation.hpp"
 #include "run/merge/merge_maps.hpp"
 #include "tools/map_parts.hpp"
+#include "tools/output_option.hpp"
 #include "tools/progress.hpp"
 #include "tools/subcommand.hpp"
 
@@ -110,6 +111,7 @@ void print_floors(const std::filesystem::path& out) {
 }
 
 void run_merge(const MergeOptions& options) {
+  for (const auto& side : {options.a, options.b}) require_path(side, "the folder of a map, or of a run");
   const files::MergeRequest request = request_of(options);
   Progress progress("merging");
   const files::MergeReport report =

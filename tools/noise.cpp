@@ -21,7 +21,7 @@
 #include "tools/pressure_log.hpp"
 #include "tools/report/aligned_rows.hpp"
 #include "tools/report/noise_report.hpp"
-#include "tools/report/svg.hpp"
+#include "tools/report/number_text.hpp"
 #include "tools/subcommand.hpp"
 
 namespace isobar::tools {

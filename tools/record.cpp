@@ -22,11 +22,15 @@
 #include "run/recording/record_session.hpp"
 #include "run/tile_store/file_descriptor.hpp"
 #include "tools/commands.hpp"
-#include "tools/foxglove/record_topics.hpp"
 #include "tools/number_option.hpp"
 #include "tools/record_progress.hpp"
 #include "tools/record_source.hpp"
 #include "tools/subcommand.hpp"
+
+#if ISOBAR_WITH_DDS
+#include "tools/dds_options.hpp"
+#include "tools/foxglove/record_topics.hpp"
+#endif
 
 namespace isobar::tools {
 namespace {
@@ -42,6 +46,9 @@ struct RecordOptions {
   double duration_s = 0.0;
   double timeout_s = 0.0;
   bool mcap = false;
+#if ISOBAR_WITH_DDS
+  DdsOptions dds;
+#endif
 };
 
 /// The signals that end a recording, as a descriptor; blocked while this object lives.
@@ -245,7 +252,7 @@ void run_record(const RecordOptions& options) {
 #if ISOBAR_WITH_DDS
   const bool names_file = options.folder.extension() == ".mcap";
   record_topics({names_file ? options.folder : std::filesystem::path(options.folder.string() + ".mcap"),
-                 options.duration_s, kMbBytes * options.min_free_mb});
+                 options.duration_s, kMbBytes * options.min_free_mb, options.dds});
 #else
   throw UsageError("--mcap: this isobar was built without DDS");
 #endif
@@ -260,6 +267,9 @@ void add_record_command(CLI::App& app) {
   command.add_flag(
       "--mcap", options.mcap,
       "record the topics of isobar-dds instead, to DIR.mcap: Foxglove opens it, replay does not");
+#if ISOBAR_WITH_DDS
+  add_dds_options(command, options.dds, " (with --mcap)");
+#endif
   command
       .add_option("--min-free", options.min_free_mb,
                   "free space on the disk at which the recording ends [MB]")

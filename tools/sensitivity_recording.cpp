@@ -12,7 +12,7 @@
 #include "run/text/number_text.hpp"
 #include "run/text/segments.hpp"
 #include "tools/pressure_log.hpp"
-#include "tools/report/svg.hpp"
+#include "tools/report/number_text.hpp"
 
 namespace isobar::tools {
 

@@ -7,6 +7,8 @@
 #include <string>
 
 #include "core/errors.hpp"
+#include "simulation/lidar_plan.hpp"
+#include "simulation/scenario_list.hpp"
 #include "tools/commands.hpp"
 #include "tools/deviation_options.hpp"
 #include "tools/lidar_option.hpp"
@@ -32,7 +34,8 @@ void run_simulate(const SimulateOptions& options) {
     return;
   }
   if (options.request.name.empty()) throw UsageError("SCENARIO: missing; `isobar simulate --list` shows all");
-  if (!(options.request.stop_after_s > 0.0)) throw UsageError("--stop-after: must be more than 0 s");
+  (void)simulation::find_scenario(options.request.name);
+  (void)simulation::find_lidar_plan(options.request.lidar);
   if (options.out_dir.empty()) throw UsageError("--out: missing; it names the folder for the recording");
   Progress progress("simulate " + options.request.name);
   simulation::simulate(options.request, options.out_dir, [&](double fraction) { progress.update(fraction); });
@@ -55,7 +58,8 @@ void add_simulate_command(CLI::App& app) {
   command.add_option("--out", options.out_dir, "folder for the recording, created if missing");
   command.add_flag("--short", options.request.short_form, "30 to 60 s instead of the whole run");
   add_lidar_option(command, options.request);
-  command.add_option("--stop-after", options.request.stop_after_s, "end the run after this time [s]");
+  command.add_option("--stop-after", options.request.stop_after_s, "end the run after this time [s]")
+      ->check(number_above_zero());
   add_deviation_options(command, options.request.deviations);
   command.add_flag("--list", options.list, "list the scenarios and exit");
 }

@@ -33,6 +33,18 @@ std::vector<std::string> option_names(const CLI::App& app) {
 
 std::string where_shown(const CLI::App& app) { return "; `" + command_path(app) + " --help` shows all"; }
 
+bool has_arguments(const CLI::App& app) {
+  const auto options = app.get_options();
+  return std::any_of(options.begin(), options.end(),
+                     [](const CLI::Option* option) { return option->get_positional(); });
+}
+
+/// The command that was typed: the deepest one that the parser has met.
+const CLI::App& typed(const CLI::App& app) {
+  const auto commands = app.get_subcommands();
+  return commands.empty() ? app : typed(*commands.front());
+}
+
 void check_option(const CLI::App& app, const std::string& word) {
   const std::string name = word.substr(2, word.find('=') - 2);
   const std::vector<std::string> known = option_names(app);
@@ -46,13 +58,19 @@ void check_option(const CLI::App& app, const std::string& word) {
 void check_typed_words(const CLI::App& app, const std::vector<std::string>& words) {
   const CLI::App* command = &app;
   bool takes_commands = true;
+  bool has_option = false;
   for (const std::string& word : words) {
     if (word == "--") return;
     if (word.size() > 2 && word.starts_with("--")) {
       check_option(*command, word);
+      has_option = true;
     } else if (takes_commands && !word.starts_with('-')) {
       const CLI::App* next = command_named(*command, word);
-      if (next == nullptr && command->get_require_subcommand_min() > 0) {
+      // Behind an option a word may be its value.
+      const bool must_be_command =
+          command->get_require_subcommand_min() > 0 ||
+          (!has_option && !has_arguments(*command) && !command_names(*command).empty());
+      if (next == nullptr && must_be_command) {
         throw UsageError(word + ": no such command" +
                          did_you_mean(word, command_names(*command), command_path(*command) + " ") +
                          where_shown(*command));
@@ -61,6 +79,18 @@ void check_typed_words(const CLI::App& app, const std::vector<std::string>& word
       if (next != nullptr) command = next;
     }
   }
+}
+
+std::string parse_problem(const CLI::App& app, const CLI::ParseError& error) {
+  std::string text = error.what();
+  // "Could not convert: NAME = WORD": of a number.
+  const std::string prefix = "Could not convert: ";
+  const std::size_t equals = text.find(" = ");
+  if (text.starts_with(prefix) && equals != std::string::npos) {
+    text = text.substr(prefix.size(), equals - prefix.size()) + ": \"" + text.substr(equals + 3) +
+           "\" is no number that it takes";
+  }
+  return text + "; `" + command_path(typed(app)) + " --help` explains it";
 }
 
 CLI::Validator one_of(const std::vector<std::string>& words) {

@@ -13,6 +13,9 @@ namespace isobar::tools {
 /// @throws UsageError naming the word, the nearest known one and where all are shown
 void check_typed_words(const CLI::App& app, const std::vector<std::string>& words);
 
+/// What the parser refused as one line that ends with the command whose help explains it.
+[[nodiscard]] std::string parse_problem(const CLI::App& app, const CLI::ParseError& error);
+
 /// One of the words, with a suggestion for a typing error.
 CLI::Validator one_of(const std::vector<std::string>& words);
 

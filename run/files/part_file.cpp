@@ -21,6 +21,12 @@ std::filesystem::path written_first(const std::filesystem::path& file) {
 PartFile::PartFile(const std::filesystem::path& file)
     : path_(file), written_(written_first(file)), file_(written_) {}
 
+void PartFile::abandon() {
+  file_.close();
+  std::error_code error;
+  if (written_ != path_) std::filesystem::remove(written_, error);
+}
+
 void PartFile::close() {
   file_.sync();
   file_.close();

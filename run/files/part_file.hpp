@@ -21,6 +21,8 @@ class PartFile {
   void seek(long offset) { file_.seek(offset); }
   [[nodiscard]] bool is_open() const { return file_.is_open(); }
   void close();
+  /// Ends without the file: what was written is removed, where it is not a device.
+  void abandon();
 
  private:
   std::filesystem::path path_;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/mcap/input_export.hpp"
 
-#include <optional>
-
 #include "run/mcap/frames.hpp"
+#include "run/mcap/lazy_channel.hpp"
 #include "run/mcap/ros_messages.hpp"
 #include "run/recording/recording_reader.hpp"
 
@@ -11,28 +10,12 @@ namespace isobar::mcap {
 
 namespace {
 
-/// A topic that is declared with its first message: sensors that deliver nothing have none.
-class LazyTopic {
- public:
-  LazyTopic(McapWriter& out, const char* topic, const char* type) : out_(out), topic_(topic), type_(type) {}
-  void write(std::int64_t stamp_ns, const Cdr& message) {
-    if (!channel_) channel_ = out_.add_channel(topic_, type_);
-    out_.write(*channel_, stamp_ns, message);
-  }
-
- private:
-  McapWriter& out_;
-  const char* topic_;
-  const char* type_;
-  std::optional<std::uint16_t> channel_;
-};
-
 FramePose pose_of(const Eigen::Isometry3d& mount, std::int64_t stamp_ns) {
   return {stamp_ns, mount.translation(), Eigen::Quaterniond(mount.linear()).normalized()};
 }
 
 void write_mounts(const recording::Manifest& manifest, std::int64_t stamp_ns, McapWriter& out) {
-  LazyTopic mounts(out, "/tf_static", "tf2_msgs/msg/TFMessage");
+  LazyChannel mounts(out, "/tf_static", "tf2_msgs/msg/TFMessage");
   const auto write = [&](const auto& entry, const char* frame) {
     if (entry)
       mounts.write(stamp_ns,
@@ -48,10 +31,10 @@ void write_mounts(const recording::Manifest& manifest, std::int64_t stamp_ns, Mc
 void export_inputs(const std::filesystem::path& recording, McapWriter& out,
                    const std::function<void(double)>& progress) {
   recording::RecordingReader reader(recording);
-  LazyTopic imu(out, "/imu/data", "sensor_msgs/msg/Imu");
-  LazyTopic pressure(out, "/fluid_pressure", "sensor_msgs/msg/FluidPressure");
-  LazyTopic base_pressure(out, "/base/fluid_pressure", "sensor_msgs/msg/FluidPressure");
-  LazyTopic wheels(out, "/wheel/twist", "geometry_msgs/msg/TwistStamped");
+  LazyChannel imu(out, "/imu/data", "sensor_msgs/msg/Imu");
+  LazyChannel pressure(out, "/fluid_pressure", "sensor_msgs/msg/FluidPressure");
+  LazyChannel base_pressure(out, "/base/fluid_pressure", "sensor_msgs/msg/FluidPressure");
+  LazyChannel wheels(out, "/wheel/twist", "geometry_msgs/msg/TwistStamped");
   recording::Event event;
   for (std::uint64_t events = 0; reader.next(event); ++events) {
     if (events == 0) write_mounts(reader.manifest(), event.stamp_ns, out);

@@ -37,6 +37,8 @@ class McapWriter {
   void flush();
   /// Writes summary and end. Nothing can be written afterwards.
   void close();
+  /// Removes what was written; nothing can be written afterwards.
+  void abandon() { file_.abandon(); }
 
   [[nodiscard]] std::uint64_t messages() const { return messages_; }
   [[nodiscard]] std::uint64_t bytes() const { return position_; }

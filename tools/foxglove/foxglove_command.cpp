@@ -8,10 +8,9 @@
 #include <string>
 #include <utility>
 
-#include "core/errors.hpp"
 #include "core/version.hpp"
-#include "ipc/dds/participant.hpp"
 #include "tools/commands.hpp"
+#include "tools/dds_options.hpp"
 #include "tools/foxglove/server.hpp"
 #include "tools/foxglove/topic_tap.hpp"
 #include "tools/number_option.hpp"
@@ -23,9 +22,7 @@ namespace {
 
 struct FoxgloveOptions {
   foxglove::ServerAddress address;
-  int domain = 0;
-  std::string network_interface;
-  std::string ros_namespace;
+  DdsOptions dds;
 };
 
 volatile std::sig_atomic_t g_stop_serving = 0;
@@ -38,13 +35,8 @@ void say_clients(std::size_t clients) {
 }
 
 void run_foxglove(const FoxgloveOptions& options) {
-  dds::ParticipantSettings settings;
-  settings.domain_id = options.domain;
-  settings.network_interface = options.network_interface;
-  const dds::Participant participant(settings);
-  if (const auto& missing = participant.interfaces().missing; !missing.empty())
-    throw ServiceError("no network interface that is up has the name or address " + missing.front());
-  foxglove::TopicTap tap(participant, options.ros_namespace);
+  const dds::Participant participant = join_dds(options.dds);
+  foxglove::TopicTap tap(participant, options.dds.ros_namespace);
   foxglove::Server server(options.address, tap.channels(), session_name());
   std::signal(SIGINT, [](int) { g_stop_serving = 1; });
   std::signal(SIGTERM, [](int) { g_stop_serving = 1; });
@@ -75,18 +67,7 @@ void add_foxglove_command(CLI::App& app) {
   command.add_option("--port", options.address.port, "TCP port")
       ->check(number_within(1, 65'535))
       ->capture_default_str();
-  command.add_option("--domain", options.domain, "DDS domain")
-      ->envname("ROS_DOMAIN_ID")
-      ->check(number_within(0, 232))
-      ->capture_default_str();
-  command
-      .add_option("--interface", options.network_interface,
-                  "network interfaces beside loopback, by name or address, separated by commas; default: all")
-      ->type_name("NAMES");
-  command
-      .add_option("--namespace", options.ros_namespace,
-                  "namespace of the robot, dds.ros_namespace of its configuration")
-      ->type_name("NAME");
+  add_dds_options(command, options.dds);
 }
 
 }  // namespace isobar::tools

@@ -5,10 +5,8 @@
 #include <condition_variable>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -16,7 +14,7 @@
 
 #include "core/errors.hpp"
 #include "core/version.hpp"
-#include "ipc/dds/participant.hpp"
+#include "run/mcap/lazy_channel.hpp"
 #include "run/mcap/mcap_writer.hpp"
 #include "tools/foxglove/topic_tap.hpp"
 
@@ -69,32 +67,27 @@ class Pipe {
   std::uint64_t left_out_ = 0;  ///< read after the other thread has ended
 };
 
-int domain_of_environment() {
-  const char* domain = std::getenv("ROS_DOMAIN_ID");
-  return domain == nullptr ? 0 : std::atoi(domain);
-}
-
-/// Writes what comes. A topic has a channel from its first message on.
+/// Where messages of the tap's channels go.
 class Writer {
  public:
-  Writer(const std::filesystem::path& file, std::vector<foxglove::Channel> channels)
-      : channels_(std::move(channels)), numbers_(channels_.size()), out_(file, version_line("isobar")) {}
+  Writer(const std::filesystem::path& file, const std::vector<foxglove::Channel>& channels)
+      : out_(file, version_line("isobar")) {
+    for (const foxglove::Channel& channel : channels)
+      channels_.emplace_back(out_, channel.topic, channel.ros_type);
+  }
 
   void write(const Message& message) {
-    const foxglove::Channel& channel = channels_.at(message.channel - 1);
-    std::optional<std::uint16_t>& number = numbers_.at(message.channel - 1);
-    if (!number) number = out_.add_channel(channel.topic, channel.ros_type);
-    out_.write(*number, message.data->stamp_ns, message.data->cdr);
+    channels_.at(message.channel - 1).write(message.data->stamp_ns, message.data->cdr);
   }
   void flush() { out_.flush(); }
   void close() { out_.close(); }
+  void abandon() { out_.abandon(); }
   [[nodiscard]] std::uint64_t messages() const { return out_.messages(); }
   [[nodiscard]] std::uint64_t bytes() const { return out_.bytes(); }
 
  private:
-  std::vector<foxglove::Channel> channels_;
-  std::vector<std::optional<std::uint16_t>> numbers_;
   mcap::McapWriter out_;
+  std::vector<mcap::LazyChannel> channels_;
 };
 
 bool has_room(const TopicRecording& wanted) {
@@ -113,7 +106,8 @@ std::string record_until_end(const TopicRecording& wanted, Pipe& pipe, Writer& o
     const Clock::time_point now = Clock::now();
     if (wanted.duration_s > 0.0 && now - start >= std::chrono::duration<double>(wanted.duration_s)) break;
     if (out.messages() == 0 && now - start > kPatience)
-      throw ServiceError("no message for 10 s on DDS; is isobar-dds running?");
+      throw ServiceError("no message for 10 s on DDS domain " + std::to_string(wanted.dds.domain) +
+                         "; is isobar-dds running?");
     if (now - flushed < kFlushEvery) continue;
     flushed = now;
     out.flush();
@@ -125,10 +119,8 @@ std::string record_until_end(const TopicRecording& wanted, Pipe& pipe, Writer& o
 }  // namespace
 
 void record_topics(const TopicRecording& wanted) {
-  dds::ParticipantSettings settings;
-  settings.domain_id = domain_of_environment();
-  const dds::Participant participant(settings);
-  foxglove::TopicTap tap(participant, {});
+  const dds::Participant participant = join_dds(wanted.dds);
+  foxglove::TopicTap tap(participant, wanted.dds.ros_namespace);
   Writer out(wanted.file, tap.channels());
   Pipe pipe;
   std::signal(SIGINT, [](int) { g_stop_recording = 1; });
@@ -136,7 +128,13 @@ void record_topics(const TopicRecording& wanted) {
   tap.start([&](std::uint32_t channel,
                 std::shared_ptr<const foxglove::Data> data) { pipe.put(channel, std::move(data)); },
             [&] { pipe.turn(); });
-  const std::string why_ended = record_until_end(wanted, pipe, out);
+  std::string why_ended;
+  try {
+    why_ended = record_until_end(wanted, pipe, out);
+  } catch (const ServiceError&) {
+    if (out.messages() == 0) out.abandon();
+    throw;
+  }
   tap.stop();
   for (const Message& message : pipe.take({})) out.write(message);
   out.close();

@@ -4,12 +4,15 @@
 
 #include <filesystem>
 
+#include "tools/dds_options.hpp"
+
 namespace isobar::tools {
 
 struct TopicRecording {
   std::filesystem::path file;   ///< created, or replaced when it is complete; until then FILE.part
   double duration_s = 0.0;      ///< 0: until SIGINT or SIGTERM
   double min_free_bytes = 0.0;  ///< free space at which the recording ends
+  DdsOptions dds;
 };
 
 /// Records until the time is over, a signal comes or the disk has too little room; what was written is complete then.

@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "core/stamp.hpp"
+#include "tools/report/curve_chart.hpp"
 #include "tools/report/html_page.hpp"
-#include "tools/report/line_chart.hpp"
-#include "tools/report/report_pictures.hpp"
+#include "tools/report/number_text.hpp"
+#include "tools/report/report_charts.hpp"
 
 namespace isobar::report {
 
@@ -46,8 +47,8 @@ std::string fault_of(const StatusRow& row) {
                                                   : "drifts";
 }
 
-std::vector<Band> faults_of(const EvaluatedMethod& method) {
-  std::vector<Band> bands;
+std::vector<Span> faults_of(const EvaluatedMethod& method) {
+  std::vector<Span> bands;
   std::string last;
   for (const StatusRow& row : method.status) {
     const double t = time_s(method, row);
@@ -59,17 +60,16 @@ std::vector<Band> faults_of(const EvaluatedMethod& method) {
   return bands;
 }
 
-LineChart bias_chart(const EvaluatedMethod& method) {
-  LineChart chart;
+CurveChart bias_chart(const EvaluatedMethod& method) {
+  CurveChart chart;
   chart.x_label = "time [s]";
   chart.y_label = "altimeter minus map [m]";
-  chart.height = 300.0;
-  chart.id = "altimeter";
-  chart.zero_line = true;
-  chart.bands = faults_of(method);
-  Series innovation{"Innovation", {"#d55e00", 0.8, "", 0.6}, {}, {}};
-  Series bias{"Bias, with 1 sigma", {"#0072b2", 2.0}, {}, {}, true};
-  Ribbon sigma{"#cfe3f3", {}, {}, {}};
+  chart.x_unit = "s";
+  chart.y_unit = "m";
+  chart.spans = faults_of(method);
+  Curve innovation{"Innovation", {"#d55e00a0", 0.8}, {}, {}};
+  Curve bias{"Bias, with 1 sigma", {"#2f7fd6", 2.0}, {}, {}};
+  Area sigma{"#2f7fd640", {}, {}, {}};
   for (const StatusRow& row : method.status) {
     const double t = time_s(method, row);
     innovation.x.push_back(t);
@@ -80,8 +80,8 @@ LineChart bias_chart(const EvaluatedMethod& method) {
     sigma.low.push_back(row.altimeter_bias_m - row.altimeter_bias_sd_m);
     sigma.high.push_back(row.altimeter_bias_m + row.altimeter_bias_sd_m);
   }
-  chart.series = {std::move(bias), std::move(innovation)};
-  chart.ribbons = {std::move(sigma)};
+  chart.curves = {std::move(innovation), std::move(bias)};
+  chart.areas = {std::move(sigma)};
   return chart;
 }
 
@@ -107,10 +107,10 @@ std::string airflow_text(const EvaluatedMethod& method) {
 }
 
 std::string faults_text(const EvaluatedMethod& method) {
-  const std::vector<Band> bands = faults_of(method);
+  const std::vector<Span> bands = faults_of(method);
   if (bands.empty()) return "No fault of a barometer was seen.";
   std::string text = "Shaded: ";
-  for (const Band& band : bands) {
+  for (const Span& band : bands) {
     text += (&band == bands.data() ? "" : ", ") + band.label + " since " + fixed(band.from, 1) + " s";
     text += " until " + fixed(band.to, 1) + " s";
   }
@@ -123,11 +123,12 @@ std::string altimeter_section(const evaluation::EvaluatedRun& run) {
   const EvaluatedMethod* method = method_with_bias(run);
   if (method == nullptr) return "";
   return heading("Altimeter against the map") +
-         figure(draw(bias_chart(*method)), "Bias of the altimeter against time",
-                "Estimated bias of the altimeter of " + evaluation::display_name(method->name) +
-                    ": ventilated zones, doors, weather, airflow, drifts of a barometer. The height does not "
-                    "follow it. " +
-                    largest_innovation(*method) + airflow_text(*method) + faults_text(*method));
+         chart_figure(
+             chart_json(bias_chart(*method)), "Bias of the altimeter against time",
+             "Estimated bias of the altimeter of " + evaluation::display_name(method->name) +
+                 ": ventilated zones, doors, weather, airflow, drifts of a barometer. The height does not "
+                 "follow it. " +
+                 largest_innovation(*method) + airflow_text(*method) + faults_text(*method));
 }
 
 }  // namespace isobar::report

@@ -7,7 +7,7 @@
 #include "core/calibration/still_period.hpp"
 #include "core/statistics/distribution.hpp"
 #include "tools/report/aligned_rows.hpp"
-#include "tools/report/calibration_pictures.hpp"
+#include "tools/report/calibration_charts.hpp"
 #include "tools/report/html_page.hpp"
 
 namespace isobar::report {
@@ -104,16 +104,17 @@ std::string render_calibration_report(const CalibrationReport& report) {
   std::string html =
       page_head(report.title, spans_text(calibration, report.recordings) + ".", report.command) +
       paragraph("Recommended is " + calibration.reason + ".") + tiles(report);
+  html += heading("Residual by model") +
+          chart_figure(
+              chart_json(residual_boxes(calibration)), "Box plot of the residual by model",
+              "|reference − compensated| of all samples. Thick line: median; box: quartiles; whiskers: 5th "
+              "and 95th percentiles.") +
+          models_table(report) + paragraph("rms, unseen: " + calibration.validation + ".");
   html +=
-      heading("Residual by model") +
-      figure(residual_boxes(calibration), "Box plot of the residual by model",
-             "|reference − compensated| of all samples. Thick line: median; box: quartiles; whiskers: 5th "
-             "and 95th percentiles.") +
-      models_table(report) + paragraph("rms, unseen: " + calibration.validation + ".");
-  html += heading("Residual against temperature") +
-          figure(residual_against_temperature(calibration, report.chosen, report.recordings),
-                 "Residual against temperature, with an offset alone and with the chosen model",
-                 "Points: every n-th sample. Lines: medians of groups of equally many samples.");
+      heading("Residual against temperature") +
+      chart_figure(chart_json(residual_against_temperature(calibration, report.chosen, report.recordings)),
+                   "Residual against temperature, with an offset alone and with the chosen model",
+                   "Points: every n-th sample. Lines: medians of groups of equally many samples.");
   if (!warnings.empty()) html += heading("Warnings") + bullet_list(warnings);
   html += heading("How the logs were read") + bullet_list(report.notes);
   return html_page(report.title, html);

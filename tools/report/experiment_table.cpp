@@ -9,7 +9,7 @@
 
 #include "core/statistics/distribution.hpp"
 #include "tools/report/aligned_rows.hpp"
-#include "tools/report/svg.hpp"
+#include "tools/report/number_text.hpp"
 
 namespace isobar::report {
 

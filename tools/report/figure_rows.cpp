@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tools/report/svg.hpp"
+#include "tools/report/number_text.hpp"
 
 namespace isobar::report {
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/report/html_page.hpp"
 
+#include "tools/report/number_text.hpp"
+#include "tools/web/inline_text.hpp"
+#include "tools/web/page_files.hpp"
+
 namespace isobar::report {
 
 namespace {
@@ -11,8 +15,7 @@ constexpr const char* kStyle = R"css(
   --map-rim: #fff; }
 @media (prefers-color-scheme: dark) { :root { --ground: #0e1114; --panel: #161a1f; --raised: #1f252c; --ink: #e7ebef;
   --muted: #a3afbb; --line: #323b45; --soft-line: #272e36; --strong-line: #93a0ad; --error: #ff6369; --accent: #ff5c93;
-  --map-ground: #0b0d10; --map-rim: #0b0d10; }
-  figure svg { background: #fff; border-radius: 6px; filter: invert(0.93) hue-rotate(180deg); } }
+  --map-ground: #0b0d10; --map-rim: #0b0d10; } }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--ground); color: var(--ink);
   font: 16px/1.55 system-ui, "Segoe UI", Roboto, "DejaVu Sans", Helvetica, Arial, sans-serif; }
@@ -29,13 +32,8 @@ p { margin: 6px 0; max-width: 78ch; }
 .tiles .value { font-size: 26px; font-weight: 600; font-variant-numeric: tabular-nums; line-height: 1.35; }
 .tiles .more { font-size: 13.5px; color: var(--muted); }
 figure { margin: 14px 0 0; break-inside: avoid; }
-figure svg { display: block; max-width: 100%; height: auto; }
-figure { overflow-x: auto; }
+.no-chart { color: var(--muted); background: var(--raised); border-radius: 6px; padding: 12px 16px; }
 figcaption { font-size: 14px; color: var(--muted); margin-top: 4px; max-width: 92ch; }
-.pair { display: flex; flex-wrap: wrap; gap: 14px; }
-.pair > div { flex: 1 1 100%; }
-.pair > .half { flex: 1 1 480px; }
-.pair h3 { font-size: 15px; margin: 10px 0 4px; }
 .scroll, pre { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 14.5px; font-variant-numeric: tabular-nums; margin-top: 12px; }
 th, td { padding: 5px 14px 5px 0; text-align: right; border-bottom: 1px solid var(--soft-line); white-space: nowrap; }
@@ -49,7 +47,6 @@ td.lost { color: var(--error); font-weight: 700; }
 dl { max-width: 92ch; font-size: 15px; } dt { font-weight: 600; margin-top: 10px; } dd { margin: 0; }
 @media (max-width: 560px) { main { padding: 20px 14px 40px; } h1 { font-size: 24px; } .lead { font-size: 16px; }
   .tiles li { flex-basis: 44%; padding: 8px 10px; } .tiles .value { font-size: 20px; }
-  figure svg { max-width: none; width: 720px; } figcaption { position: sticky; left: 0; }
   th, td { padding-right: 10px; } th, td:first-child, td.unit { white-space: normal; } tr:has(td.unit) td:first-child { min-width: 130px; } }
 @page { size: A4; margin: 14mm; }
 @media print { main { padding: 0; max-width: none; } h2, .before-table { break-after: avoid; } body { font-size: 11pt; }
@@ -67,12 +64,15 @@ std::string cell_html(const TableCell& cell) {
 
 }  // namespace
 
-std::string html_page(const std::string& title, const std::string& body) {
+std::string html_page(const std::string& title, const std::string& body, PageScript script) {
+  const auto parts =
+      web::inline_parts(script == PageScript::kReport ? web::InlinePage::kReport : web::InlinePage::kCharts);
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<link rel=\"icon\" "
          "href=\"data:,\">\n<title>" +
-         escaped(title) + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n<main>\n" + body +
-         "</main>\n</body>\n</html>\n";
+         escaped(title) + "</title>\n<style>" + kStyle + (parts ? parts->style : "") +
+         "</style>\n</head>\n<body>\n<main>\n" + body + "</main>\n" +
+         (parts ? "<script>" + parts->script + "</script>\n" : "") + "</body>\n</html>\n";
 }
 
 std::string page_head(const std::string& title, const std::string& lead, const std::string& command) {
@@ -86,9 +86,17 @@ std::string heading(const std::string& text) { return "<h2>" + escaped(text) + "
 
 std::string paragraph(const std::string& text) { return "<p>" + escaped(text) + "</p>\n"; }
 
-std::string figure(const Picture& picture, const std::string& title, const std::string& caption) {
-  return "<figure tabindex=\"0\">\n" + picture.svg(title) + "<figcaption>" + escaped(caption) +
-         "</figcaption>\n</figure>\n";
+std::string no_chart(const std::string& reason) {
+  return "<p class=\"no-chart\">" + escaped(reason) + "</p>\n";
+}
+
+std::string chart_figure(const std::string& chart_json, const std::string& title,
+                         const std::string& caption) {
+  const bool has_page = !web::page_files().empty();
+  const std::string place = has_page ? "This chart needs JavaScript." : web::kPicturesMissing;
+  return "<figure>\n<div class=\"chart-place\" aria-label=\"" + escaped(title) + "\">" + no_chart(place) +
+         "</div>\n<script type=\"application/json\" class=\"isobar-chart\">" + web::script_safe(chart_json) +
+         "</script>\n<figcaption>" + escaped(caption) + "</figcaption>\n</figure>\n";
 }
 
 std::string bullet_list(const std::vector<std::string>& lines) {

@@ -3,15 +3,19 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "tools/report/svg.hpp"
-
 namespace isobar::report {
 
-/// The whole page around `body`, which is HTML; `title` is text.
-std::string html_page(const std::string& title, const std::string& body);
+/// The script of a page: kCharts draws its charts; kReport the parts of report_data.hpp, too.
+enum class PageScript : std::uint8_t { kCharts, kReport };
+
+/// The whole page around `body`, which is HTML; `title` is text. Without a script where the program was built without
+/// npm: chart_figure() then says so.
+std::string html_page(const std::string& title, const std::string& body,
+                      PageScript script = PageScript::kCharts);
 
 // All functions below take plain text and return HTML.
 
@@ -20,7 +24,10 @@ std::string html_page(const std::string& title, const std::string& body);
 std::string page_head(const std::string& title, const std::string& lead, const std::string& command);
 std::string heading(const std::string& text);
 std::string paragraph(const std::string& text);
-std::string figure(const Picture& picture, const std::string& title, const std::string& caption);
+/// What stands in the place of a chart that is not drawn.
+std::string no_chart(const std::string& reason);
+/// A chart that the page's script draws from the JSON of chart_json(); `title` is read by screen readers.
+std::string chart_figure(const std::string& chart_json, const std::string& title, const std::string& caption);
 std::string bullet_list(const std::vector<std::string>& lines);
 
 /// A figure in large type, with its name above and a remark below.

@@ -7,7 +7,7 @@
 namespace isobar::report {
 
 Stroke method_stroke(const evaluation::EvaluatedRun& run, const evaluation::EvaluatedMethod& method) {
-  static const std::map<std::string, Stroke> kKnown{{"adaptive", {"#111827", 2.2}},
+  static const std::map<std::string, Stroke> kKnown{{"adaptive", {"--ink", 2.2}},
                                                     {"3dof", {"#0072b2", 2.0}},
                                                     {"4dof", {"#d55e00", 1.8}},
                                                     {"6dof", {"#aa3a86", 1.8}},

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "run/evaluation/evaluated_run.hpp"
-#include "tools/report/svg.hpp"
+#include "tools/report/stroke.hpp"
 
 namespace isobar::report {
 
@@ -12,7 +12,7 @@ namespace isobar::report {
 /// Okabe and Ito (2008), which colour-blind readers can tell apart; dashes tell lines apart without colour.
 Stroke method_stroke(const evaluation::EvaluatedRun& run, const evaluation::EvaluatedMethod& method);
 
-inline const Stroke kReferenceStroke{"#111827", 2.6};
+inline const Stroke kReferenceStroke{"--muted", 1.4, "6 4"};
 inline const Stroke kAltimeterStroke{"#38a3dd", 1.8, "2 3"};
 
 }  // namespace isobar::report

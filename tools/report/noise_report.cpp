@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/report/noise_report.hpp"
 
+#include <utility>
+#include <vector>
+
+#include "tools/report/curve_chart.hpp"
 #include "tools/report/html_page.hpp"
-#include "tools/report/line_chart.hpp"
+#include "tools/report/number_text.hpp"
 
 namespace isobar::report {
 
@@ -27,41 +31,42 @@ std::string tiles(const NoiseReport& report) {
         cm(report.chosen.output_sigma_pa, 2) + " of white noise"}});
 }
 
-Picture series_picture(const NoiseReport& report) {
-  LineChart chart;
+CurveChart series_chart(const NoiseReport& report) {
+  CurveChart chart;
   chart.x_label = "time [s]";
   chart.y_label = "pressure − first [Pa]";
-  chart.height = 260.0;
-  chart.id = "series";
-  Series series{"", {"#2563eb", 1.0}, report.times_s, report.pressures_pa};
+  chart.x_unit = "s";
+  chart.y_unit = "Pa";
+  Curve series{"", {"#2f7fd6", 1.0}, report.times_s, report.pressures_pa};
   for (double& pressure : series.y) pressure -= report.pressures_pa.front();
-  chart.series.push_back(std::move(series));
+  chart.curves.push_back(std::move(series));
   const StillPeriod& still = report.noise.still;
-  chart.bands.push_back({report.times_s[still.begin], report.times_s[still.end - 1], "still"});
-  return draw(chart);
+  chart.spans.push_back({report.times_s[still.begin], report.times_s[still.end - 1], "still"});
+  return chart;
 }
 
-Picture allan_picture(const SensorNoise& noise) {
-  LineChart chart;
+CurveChart allan_chart(const SensorNoise& noise) {
+  CurveChart chart;
   chart.x_label = "averaging time [s]";
   chart.y_label = "Allan deviation [Pa]";
-  chart.height = 420.0;
-  chart.id = "allan";
+  chart.x_unit = "s";
+  chart.y_unit = "Pa";
+  chart.y_decimals = 4;
   chart.is_logarithmic = true;
-  Series measured{"measured", {"#2563eb", 2.4}, {}, {}, true};
-  Series above{"measured ± 1 sigma", {"#93c5fd", 1.0}, {}, {}};
-  Series below{"", {"#93c5fd", 1.0}, {}, {}};
-  Series model{"white + instability + walk + trend", {"#b45309", 1.6, "6 4"}, {}, {}};
+  Curve measured{"measured, with 1 sigma", {"#2f7fd6", 2.4}, {}, {}};
+  Curve model{"white + instability + walk + trend", {"#c8641b", 1.6, "6 4"}, {}, {}};
+  Area sigma{"#2f7fd640", {}, {}, {}};
   for (const AllanPoint& point : noise.allan) {
     if (point.uncertainty > kMaxUncertainty || !(point.deviation > 0.0)) continue;
-    for (Series* series : {&measured, &above, &below, &model}) series->x.push_back(point.tau_s);
+    for (std::vector<double>* x : {&measured.x, &model.x, &sigma.x}) x->push_back(point.tau_s);
     measured.y.push_back(point.deviation);
-    above.y.push_back(point.deviation * (1.0 + point.uncertainty));
-    below.y.push_back(point.deviation * (1.0 - point.uncertainty));
+    sigma.high.push_back(point.deviation * (1.0 + point.uncertainty));
+    sigma.low.push_back(point.deviation * (1.0 - point.uncertainty));
     model.y.push_back(modelled_deviation(noise.parts, point));
   }
-  chart.series = {std::move(above), std::move(below), std::move(model), std::move(measured)};
-  return draw(chart);
+  chart.curves = {std::move(model), std::move(measured)};
+  chart.areas = {std::move(sigma)};
+  return chart;
 }
 
 std::string designs_table(const NoiseReport& report) {
@@ -81,15 +86,15 @@ std::string designs_table(const NoiseReport& report) {
 
 std::string render_noise_report(const NoiseReport& report) {
   std::string html = page_head(report.title, report.source, report.command) + tiles(report);
-  html +=
-      heading("Samples") + figure(series_picture(report), "Pressure against time",
-                                  "All samples. Shaded: the still period that the figures are taken from.");
-  html +=
-      heading("Allan deviation") +
-      figure(allan_picture(report.noise), "Allan deviation against averaging time",
-             "Overlapping Allan deviation. White noise falls with the square root of the averaging time, a "
-             "random walk rises with it, a steady trend of the weather rises in proportion. Points with an "
-             "uncertainty above 50 % are left out.");
+  html += heading("Samples") +
+          chart_figure(chart_json(series_chart(report)), "Pressure against time",
+                       "All samples. Shaded: the still period that the figures are taken from.");
+  html += heading("Allan deviation") +
+          chart_figure(
+              chart_json(allan_chart(report.noise)), "Allan deviation against averaging time",
+              "Overlapping Allan deviation. White noise falls with the square root of the averaging time, a "
+              "random walk rises with it, a steady trend of the weather rises in proportion. Points with an "
+              "uncertainty above 50 % are left out.");
   html += heading("Settings of the low-pass") +
           paragraph(
               "Lag: delay of the output behind a steadily changing pressure; it is known, and subtracted "

@@ -7,11 +7,11 @@
 
 #include "tools/report/altimeter_section.hpp"
 #include "tools/report/html_page.hpp"
+#include "tools/report/number_text.hpp"
 #include "tools/report/provenance.hpp"
+#include "tools/report/report_charts.hpp"
 #include "tools/report/report_data.hpp"
-#include "tools/report/report_pictures.hpp"
 #include "tools/report/report_tables.hpp"
-#include "tools/report/svg.hpp"
 
 namespace isobar::report {
 
@@ -56,55 +56,10 @@ std::string tiles(const evaluation::EvaluatedRun& run) {
 std::string z_rpe_section(const evaluation::EvaluatedRun& run) {
   const bool whole_run = main_method(run).evaluation.figures.whole_run_as_flat;
   return heading("Relative error on z") +
-         figure(z_rpe_picture(run, 1040.0), "Box plot of the relative error on z by method",
-                std::string("Height gained in 5 m of travel, estimate against reference, over ") +
-                    (whole_run ? "the whole run" : "the flat segments") +
-                    ". Thick line: median; box: quartiles; whiskers: 5th and 95th percentiles.");
-}
-
-std::string height_section(const evaluation::EvaluatedRun& run) {
-  std::string html =
-      heading("Height along the way") +
-      figure(height_picture(run, {1040.0, 380.0}, "height"), "Height against travelled distance",
-             "Estimates moved so that all start poses coincide." +
-                 std::string(evaluation::floor_levels_m(run).empty() ? "" : " Shaded: flat segments.")) +
-      heading("Height error along the way") +
-      figure(height_error_picture(run, {1040.0, 320.0}, std::nullopt, "error"),
-             "Height error against travelled distance", "Estimate minus reference.");
-  if (const std::optional<double> limit_m = close_up_limit_m(run)) {
-    html += figure(height_error_picture(run, {1040.0, 280.0}, limit_m, "closeup"),
-                   "Height error against travelled distance, close up",
-                   "Close-up: " + evaluation::display_name(main_method(run).name) +
-                       " in full, the other methods clipped.");
-  }
-  return html;
-}
-
-std::string side_section(const evaluation::EvaluatedRun& run) {
-  const std::vector<SideView> views = side_view_pictures(run);
-  if (views.empty()) return "";
-  std::string html = heading("The map from the side") + "<figure tabindex=\"0\"><div class=\"pair\">\n";
-  for (const SideView& view : views) {
-    html += std::string(view.is_half ? "<div class=\"half\">" : "<div>") + "<h3>" + escaped(view.method) +
-            "</h3>\n" + view.picture.svg("Side elevation of the map of " + view.method) + "</div>\n";
-  }
-  return html +
-         "</div><figcaption>Points of the map, darker where denser, with the paths of estimate and "
-         "reference. Red: "
-         "mean height of each floor in the reference, with the estimate's mean error."
-         "</figcaption></figure>\n";
-}
-
-std::string top_section(const evaluation::EvaluatedRun& run) {
-  const bool has_map = !main_method(run).map_points.empty();
-  const std::string what =
-      has_map ? "Map of " + evaluation::display_name(main_method(run).name) + " and paths" : "Paths";
-  return heading(has_map ? "The map from above" : "The paths from above") +
-         figure(
-             top_view_picture(run), what + " from above",
-             what + ", to scale." +
-                 (evaluation::floor_levels_m(run).size() > 1 ? " All floors are drawn on top of each other."
-                                                             : ""));
+         chart_figure(chart_json(z_rpe_chart(run)), "Box plot of the relative error on z by method",
+                      std::string("Height gained in 5 m of travel, estimate against reference, over ") +
+                          (whole_run ? "the whole run" : "the flat segments") +
+                          ". Thick line: median; box: quartiles; whiskers: 5th and 95th percentiles.");
 }
 
 /// The mounts that the run has found, as its mounts.toml.
@@ -117,12 +72,12 @@ std::string mounts_section(const evaluation::EvaluatedRun& run) {
 }
 
 std::string time_section(const evaluation::EvaluatedRun& run) {
-  const std::optional<Picture> picture = scan_time_picture(run, 1040.0);
-  if (!picture) return "";
-  return heading("Time per scan") + figure(*picture, "Histogram of the time per scan by method",
-                                           "From deskewing to the solved pose. Solid line: median; dashed: "
-                                           "99th percentile. Times beyond the "
-                                           "axis are counted in the last bar.");
+  const std::optional<CurveChart> chart = scan_time_chart(run);
+  if (!chart) return "";
+  return heading("Time per scan") +
+         chart_figure(
+             chart_json(*chart), "Histogram of the time per scan by method",
+             "From deskewing to the solved pose. Times beyond the axis are counted in its last bin.");
 }
 
 }  // namespace
@@ -130,33 +85,13 @@ std::string time_section(const evaluation::EvaluatedRun& run) {
 std::string render_report(const ReportInput& input) {
   const evaluation::EvaluatedRun& run = input.run;
   std::string html = page_head(input.title, input.description, input.command) + paragraph(run_summary(run)) +
-                     paragraph(provenance_line()) + tiles(run) +
-                     live_parts(run, height_section(run) + side_section(run) + top_section(run)) +
-                     z_rpe_section(run) + altimeter_section(run) + mounts_section(run) + time_section(run) +
+                     paragraph(provenance_line()) + tiles(run) + way_and_map(run) + z_rpe_section(run) +
+                     altimeter_section(run) + mounts_section(run) + time_section(run) +
                      heading("All figures") + figures_table(run) + settings_section(run);
   const std::string floors = floors_table(run);
   if (!floors.empty()) html += heading("Height of each floor") + floors;
   if (!run.notes.empty()) html += heading("Notes") + bullet_list(run.notes);
-  return html_page(input.title, html + heading("Definitions") + definitions(run));
-}
-
-std::string render_overview_svg(const ReportInput& input) {
-  constexpr double kWidth = 1040.0;
-  constexpr double kMargin = 20.0;
-  constexpr double kHeadingHeight = 34.0;
-  const Picture boxes = z_rpe_picture(input.run, kWidth);
-  const Picture heights = height_picture(input.run, {kWidth, 340.0}, "overview");
-  Picture page(kWidth + 2.0 * kMargin,
-               boxes.height() + heights.height() + 2.0 * kHeadingHeight + 3.0 * kMargin);
-  page.rect({0.0, 0.0, page.width(), page.height()}, "#ffffff");
-  const TextStyle style{17.0, "#111827", "start", true};
-  double y = kMargin;
-  page.text({kMargin, y + 16.0}, "Relative error on z by method", style);
-  page.place(boxes, {kMargin, y + kHeadingHeight});
-  y += kHeadingHeight + boxes.height() + kMargin;
-  page.text({kMargin, y + 16.0}, "Height along the way", style);
-  page.place(heights, {kMargin, y + kHeadingHeight});
-  return page.svg(input.title);
+  return html_page(input.title, html + heading("Definitions") + definitions(run), PageScript::kReport);
 }
 
 }  // namespace isobar::report

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The report: one HTML file that needs no network. Curves and map move with its script; without it pictures stand there.
+// The report: one HTML file that needs no network. Its script draws charts and map; without it figures and tables remain.
 #pragma once
 
 #include <string>
@@ -16,8 +16,5 @@ struct ReportInput {
 };
 
 std::string render_report(const ReportInput& input);
-
-/// The README's picture as SVG: relative error on z by method, and the height along the way below it.
-std::string render_overview_svg(const ReportInput& input);
 
 }  // namespace isobar::report

@@ -5,10 +5,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <sstream>
 
+#include "tools/report/html_page.hpp"
 #include "tools/report/method_style.hpp"
-#include "tools/report/report_tables.hpp"
+#include "tools/report/report_charts.hpp"
 #include "tools/web/inline_text.hpp"
 #include "tools/web/map_tiles.hpp"
 #include "tools/web/page_files.hpp"
@@ -58,21 +58,33 @@ class Way {
   double last_m_ = -std::numeric_limits<double>::infinity();
 };
 
+/// Name and look of a line.
+Json line_json(const std::string& name, const Stroke& stroke) {
+  return {{"name", name}, {"colour", stroke.colour}, {"width", stroke.width}, {"dash", dash_lengths(stroke)}};
+}
+
 Json reference_json(const evaluation::Trajectory& reference) {
   const std::vector<double> distance_m = evaluation::travelled_distance_m(reference.poses);
   Way way(reference.poses.size());
   for (std::size_t i = 0; i < reference.poses.size(); ++i) {
     if (way.takes(i, distance_m[i])) way.add(distance_m[i], reference.poses[i].position_m);
   }
-  return way.columns;
+  Json json = line_json("reference", kReferenceStroke);
+  json.update(way.columns);
+  return json;
 }
 
-/// "8 3" as numbers.
-Json dash_json(const std::string& dash) {
-  Json numbers = Json::array();
-  std::istringstream words(dash);
-  for (double number = 0.0; words >> number;) numbers.push_back(number);
-  return numbers;
+/// Heights of the altimeter; null without one.
+Json altimeter_json(const evaluation::EvaluatedRun& run) {
+  const Curve curve = altimeter_curve(run);
+  if (curve.x.empty()) return nullptr;
+  Way way(curve.x.size());
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    if (way.takes(i, curve.x[i])) way.add(curve.x[i], {0.0, 0.0, curve.y[i]});
+  }
+  Json json = line_json(curve.name, curve.stroke);
+  json.update({{"distance_m", way.columns["distance_m"]}, {"z_m", way.columns["z_m"]}});
+  return json;
 }
 
 Json method_json(const evaluation::EvaluatedRun& run, const evaluation::EvaluatedMethod& method) {
@@ -84,15 +96,11 @@ Json method_json(const evaluation::EvaluatedRun& run, const evaluation::Evaluate
     way.columns["error_m"].push_back(
         millimetres(pairs[i].estimate.position_m.z() - pairs[i].reference.position_m.z()));
   }
-  const Stroke stroke = method_stroke(run, method);
   const evaluation::Verdict& verdict = method.evaluation.figures.verdict;
-  Json json{{"name", evaluation::display_name(method.name)},
-            // The colour of text, which is dark on a light page and light on a dark one.
-            {"colour", stroke.colour == kReferenceStroke.colour ? std::string("--ink") : stroke.colour},
-            {"dash", dash_json(stroke.dash)},
-            {"verdict", evaluation::verdict_word(verdict.kind)},
-            {"reason", verdict.reason},
-            {"has_map", !method.map_points.empty()}};
+  Json json = line_json(evaluation::display_name(method.name), method_stroke(run, method));
+  json.update({{"verdict", evaluation::verdict_word(verdict.kind)},
+               {"reason", verdict.reason},
+               {"has_map", !method.map_points.empty()}});
   json.update(way.columns);
   return json;
 }
@@ -141,6 +149,7 @@ std::string report_data_json(const evaluation::EvaluatedRun& run) {
   Json json{{"schema", 1},
             {"main", &main_method(run) - run.methods.data()},
             {"reference", reference_json(run.reference.trajectory)},
+            {"altimeter", altimeter_json(run)},
             {"methods", Json::array()},
             {"flat", flat_json(run)},
             {"floors", floors_json(run)}};
@@ -149,11 +158,10 @@ std::string report_data_json(const evaluation::EvaluatedRun& run) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string live_parts(const evaluation::EvaluatedRun& run, const std::string& fallback) {
-  const std::optional<web::InlineParts> parts = web::inline_parts(web::InlinePage::kReport);
-  if (!parts) return fallback;
+std::string way_and_map(const evaluation::EvaluatedRun& run) {
+  if (web::page_files().empty()) return no_chart(web::kPicturesMissing);
   std::string html =
-      "<div id=\"isobar-report-view\"></div>\n<div class=\"static-only\">\n" + fallback + "</div>\n";
+      "<div id=\"isobar-report-view\">" + no_chart("Curves and map need JavaScript.") + "</div>\n";
   html += "<script type=\"application/json\" id=\"isobar-report\">" +
           web::script_safe(report_data_json(run)) + "</script>\n";
   for (const evaluation::EvaluatedMethod& method : run.methods) {
@@ -162,7 +170,7 @@ std::string live_parts(const evaluation::EvaluatedRun& run, const std::string& f
     html += "<script type=\"text/plain\" id=\"isobar-map-" + std::to_string(&method - run.methods.data()) +
             "\">" + map_base64(method.map_points, is_main ? kMainMapPoints : kOtherMapPoints) + "</script>\n";
   }
-  return html + "<style>" + parts->style + "</style>\n<script>" + parts->script + "</script>\n";
+  return html;
 }
 
 }  // namespace isobar::report

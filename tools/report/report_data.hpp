@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The data of a report's moving parts, as tools/web/page/src/report_data.ts reads them.
+// The curves along the way and the map of a report, as tools/web/page/src/report_data.ts reads them.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace isobar::report {
 
-/// Heights, errors and ways of every method along the way, as JSON.
+/// Heights, errors and ways of every method along the way, and the altimeter's heights, as JSON.
 std::string report_data_json(const evaluation::EvaluatedRun& run);
 
-/// The report's moving parts as HTML: data, maps, style and script. They take the place of what `fallback` shows, which
-/// stays for a reader without scripts. `fallback` alone where the program was built without npm.
-std::string live_parts(const evaluation::EvaluatedRun& run, const std::string& fallback);
+/// Curves along the way and the map, as HTML for a page with PageScript::kReport. Only a sentence where the program was
+/// built without npm.
+std::string way_and_map(const evaluation::EvaluatedRun& run);
 
 }  // namespace isobar::report

@@ -8,7 +8,7 @@
 
 #include "tools/report/figure_rows.hpp"
 #include "tools/report/html_page.hpp"
-#include "tools/report/svg.hpp"
+#include "tools/report/number_text.hpp"
 
 namespace isobar::report {
 

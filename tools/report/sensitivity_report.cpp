@@ -4,20 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/report/box_plot.hpp"
+#include "tools/report/box_chart.hpp"
+#include "tools/report/curve_chart.hpp"
 #include "tools/report/html_page.hpp"
-#include "tools/report/line_chart.hpp"
+#include "tools/report/number_text.hpp"
 
 namespace isobar::report {
 
 namespace {
 
 constexpr double kCmPerM = 100.0;
-constexpr const char* kColours[] = {"#2563eb", "#b45309", "#15803d", "#7c3aed"};  // NOLINT: a table
+constexpr const char* kColours[] = {"#2f7fd6", "#c8641b", "#1b9a62", "#9a63d8"};  // NOLINT: a table
 
 /// A track in centimetres above the first level: its mean there equals the level's true height.
-Series centimetres(const HeightTrack& track, const Plateau& first, const std::string& name,
-                   const Stroke& stroke) {
+Curve centimetres(const HeightTrack& track, const Plateau& first, const std::string& name,
+                  const Stroke& stroke) {
   double sum_m = 0.0;
   double count = 0.0;
   for (std::size_t i = 0; i < track.times_s.size(); ++i) {
@@ -26,46 +27,46 @@ Series centimetres(const HeightTrack& track, const Plateau& first, const std::st
     count += 1.0;
   }
   const double zero_m = (count > 0.0 ? sum_m / count : track.heights_m.front()) - first.true_height_m;
-  Series series{name, stroke, track.times_s, {}};
+  Curve series{name, stroke, track.times_s, {}};
   for (const double height_m : track.heights_m) series.y.push_back(kCmPerM * (height_m - zero_m));
   return series;
 }
 
-Picture height_picture(const HeightPicture& picture, const std::string& id) {
-  LineChart chart;
+CurveChart height_chart(const HeightPicture& picture) {
+  CurveChart chart;
   chart.x_label = "time [s]";
   chart.y_label = "height above the first level [cm]";
-  chart.height = 340.0;
-  chart.id = id;
+  chart.x_unit = "s";
+  chart.y_unit = "cm";
   const Plateau& first = picture.plateaus.front();
-  chart.series.push_back(centimetres(picture.raw, first, "from sample to sample", {"#bfdbfe", 0.7}));
-  chart.series.push_back(centimetres(picture.filtered, first,
+  chart.curves.push_back(centimetres(picture.raw, first, "from sample to sample", {"#2f7fd670", 0.7}));
+  chart.curves.push_back(centimetres(picture.filtered, first,
                                      "low-pass, lag of " + fixed(picture.lag_s, 2) + " s taken off",
-                                     {"#1d4ed8", 1.6}));
-  Series truth{"true", {"#dc2626", 1.8}, {}, {}, true};
+                                     {"#2f7fd6", 1.8}));
+  Curve truth{"true", {"#e0453a", 1.8}, {}, {}};
   for (const Plateau& plateau : picture.plateaus) {
     truth.x.insert(truth.x.end(), {plateau.begin_s, plateau.end_s});
     truth.y.insert(truth.y.end(), {kCmPerM * plateau.true_height_m, kCmPerM * plateau.true_height_m});
   }
-  chart.series.push_back(std::move(truth));
-  return draw(chart);
+  chart.curves.push_back(std::move(truth));
+  return chart;
 }
 
-Picture error_picture(const SensitivityExperiment& experiment) {
-  BoxPlot plot;
-  plot.x_label = "|steady-state error| [cm]";
-  plot.unit = "cm";
+BoxChart error_chart(const SensitivityExperiment& experiment) {
+  BoxChart chart;
+  chart.x_label = "|steady-state error| [cm]";
+  chart.unit = "cm";
   std::vector<std::string> sensors;
   for (const ErrorRow& row : experiment.rows) {
     auto sensor = std::find(sensors.begin(), sensors.end(), row.sensor);
     if (sensor == sensors.end()) sensor = sensors.insert(sensors.end(), row.sensor);
     std::vector<double> sizes;
     for (const double error_m : row.errors_m) sizes.push_back(kCmPerM * std::abs(error_m));
-    plot.rows.push_back({row.sensor + ", " + row_name(row),
-                         kColours[static_cast<std::size_t>(sensor - sensors.begin()) % std::size(kColours)],
-                         summarize(std::move(sizes))});
+    chart.rows.push_back({row.sensor + ", " + row_name(row),
+                          kColours[static_cast<std::size_t>(sensor - sensors.begin()) % std::size(kColours)],
+                          summarize(std::move(sizes))});
   }
-  return draw(plot);
+  return chart;
 }
 
 std::string figures_table(const SensitivityExperiment& experiment) {
@@ -99,21 +100,20 @@ std::string row_name(const ErrorRow& row) {
 
 std::string render_sensitivity_report(const SensitivityReport& report) {
   std::string html = page_head(report.title, report.description, report.command);
-  int number = 0;
   for (const SensitivityExperiment& experiment : report.experiments) {
     html += heading(experiment.title) + paragraph(experiment.caption);
     for (const HeightPicture& picture : experiment.pictures) {
-      html +=
-          figure(height_picture(picture, "height" + std::to_string(number++)),
-                 picture.sensor + ": height against time",
-                 picture.sensor +
-                     ", moved sensor above standing sensor. Red: the true height, where it is evaluated.");
+      html += chart_figure(
+          chart_json(height_chart(picture)), picture.sensor + ": height against time",
+          picture.sensor +
+              ", moved sensor above standing sensor. Red: the true height, where it is evaluated.");
     }
     html +=
-        figure(error_picture(experiment), "Box plot of the steady-state errors",
-               "Thick line: median; box: quartiles; whiskers: 5th and 95th percentiles. Error: height gained "
-               "since the previous level, minus the true step. Of every settled sample: the error at any "
-               "moment; of the mean of each level: the error of a robot that waits.") +
+        chart_figure(
+            chart_json(error_chart(experiment)), "Box plot of the steady-state errors",
+            "Thick line: median; box: quartiles; whiskers: 5th and 95th percentiles. Error: height gained "
+            "since the previous level, minus the true step. Of every settled sample: the error at any "
+            "moment; of the mean of each level: the error of a robot that waits.") +
         figures_table(experiment);
   }
   return html_page(report.title, html);

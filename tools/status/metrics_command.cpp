@@ -110,7 +110,8 @@ void add_metrics_command(CLI::App& app) {
         const std::size_t colon = text.rfind(':');
         const bool well = colon != std::string::npos && colon > 0 && colon + 1 < text.size() &&
                           text.find_first_not_of("0123456789", colon + 1) == std::string::npos &&
-                          text.size() - colon <= 6 && text.find(',') == std::string::npos;
+                          text.size() - colon <= 6 && std::stoul(text.substr(colon + 1)) <= 65'535 &&
+                          text.find(',') == std::string::npos;
         return well ? std::string() : text + ": must be ADDRESS:PORT, such as 127.0.0.1:9464";
       })
       ->capture_default_str();

@@ -18,6 +18,11 @@ struct FileView {
 /// Called with the part that is read, 0 … 1.
 using ReadProgress = std::function<void(double)>;
 
+/// What is said of a folder that holds neither.
+[[nodiscard]] inline std::string not_shown(const std::filesystem::path& folder) {
+  return folder.string() + ": is neither a run (trajectory.tum) nor a recording (recording.toml)";
+}
+
 /// Reads the folder of a run, of which only the trajectory is required.
 /// @throws DataError "file:line: rule" when there is no trajectory, or a file breaks its format
 [[nodiscard]] FileView read_run(const std::filesystem::path& folder, MapTiles& map);

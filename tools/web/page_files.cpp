@@ -13,6 +13,8 @@ extern const char isobar_page_html[], isobar_page_html_end[];
 extern const char isobar_page_js[], isobar_page_js_end[];
 extern const char isobar_page_css[], isobar_page_css_end[];
 extern const char isobar_page_icon[], isobar_page_icon_end[];
+extern const char isobar_page_charts_js[], isobar_page_charts_js_end[];
+extern const char isobar_page_charts_css[], isobar_page_charts_css_end[];
 extern const char isobar_page_report_js[], isobar_page_report_js_end[];
 extern const char isobar_page_report_css[], isobar_page_report_css_end[];
 }
@@ -36,13 +38,19 @@ std::span<const PageFile> page_files() {
 
 std::optional<InlineParts> inline_parts(InlinePage page) {
 #if ISOBAR_WITH_PAGE
-  const bool is_run = page == InlinePage::kRun;
-  const std::string_view script = is_run ? std::string_view{isobar_page_js, isobar_page_js_end}
-                                         : std::string_view{isobar_page_report_js, isobar_page_report_js_end};
-  const std::string_view style = is_run
-                                     ? std::string_view{isobar_page_css, isobar_page_css_end}
-                                     : std::string_view{isobar_page_report_css, isobar_page_report_css_end};
-  return InlineParts{unpacked(script), unpacked(style)};
+  using View = std::string_view;
+  const auto unpack = [](View script, View style) { return InlineParts{unpacked(script), unpacked(style)}; };
+  switch (page) {
+    case InlinePage::kRun:
+      return unpack({isobar_page_js, isobar_page_js_end}, {isobar_page_css, isobar_page_css_end});
+    case InlinePage::kCharts:
+      return unpack({isobar_page_charts_js, isobar_page_charts_js_end},
+                    {isobar_page_charts_css, isobar_page_charts_css_end});
+    case InlinePage::kReport:
+      return unpack({isobar_page_report_js, isobar_page_report_js_end},
+                    {isobar_page_report_css, isobar_page_report_css_end});
+  }
+  return std::nullopt;
 #else
   (void)page;
   return std::nullopt;

@@ -21,15 +21,20 @@ inline constexpr const char* kPageMissing =
     "isobar was built without its page: install nodejs and npm (tools/install build), configure and build "
     "again";
 
+/// What a report says in the place of a picture where there is no page.
+inline constexpr const char* kPicturesMissing =
+    "This picture needs the page, which the isobar that wrote this report was built without.";
+
 /// The files of the page; none when the program was built without npm.
 [[nodiscard]] std::span<const PageFile> page_files();
 
-/// What a file that holds its own data needs: the page of `isobar web`, or the parts of a report (page/src/report.ts).
+/// What a file that holds its own data needs: the page of `isobar web`, the charts of a report (page/src/charts.ts), or
+/// its charts and its map (page/src/report.ts).
 struct InlineParts {
   std::string script;
   std::string style;
 };
-enum class InlinePage : std::uint8_t { kRun, kReport };
+enum class InlinePage : std::uint8_t { kRun, kCharts, kReport };
 
 /// Empty when the program was built without npm.
 [[nodiscard]] std::optional<InlineParts> inline_parts(InlinePage page);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/errors.hpp"
+#include "run/files/run_layout.hpp"
 #include "run/recording/manifest.hpp"
 #include "tools/commands.hpp"
 #include "tools/output_option.hpp"
@@ -48,9 +49,12 @@ std::string page_of(const web::FileView& view, const web::MapTiles& map, const w
 void run_report(const ReportOptions& options) {
   const auto parts = web::inline_parts(web::InlinePage::kRun);
   if (!parts) throw ServiceError(web::kPageMissing);
+  require_path(options.folder, "the folder of a run, or a recording");
+  const bool is_recording = std::filesystem::exists(options.folder / recording::kManifestFile);
+  if (!is_recording && files::newest_session(options.folder) == 0)
+    throw DataError(web::not_shown(options.folder));
   Progress progress("reading");
   web::MapTiles map(1);
-  const bool is_recording = std::filesystem::exists(options.folder / recording::kManifestFile);
   web::FileView view = is_recording
                            ? web::read_recording(options.folder, [&](double part) { progress.update(part); })
                            : web::read_run(options.folder, map);

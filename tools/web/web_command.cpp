@@ -82,8 +82,7 @@ void serve_folder(const WebOptions& options) {
   } else if (files::newest_session(options.folder) > 0) {
     view = web::read_run(options.folder, map);
   } else {
-    throw DataError(options.folder.string() +
-                    ": is neither a run (trajectory.tum) nor a recording (recording.toml)");
+    throw DataError(web::not_shown(options.folder));
   }
   web::Served served;
   served.view = [&view] { return view.json; };

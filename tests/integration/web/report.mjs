@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reports and the page of a run in Debian's Chromium: they load nothing from outside, show curves and map, answer to their
-// buttons, keep the basics (basics.mjs), and write no error to the console.
-//   node report.mjs EVALUATION.html RUN.html URL-OF-RUN
+// Reports and the page of a run in Debian's Chromium: they load nothing from outside, show charts and map, answer to their
+// buttons and to the mouse, keep the basics (basics.mjs), and write no error to the console.
+//   node report.mjs EVALUATION.html RUN.html NOISE.html URL-OF-RUN
 import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
 
@@ -9,7 +9,8 @@ import { check_basics, check_shifts, watch_shifts } from './basics.mjs';
 
 const require = createRequire(new URL('./npm/package.json', import.meta.url));
 const puppeteer = require('puppeteer-core');
-const [evaluation, run, url_of_run] = process.argv.slice(2);
+const [evaluation, run, noise, url_of_run] = process.argv.slice(2);
+const wait = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
 const browser = await puppeteer.launch({
   executablePath: '/usr/bin/chromium',
@@ -38,9 +39,21 @@ async function check(name, { page, faults }) {
   console.log(`ok: ${name}, layout shift ${shift}`);
 }
 
+/** Every chart is drawn: its canvas has pixels of its own colours, nothing says that it is missing. */
+async function check_charts(page, what) {
+  const blank = await page.evaluate(() => [...document.querySelectorAll('.curve-chart, .box-chart')].filter((chart) => {
+    const canvas = chart.querySelector('canvas');
+    const data = canvas?.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data ?? [];
+    return !data.some((value, i) => i % 4 === 1 && data[i + 2] > 200 && Math.abs(value - data[i + 1]) > 60);
+  }).length);
+  assert.equal(blank, 0, `${what}: charts without a coloured line`);
+  const missing = await page.evaluate(() => document.querySelectorAll('.no-chart').length);
+  assert.equal(missing, 0, `${what}: charts that are not drawn`);
+}
+
 try {
   const report = await open(`file://${evaluation}`);
-  await report.page.waitForSelector('.distance-chart canvas', { timeout: 10_000 });
+  await report.page.waitForSelector('.curve-chart canvas', { timeout: 10_000 });
   assert.equal(await report.page.$('.map-view canvas'), null, 'the map waits for a reader who comes near');
   await report.page.$eval('.map-box', (box) => box.scrollIntoView());
   await report.page.waitForSelector('.map-view canvas', { timeout: 10_000 });
@@ -48,8 +61,15 @@ try {
   const before = await curves();
   await report.page.click('.chips .chip');
   assert.equal(await curves(), before - 1, 'a click switches a method off');
-  const visible = await report.page.evaluate(() => [...document.querySelectorAll('.static-only')].some((e) => e.offsetHeight > 0));
-  assert.ok(!visible, 'pictures give way to what moves');
+  await check_charts(report.page, 'report');
+  const box = await report.page.$('.box-chart .u-over');
+  await box.scrollIntoView();
+  const { x, y, width } = await box.boundingBox();
+  await report.page.mouse.move(x + width / 2, y + 8);
+  await report.page.mouse.move(x + width / 2, y + 12);
+  await wait(200);
+  const readouts = await report.page.$eval('.box-chart .readout', (readout) => readout.innerText);
+  assert.match(readouts, /median .* %/, 'values of a box under the cursor');
   await check('report of an evaluation', report);
 
   for (const [name, url] of [['report of a run', `file://${run}`], ['page of a run', url_of_run]]) {
@@ -58,6 +78,11 @@ try {
     await single.page.waitForFunction(() => /\d points/.test(document.body.innerText), { timeout: 10_000 });
     await check(name, single);
   }
+
+  const samples = await open(`file://${noise}`);
+  await samples.page.waitForSelector('.curve-chart canvas', { timeout: 10_000 });
+  await check_charts(samples.page, 'noise');
+  await check('report of noise', samples);
 } catch (error) {
   console.log(`FAILED: ${error.stack}`);
   process.exitCode = 1;

@@ -17,7 +17,7 @@
 #include "tools/calibrate_logs.hpp"
 #include "tools/commands.hpp"
 #include "tools/report/calibration_report.hpp"
-#include "tools/report/svg.hpp"
+#include "tools/report/number_text.hpp"
 
 namespace isobar::test::test_calibrate_command {
 

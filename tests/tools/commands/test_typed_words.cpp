@@ -8,6 +8,7 @@
 #include "config/config_layer.hpp"
 #include "core/errors.hpp"
 #include "core/nearest_word.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tools/commands.hpp"
 #include "tools/number_option.hpp"
 #include "tools/output_option.hpp"
@@ -55,6 +56,7 @@ TEST_CASE("a command that is typed wrong is named with the one that was meant, a
   CHECK(said({"map", "exprot"}) ==
         "exprot: no such command; did you mean isobar map export?; `isobar map --help` shows all");
   CHECK(said({"zzzzzzzz"}) == "zzzzzzzz: no such command; `isobar --help` shows all");
+  CHECK(said({"calibrate", "mount"}).find("did you mean isobar calibrate mounts?") != std::string::npos);
 }
 
 TEST_CASE("an option that is typed wrong is named, with and without a value behind it") {
@@ -89,7 +91,34 @@ TEST_CASE("a file is refused whose ending names another format than the one that
   CHECK(written_as({".html", ".htm"})("r.pdf") ==
         "r.pdf: is written as .html or .htm, and its name must end so");
   CHECK(written_as({".html"})("report") == "report: is written as .html, and its name must end so");
-  CHECK(written_as({".html"})("a.b/R.HTML").empty());
+  CHECK(written_as({".html"})("a.b.HTML").empty());
+}
+
+TEST_CASE("a file is refused in a folder that is not there, before any work is done for it") {
+  const TemporaryFolder folder;
+  const std::string missing = folder.path() / "no" / "r.html";
+  CHECK(written_as({".html"})(missing) ==
+        missing + ": there is no folder " + (folder.path() / "no").string());
+  CHECK(written_as({".html"})((folder.path() / "r.html").string()).empty());
+  CHECK_THROWS_WITH_AS(require_path(missing, "a report"),
+                       (missing + ": no such file or folder; expected is a report").c_str(), DataError);
+}
+
+TEST_CASE("what the parser refuses is one line that names the command whose help explains it") {
+  const auto problem = [](const std::vector<std::string>& words) -> std::string {
+    CLI::App app("x", "isobar");
+    add_replay_command(app);
+    add_compare_command(app);
+    try {
+      app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    } catch (const CLI::ParseError& error) {
+      return parse_problem(app, error);
+    }
+    return {};
+  };
+  CHECK(problem({"replay"}) == "RECORDING is required; `isobar replay --help` explains it");
+  CHECK(problem({"compare", "a.toml", "b.toml", "--seeds", "1.5"}) ==
+        "--seeds: \"1.5\" is no number that it takes; `isobar compare --help` explains it");
 }
 
 TEST_CASE(

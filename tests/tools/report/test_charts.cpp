@@ -4,17 +4,22 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "tests/tools/report/well_formed.hpp"
-#include "tools/report/box_plot.hpp"
-#include "tools/report/histogram.hpp"
-#include "tools/report/line_chart.hpp"
+#include "tools/report/box_chart.hpp"
+#include "tools/report/curve_chart.hpp"
+#include "tools/report/html_page.hpp"
+#include "tools/report/number_text.hpp"
 
 namespace isobar::test::test_charts {
 
 using namespace isobar::report;
 using isobar::summarize;
 using isobar::test::is_well_formed;
+using nlohmann::json;
 
 TEST_CASE("numbers have a decimal dot, no negative zero, and a dash for NaN") {
   CHECK(fixed(3.14159, 2) == "3.14");
@@ -30,117 +35,86 @@ TEST_CASE("escaped text cannot break out of its tag") {
   CHECK(escaped(std::string("a\x01\x1b") + "b") == "ab");
 }
 
-TEST_CASE("ticks are round numbers inside the range, as many as fit") {
-  for (const Range range : {Range{0.0, 1.0}, Range{-3.7, 12.2}, Range{0.001, 0.0042}, Range{1e6, 1.0003e6}}) {
-    const Scale scale = Scale::linear(range, 0.0, 900.0, 90.0);
-    REQUIRE(scale.ticks().size() >= 4);
-    CHECK(scale.ticks().size() <= 11);
-    const double step = scale.ticks()[1].value - scale.ticks()[0].value;
-    const double mantissa = step / std::pow(10.0, std::floor(std::log10(step) + 1e-6));
-    CHECK((std::abs(mantissa - 1) < 1e-3 || std::abs(mantissa - 2) < 1e-3 || std::abs(mantissa - 5) < 1e-3));
-    for (const Tick& tick : scale.ticks()) {
-      CHECK(tick.value >= range.low - 1e-6 * step);
-      CHECK(tick.value <= range.high + 1e-6 * step);
-    }
+TEST_CASE("a long column keeps its ends, and the lowest and highest value of every span") {
+  std::vector<double> x;
+  std::vector<double> y;
+  for (int i = 0; i < 100'000; ++i) {
+    x.push_back(i * 0.005);
+    y.push_back(100.0 * std::sin(i * 0.7) + (i == 54'321 ? 500.0 : 0.0));
   }
-  CHECK(Scale::linear({0.0, 0.5}, 0, 900, 90).ticks()[1].label == "0.05");
-  CHECK(Scale::linear({-5.0, 0.0}, 0, 900, 200).ticks()[0].label == "\u22124");
+  y[54'300] = NAN;  // a gap beside the peak
+  const std::vector<std::size_t> rows = rows_to_keep(x, y);
+  CHECK(rows.size() <= 6'004);
+  CHECK(rows.front() == 0);
+  CHECK(rows.back() == x.size() - 1);
+  CHECK(std::is_sorted(rows.begin(), rows.end()));
+  CHECK(std::count(rows.begin(), rows.end(), 54'321U) == 1);
+  CHECK(rows_to_keep({}, {}).empty());
+  CHECK(rows_to_keep({1.0, 2.0}, {NAN, 3.0}).size() == 2);
 }
 
-TEST_CASE("a scale maps its range onto its pixels, linearly or logarithmically") {
-  const Scale linear = Scale::linear({10.0, 20.0}, 400.0, 100.0, 90.0);
-  CHECK(linear(10.0) == doctest::Approx(400.0));
-  CHECK(linear(15.0) == doctest::Approx(250.0));
-  CHECK(linear.clamped(99.0) == doctest::Approx(100.0));
-  const Scale logarithmic = Scale::logarithmic({0.1, 10.0}, 0.0, 200.0);
-  CHECK(logarithmic(1.0) == doctest::Approx(100.0));
-  CHECK(logarithmic.ticks().size() == 7);  // 0.1 0.2 0.5 1 2 5 10
+TEST_CASE("a curve's data are its values to eight digits, with null where a value is not finite") {
+  CurveChart chart;
+  chart.curves = {{"a </script>", {"--ink", 2.0, "8 3"}, {0.0, 1.0, 2.0}, {1.0 / 3.0, NAN, -INFINITY}}};
+  chart.spans = {{0.5, 1.5, "flat"}};
+  const json data = json::parse(chart_json(chart));
+  const json& curve = data.at("curves").at(0);
+  CHECK(std::abs(curve.at("y").at(0).get<double>() - 1.0 / 3.0) < 1e-8);
+  CHECK(curve.at("y").at(1).is_null());
+  CHECK(curve.at("y").at(2).is_null());
+  CHECK(curve.at("dash") == json{8.0, 3.0});
+  CHECK(data.at("spans").at(0).at("label") == "flat");
+  CHECK(data.at("y_range").is_null());
+  chart.y_range = {-1.0, 2.0};
+  CHECK(json::parse(chart_json(chart)).at("y_range") == json{-1.0, 2.0});
 }
 
-TEST_CASE("thinning keeps the ends, and the lowest and highest point of every pixel column") {
-  std::vector<Point> points;
-  for (int i = 0; i < 100'000; ++i)
-    points.push_back({i * 0.005, 100.0 * std::sin(i * 0.7) + (i == 54'321 ? 500.0 : 0.0)});
-  const std::vector<Point> kept = thinned(points);
-  CHECK(kept.size() <= 4 * 501);
-  CHECK(kept.front().x == points.front().x);
-  CHECK(kept.back().x == points.back().x);
-  double highest = 0.0;
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    highest = std::max(highest, kept[i].y);
-    if (i > 0) CHECK(kept[i].x >= kept[i - 1].x);
-  }
-  CHECK(highest > 400.0);
-  CHECK(thinned({}).empty());
-}
-
-TEST_CASE("simplifying keeps corners, and removes only points within the tolerance of the remaining line") {
-  std::vector<Point> corner;
-  for (int i = 0; i <= 100; ++i) corner.push_back({0.1 * i, 0.0});
-  for (int i = 1; i <= 100; ++i) corner.push_back({10.0, 0.1 * i});
-  REQUIRE(simplified(corner, 0.05).size() == 3);
-  CHECK(simplified(corner, 0.05)[1].x == doctest::Approx(10.0));
-  std::vector<Point> wave;
-  for (int i = 0; i <= 1000; ++i) wave.push_back({0.5 * i, 40.0 * std::sin(0.02 * i)});
-  const std::vector<Point> kept = simplified(wave, 0.2);
-  CHECK(kept.size() < 150);
-  std::size_t after = 1;
-  for (const Point& p : wave) {
-    while (kept[after].x < p.x) ++after;
-    const Point& a = kept[after - 1];
-    const Point& b = kept[after];
-    const double y = a.y + (b.y - a.y) * (p.x - a.x) / (b.x - a.x);
-    // With slopes up to 1.6, the vertical distance is less than twice the perpendicular one.
-    CHECK(std::abs(p.y - y) < 0.2 * 2.0);
-  }
-}
-
-TEST_CASE("charts stay well-formed with any values") {
+TEST_CASE("charts of any values are JSON that no name in it can break out of") {
   const double inf = std::numeric_limits<double>::infinity();
-  const std::vector<std::vector<double>> awkward{{},
-                                                 {NAN, NAN},
-                                                 {0.0},
-                                                 {5.0, 5.0, 5.0},
-                                                 {-1e-300, 1e-300},
-                                                 {-inf, 1.0, inf},
-                                                 {1e17, 1e17 + 16},
-                                                 {-1e308, 1e308},
-                                                 {1, NAN, 3}};
+  const std::vector<std::vector<double>> awkward{
+      {},         {NAN, NAN}, {0.0}, {5.0, 5.0, 5.0}, {-1e-300, 1e-300}, {-inf, 1.0, inf}, {-1e308, 1e308},
+      {1, NAN, 3}};
   for (const std::vector<double>& values : awkward) {
-    LineChart lines;
-    lines.series = {{"a <b>", {}, values, values}};
-    lines.bands = {{0.0, 1.0, "flat & even"}};
-    lines.id = "lines";
-    CHECK(is_well_formed(draw(lines).svg("title <&>")));
-    CHECK(is_well_formed(draw(HistogramChart{"x", "ms", {{"a", "#000", values}}}).svg("t")));
-    BoxPlot boxes{"x", "%", 2, {{"a", "#000", summarize(values)}, {"b", "#000", summarize({1.0, 2.0, 3.0})}}};
-    CHECK(is_well_formed(draw(boxes).svg("t")));
+    CurveChart lines;
+    lines.curves = {{"a <b> \xff", {}, values, values}};
+    CHECK(json::parse(chart_json(lines)).at("curves").size() == 1);
+    const BoxChart boxes{
+        "x", "%", 2, {{"a", "#000", summarize(values)}, {"b", "#000", summarize({1.0, 2.0, 3.0})}}};
+    CHECK(json::parse(chart_json(boxes)).at("rows").size() == 2);
   }
+  CurveChart named;
+  named.y_label = "</script><b>";
+  const std::string html = chart_figure(chart_json(named), "title <&>", "caption <&>");
+  CHECK(is_well_formed(html));
+  CHECK(html.find("<b>") == std::string::npos);
 }
 
-TEST_CASE("the box plot is logarithmic only when the values span a wide range") {
-  const auto has_tick = [](const std::vector<double>& a, const std::vector<double>& b,
-                           const std::string& label) {
-    const BoxPlot plot{"x", "%", 2, {{"a", "#000", summarize(a)}, {"b", "#000", summarize(b)}}};
-    return draw(plot).svg("t").find(">" + label + "</text>") != std::string::npos;
+TEST_CASE("a box plot names median, quartiles and whiskers of each row, and rows without data") {
+  const BoxChart chart{
+      "x", "%", 2, {{"a", "#123456", summarize({1.0, 2.0, 3.0, 4.0, 5.0})}, {"b", "#000", {}}}};
+  const json rows = json::parse(chart_json(chart)).at("rows");
+  CHECK(rows.at(0).at("median") == 3.0);
+  CHECK(rows.at(0).at("q25") == 2.0);
+  CHECK(rows.at(0).at("q75") == 4.0);
+  CHECK(rows.at(0).at("p05") == doctest::Approx(1.2));
+  CHECK(rows.at(0).at("p95") == doctest::Approx(4.8));
+  CHECK(rows.at(1).at("median").is_null());
+}
+
+TEST_CASE(
+    "the box plot is logarithmic only when the values span a wide range, and its axis holds every box") {
+  const auto axis = [](const std::vector<double>& a, const std::vector<double>& b) {
+    return axis_of(BoxChart{"x", "%", 2, {{"a", "#000", summarize(a)}, {"b", "#000", summarize(b)}}});
   };
-  CHECK(has_tick({1.0, 1.1, 1.2}, {2.0, 2.5, 3.0}, "0.0"));             // from zero
-  CHECK_FALSE(has_tick({0.01, 0.011, 0.012}, {2.0, 2.5, 3.0}, "0.0"));  // ratios
-  CHECK(has_tick({0.01, 0.011, 0.012}, {2.0, 2.5, 3.0}, "0.1"));
-}
-
-TEST_CASE("a chart with logarithmic axes spaces decades evenly") {
-  LineChart chart;
-  chart.is_logarithmic = true;
-  chart.id = "log";
-  chart.series.push_back({"1/x", {}, {0.1, 1.0, 10.0, 100.0}, {10.0, 1.0, 0.1, 0.01}});
-  const std::string svg = draw(chart).svg("a power law");
-  CHECK(is_well_formed(svg));
-  // A power law is a straight line here: only its ends remain.
-  const std::size_t points = svg.find("points=\"");
-  REQUIRE(points != std::string::npos);
-  const std::string line = svg.substr(points + 8, svg.find('"', points + 8) - points - 8);
-  CHECK(std::count(line.begin(), line.end(), ',') == 2);
+  const BoxAxis near = axis({1.0, 1.1, 1.2}, {2.0, 2.5, 3.0});
+  CHECK_FALSE(near.is_logarithmic);
+  CHECK(near.low == 0.0);
+  CHECK(near.high > 2.95);
+  const BoxAxis wide = axis({0.01, 0.011, 0.012}, {2.0, 2.5, 3.0});
+  CHECK(wide.is_logarithmic);
+  CHECK(wide.low > 0.0);
+  CHECK(wide.low < 0.0105);
+  CHECK(wide.high > 2.95);
 }
 
 }  // namespace isobar::test::test_charts

@@ -81,7 +81,18 @@ TEST_CASE("an error counts by its magnitude, and figures that a side lacks are l
     CHECK(std::isfinite(figure.difference.mean));
   }
   CHECK(found);
-  CHECK(comparison_table(figures).find("one recording") != std::string::npos);
+}
+
+TEST_CASE("the table of one recording says which side is better there, the summary that it is no proof") {
+  const auto of_one = compare_figures({recording(0.10, 0.05)});
+  CHECK(comparison_table(of_one).find("better here") != std::string::npos);
+  CHECK(comparison_summary(of_one).find("One recording says nothing of scatter") != std::string::npos);
+  CHECK(comparison_table(compare_figures({recording(0.05, 0.10)})).find("worse here") != std::string::npos);
+  const auto equal = compare_figures({recording(0.10, 0.10), recording(0.20, 0.20)});
+  CHECK(comparison_table(equal).find("the same") != std::string::npos);
+  const std::string summary = comparison_summary(equal);
+  CHECK(summary.starts_with("B is better in 0 of " + std::to_string(equal.size()) +
+                            " figures, worse in 0, the same in " + std::to_string(equal.size())));
 }
 
 }  // namespace isobar::test::test_comparison

@@ -16,6 +16,7 @@
 #include "tools/report/figures_json.hpp"
 #include "tools/report/provenance.hpp"
 #include "tools/report/report.hpp"
+#include "tools/report/report_data.hpp"
 
 namespace isobar::test::test_report {
 
@@ -43,12 +44,6 @@ std::string markup_of(const std::string& html) {
   return body;
 }
 
-/// Content of the element with this id.
-std::string element_of(const std::string& html, const std::string& id) {
-  const std::size_t begin = html.find('>', html.find("id=\"" + id + "\"")) + 1;
-  return html.substr(begin, html.find("</script>", begin) - begin);
-}
-
 }  // namespace
 
 TEST_CASE("the report is one well-formed file with every section that loads nothing") {
@@ -62,12 +57,10 @@ TEST_CASE("the report is one well-formed file with every section that loads noth
   CHECK_FALSE(contains(html, "<link"));
   CHECK_FALSE(contains(html, "@import"));
   CHECK_FALSE(contains(html, "href=\"http"));
-  for (const char* section : {"Relative error on z", "Height along the way", "Height error along the way",
-                              "The map from the side", "The map from above", "Time per scan", "All figures",
-                              "Height of each floor", "Definitions", "Altimeter"}) {
+  for (const char* section : {"Relative error on z", "Time per scan", "All figures", "Height of each floor",
+                              "Definitions", "Altimeter"}) {
     CHECK_MESSAGE(contains(html, section), section);
   }
-  CHECK(is_well_formed(render_overview_svg(input)));
 }
 
 TEST_CASE(
@@ -94,7 +87,7 @@ TEST_CASE(
   CHECK(contains(html, "0.37 m at 40.0 s"));
   CHECK(contains(html, "robot drifts since 50.0 s until 69.0 s, faulty since 70.0 s until 99.0 s"));
   CHECK(contains(html, "17.0 mm per (m/s)², 1 sigma 1.2."));
-  CHECK(contains(html, "<polygon"));
+  CHECK(contains(html, "\"areas\":[{"));
   CHECK(is_well_formed(markup_of(html)));
 }
 
@@ -115,15 +108,15 @@ TEST_CASE("trajectories without segments, status and map give a report that name
   const std::string html = render_report(input);
   CHECK(contains(html, "No flat segments"));
   CHECK_FALSE(contains(html, "Time per scan"));
-  CHECK_FALSE(contains(html, "The map from the side"));
+  CHECK_FALSE(contains(html, "isobar-map-0\""));
   CHECK(is_well_formed(markup_of(html)));
 }
 
 TEST_CASE("the data of the report's curves are those of the evaluation, along ascending distances") {
   const TemporaryFolder folder;
   const evaluation::EvaluatedRun run = two_methods(folder.path());
-  const auto json =
-      nlohmann::json::parse(element_of(render_report({"</script><b>", "", "", run}), "isobar-report"));
+  const auto json = nlohmann::json::parse(report_data_json(run));
+  CHECK(json.at("altimeter").at("z_m").size() > 10);
   REQUIRE(json.at("methods").size() == run.methods.size());
   for (std::size_t i = 0; i < run.methods.size(); ++i) {
     const auto& method = json.at("methods").at(i);

@@ -23,15 +23,17 @@ TEST_CASE("no text in JSON can end the script element that holds it") {
 }
 
 TEST_CASE("the embedded parts unpack to a script and a style; damaged bytes are refused") {
-  const auto parts = inline_parts(InlinePage::kReport);
-  if (!parts) {
+  if (!inline_parts(InlinePage::kReport)) {
     MESSAGE("skipped: built without npm");
     return;
   }
-  CHECK(parts->script.find("isobar-report") != std::string::npos);
-  // It stands in a script element of its own.
-  CHECK(parts->script.find("</script") == std::string::npos);
-  CHECK(parts->style.find(".distance-chart") != std::string::npos);
+  for (const InlinePage page : {InlinePage::kRun, InlinePage::kCharts, InlinePage::kReport}) {
+    const auto parts = inline_parts(page);
+    CHECK(parts->script.find(page == InlinePage::kRun ? "isobar-view" : "isobar-chart") != std::string::npos);
+    // It stands in a script element of its own.
+    CHECK(parts->script.find("</script") == std::string::npos);
+    CHECK(parts->style.find(page == InlinePage::kRun ? ".map" : ".curve-chart") != std::string::npos);
+  }
   CHECK_THROWS_AS((void)unpacked("no gzip"), ServiceError);
 }
 

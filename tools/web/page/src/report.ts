@@ -1,50 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of a report that a reader moves: curves along the way with methods to switch on and off, and the map of one
-// method in three dimensions, floor by floor. The rest of the report needs no script.
+// The head of a comparison of runs: curves along the way with methods to switch on and off, and the map of one method in
+// three dimensions, floor by floor. Its other charts are those of every report.
 import './report.css';
+import type { Curve } from './chart_data';
+import './charts';
+import { CurveChart } from './curve_chart';
 import { button, element } from './dom';
-import { css_colour, DistanceChart, type Curve } from './distance_chart';
 import { FloorSlicer } from './floor_slicer';
+import { legend_chips } from './legend';
 import { decode_map } from './map_chunks';
 import { MapView } from './map_view';
-import type { Method, ReportData } from './report_data';
+import type { Line, ReportData } from './report_data';
 
 function data_of_page(): ReportData {
   return JSON.parse(document.getElementById('isobar-report')?.textContent ?? '') as ReportData;
 }
 
-function curve_of(method: Method, value_m: number[]): Curve {
-  return { label: method.name, colour: method.colour, dash: method.dash, width: 1.8, distance_m: method.distance_m, value_m };
+const kWay = { kind: 'curves', x_label: 'travelled distance [m]', x_unit: 'm', y_unit: 'm', y_decimals: 3, areas: [], dots: [], x_range: null, y_range: null, logarithmic: false } as const;
+
+function curve_of(line: Line, x: number[], y: (number | null)[]): Curve {
+  return { name: line.name, colour: line.colour, dash: line.dash, width: line.width, x, y };
 }
 
-/** A chip for each method; a click shows or hides it, with Shift or Ctrl it alone is shown. */
-function method_chips(methods: Method[], show: (index: number, is_shown: boolean) => void): HTMLElement {
-  const shown = methods.map(() => true);
-  const chips = methods.map((method, index) => {
-    const chip = button('', 'chip', () => {});
-    const swatch = element('i', 'swatch');
-    swatch.style.background = css_colour(method.colour);
-    chip.append(swatch, method.name);
-    if (method.verdict !== 'ok') {
-      chip.append(element('small', '', method.verdict));
-      chip.title = method.reason;
-    }
-    chip.addEventListener('click', (event) => {
-      if (event.shiftKey || event.ctrlKey) shown.fill(false);
-      shown[index] = !shown[index];
-      apply();
-    });
-    return chip;
-  });
-  const apply = () => chips.forEach((chip, i) => {
-    chip.setAttribute('aria-pressed', String(shown[i]));
-    show(i, shown[i]);
-  });
-  apply();
-  const group = element('div', 'chips', ...chips);
-  group.setAttribute('role', 'group');
-  group.setAttribute('aria-label', 'Methods');
-  return group;
+/** A chart along the way, with the flat segments shaded. */
+function way_chart(data: ReportData, y_label: string, curves: Curve[]): CurveChart {
+  const spans = data.flat.map(([from, to]) => ({ from, to, label: '' }));
+  return new CurveChart({ ...kWay, areas: [], dots: [], y_label, curves, spans }, 'way');
 }
 
 function figure(title: string, body: HTMLElement, caption: string): HTMLElement {
@@ -52,19 +33,18 @@ function figure(title: string, body: HTMLElement, caption: string): HTMLElement 
 }
 
 function curves(data: ReportData, target: HTMLElement): void {
-  const errors = new DistanceChart(data.methods.map((m) => curve_of(m, m.error_m)), 'height error m', data.flat);
-  const heights = new DistanceChart(
-    [...data.methods.map((m) => curve_of(m, m.z_m)),
-      { label: 'reference', colour: '--muted', dash: [6, 4], width: 1.4, distance_m: data.reference.distance_m, value_m: data.reference.z_m }],
-    'height m', data.flat);
+  const errors = way_chart(data, 'height error [m]', data.methods.map((m) => curve_of(m, m.distance_m, m.error_m)));
+  const others = data.altimeter ? [data.altimeter, data.reference] : [data.reference];
+  const heights = way_chart(data, 'height [m]', [...data.methods, ...others].map((m) => curve_of(m, m.distance_m, m.z_m)));
   heights.root.classList.add('low');
+  const entries = data.methods.map((m) => ({ ...m, remark: m.verdict === 'ok' ? '' : m.verdict }));
   const shading = data.flat.length > 0 ? ' Shaded: flat segments.' : '';
   target.append(
-    figure('Height error along the way', element('div', '', method_chips(data.methods, (index, is_shown) => {
+    figure('Height error along the way', element('div', '', legend_chips(entries, (index, is_shown) => {
       errors.show(index, is_shown);
       heights.show(index, is_shown);
     }), errors.root), `Estimate minus reference; all start poses coincide.${shading} Drag to zoom, double click for all.`),
-    figure('Height along the way', heights.root, 'Dashed: the reference.'));
+    figure('Height along the way', heights.root, data.altimeter ? 'Dashed: the reference; dotted: the altimeter.' : 'Dashed: the reference.'));
 }
 
 /** Calls back once, when a part comes near the window or is to be printed. */
@@ -130,7 +110,7 @@ function map_of(data: ReportData, target: HTMLElement): void {
 const target = document.getElementById('isobar-report-view');
 if (target) {
   const data = data_of_page();
+  target.replaceChildren();
   curves(data, target);
   map_of(data, target);
-  document.body.classList.add('has-script');
 }

@@ -11,10 +11,14 @@ export interface Way {
   z_m: number[];
 }
 
-export interface Method extends Way {
+export interface Line extends Way {
   name: string;
   colour: string;
+  width: number;
   dash: number[];
+}
+
+export interface Method extends Line {
   /** Estimate minus reference. */
   error_m: number[];
   /** "ok", "incomplete" or "LOST", and why. */
@@ -27,7 +31,9 @@ export interface ReportData {
   schema: 1;
   /** Index of the method that the report is about. */
   main: number;
-  reference: Way;
+  reference: Line;
+  /** Its height where a method has one; only distance and z. */
+  altimeter: Line | null;
   methods: Method[];
   /** Distances between which the floor is flat. */
   flat: [number, number][];

@@ -5,7 +5,8 @@
 #include <string>
 
 #include "core/calibration/calibration.hpp"
-#include "tools/report/svg.hpp"
+#include "tools/report/box_chart.hpp"
+#include "tools/report/curve_chart.hpp"
 
 namespace isobar::report {
 
@@ -14,10 +15,10 @@ namespace isobar::report {
 std::string calibration_row_name(CompensationModel model);
 
 /// The paper's box plot: |residual| by model.
-Picture residual_boxes(const Calibration& calibration);
+BoxChart residual_boxes(const Calibration& calibration);
 
 /// Residuals against the sensor's temperature, with an offset alone and with the model `chosen`.
-Picture residual_against_temperature(const Calibration& calibration, CompensationModel chosen,
-                                     std::span<const CalibrationRecording> recordings);
+CurveChart residual_against_temperature(const Calibration& calibration, CompensationModel chosen,
+                                        std::span<const CalibrationRecording> recordings);
 
 }  // namespace isobar::report

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/report/calibration_pictures.hpp"
+#include "tools/report/calibration_charts.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <vector>
 
 #include "core/statistics/distribution.hpp"
-#include "tools/report/box_plot.hpp"
-#include "tools/report/scale.hpp"
-
 namespace isobar::report {
 
 namespace {
@@ -24,10 +21,15 @@ constexpr std::array<const char*, 7> kColours = {"#6b7280", "#9ca3af", "#d55e00"
 
 const char* colour_of(CompensationModel model) { return kColours[static_cast<std::size_t>(model)]; }
 
+struct Point {
+  double temperature_c = 0.0;
+  double residual_pa = 0.0;
+};
+
 struct Cloud {
   std::string name;
   std::string colour;
-  std::vector<Point> points;  ///< x: temperature [degC], y: residual [Pa]; ascending x
+  std::vector<Point> points;  ///< ascending temperature
 };
 
 Cloud cloud_of(const ModelResult& result, std::span<const CalibrationRecording> recordings) {
@@ -39,7 +41,7 @@ Cloud cloud_of(const ModelResult& result, std::span<const CalibrationRecording> 
     }
   }
   std::stable_sort(cloud.points.begin(), cloud.points.end(),
-                   [](const Point& a, const Point& b) { return a.x < b.x; });
+                   [](const Point& a, const Point& b) { return a.temperature_c < b.temperature_c; });
   return cloud;
 }
 
@@ -52,37 +54,47 @@ std::vector<Point> medians_of(const Cloud& cloud) {
     const std::size_t end = count * (g + 1) / kGroups;
     if (begin == end) continue;
     std::vector<double> residuals;
-    for (std::size_t k = begin; k < end; ++k) residuals.push_back(cloud.points[k].y);
+    for (std::size_t k = begin; k < end; ++k) residuals.push_back(cloud.points[k].residual_pa);
     std::sort(residuals.begin(), residuals.end());
-    medians.push_back({cloud.points[(begin + end) / 2].x, quantile(residuals, 0.5)});
+    medians.push_back({cloud.points[(begin + end) / 2].temperature_c, quantile(residuals, 0.5)});
   }
   return medians;
 }
 
+/// Widened to at least `least` around its middle, then by `share` of its width at both ends.
+std::array<double, 2> padded(double low, double high, double share, double least) {
+  const double width = std::max(high - low, least);
+  const double middle = 0.5 * (low + high);
+  return {middle - (0.5 + share) * width, middle + (0.5 + share) * width};
+}
+
 /// Range of the residuals from the 0.5th to the 99.5th percentile: a few spikes must not flatten the picture.
-Range residual_range(const std::vector<Cloud>& clouds) {
+std::array<double, 2> residual_range(const std::vector<Cloud>& clouds) {
   std::vector<double> residuals;
   for (const Cloud& cloud : clouds) {
-    for (const Point& point : cloud.points) residuals.push_back(point.y);
+    for (const Point& point : cloud.points) residuals.push_back(point.residual_pa);
   }
   std::sort(residuals.begin(), residuals.end());
-  return padded({quantile(residuals, 0.005), quantile(residuals, 0.995)}, 0.06, 0.1);
+  return padded(quantile(residuals, 0.005), quantile(residuals, 0.995), 0.06, 0.1);
 }
 
-void draw_points(Picture& picture, const Cloud& cloud, const Axes& axes) {
+Dots dots_of(const Cloud& cloud) {
+  Dots dots{cloud.colour, {}, {}};
   const std::size_t stride = cloud.points.size() / kMaxDrawnPoints + 1;
   for (std::size_t k = 0; k < cloud.points.size(); k += stride) {
-    const Point& point = cloud.points[k];
-    picture.circle({axes.x(point.x), axes.y(point.y)}, 1.6, cloud.colour, {cloud.colour, 0.0, "", 0.0});
+    dots.x.push_back(cloud.points[k].temperature_c);
+    dots.y.push_back(cloud.points[k].residual_pa);
   }
+  return dots;
 }
 
-/// A line through the medians with a white outline, which keeps it visible over the points.
-void draw_medians(Picture& picture, const Cloud& cloud, const Axes& axes) {
-  std::vector<Point> line;
-  for (const Point& median : medians_of(cloud)) line.push_back({axes.x(median.x), axes.y(median.y)});
-  picture.polyline(line, {"#ffffff", 5.0});
-  picture.polyline(line, {cloud.colour, kMedianLinePx});
+Curve median_curve(const Cloud& cloud) {
+  Curve curve{cloud.name, {cloud.colour, kMedianLinePx}, {}, {}};
+  for (const Point& median : medians_of(cloud)) {
+    curve.x.push_back(median.temperature_c);
+    curve.y.push_back(median.residual_pa);
+  }
+  return curve;
 }
 
 }  // namespace
@@ -93,39 +105,33 @@ std::string calibration_row_name(CompensationModel model) {
   return std::string(kCompensationModelNames.name(model));
 }
 
-Picture residual_boxes(const Calibration& calibration) {
-  BoxPlot plot;
-  plot.x_label = "|reference − compensated| [Pa]";
-  plot.unit = "Pa";
+BoxChart residual_boxes(const Calibration& calibration) {
+  BoxChart chart;
+  chart.x_label = "|reference − compensated| [Pa]";
+  chart.unit = "Pa";
   for (const ModelResult& result : calibration.models) {
     std::vector<double> absolutes;
     for (const double r : result.residuals_pa) absolutes.push_back(std::abs(r));
-    plot.rows.push_back(
+    chart.rows.push_back(
         {calibration_row_name(result.model), colour_of(result.model), summarize(std::move(absolutes))});
   }
-  return draw(plot);
+  return chart;
 }
 
-Picture residual_against_temperature(const Calibration& calibration, CompensationModel chosen,
-                                     std::span<const CalibrationRecording> recordings) {
+CurveChart residual_against_temperature(const Calibration& calibration, CompensationModel chosen,
+                                        std::span<const CalibrationRecording> recordings) {
   std::vector<Cloud> clouds{cloud_of(calibration.model(CompensationModel::kOffset), recordings)};
   if (chosen > CompensationModel::kOffset) clouds.push_back(cloud_of(calibration.model(chosen), recordings));
-  Picture picture(1040.0, 420.0);
-  std::vector<LegendEntry> legend;
-  legend.reserve(clouds.size());
-  for (const Cloud& cloud : clouds) legend.push_back({cloud.name, {cloud.colour, kMedianLinePx}});
-  const Box frame = frame_below_legend(picture, legend, 8.0);
-  const Range temperatures = padded({calibration.range.lowest_c, calibration.range.highest_c}, 0.02, 1.0);
-  const Axes axes{frame, Scale::linear(temperatures, frame.x, frame.right(), kXTickPx),
-                  Scale::linear(residual_range(clouds), frame.bottom(), frame.y, kYTickPx),
-                  "temperature of the sensor [degC]", "reference − compensated [Pa]"};
-  draw_axes(picture, axes);
-  picture.begin_clip(frame, "temperature");
-  picture.line({frame.x, axes.y(0.0)}, {frame.right(), axes.y(0.0)}, {"#6b7280", 1.0});
-  for (const Cloud& cloud : clouds) draw_points(picture, cloud, axes);
-  for (const Cloud& cloud : clouds) draw_medians(picture, cloud, axes);
-  picture.end_clip();
-  return picture;
+  CurveChart chart;
+  chart.x_label = "temperature of the sensor [degC]";
+  chart.y_label = "reference − compensated [Pa]";
+  chart.x_unit = "degC";
+  chart.y_unit = "Pa";
+  chart.x_range = padded(calibration.range.lowest_c, calibration.range.highest_c, 0.02, 1.0);
+  chart.y_range = residual_range(clouds);
+  for (const Cloud& cloud : clouds) chart.dots.push_back(dots_of(cloud));
+  for (const Cloud& cloud : clouds) chart.curves.push_back(median_curve(cloud));
+  return chart;
 }
 
 }  // namespace isobar::report
