@@ -95,8 +95,9 @@ std::string poses_sentence(const RunFolder& run, double& registered_share) {
     std::snprintf(text.data(), text.size(), "%zu poses: too few scans to register one, they begin the map",
                   run.trajectory.poses.size());
   } else {
-    std::snprintf(text.data(), text.size(), "%zu poses in %.0f s, %.1f %% of them by lidar",
-                  run.trajectory.poses.size(), run.trajectory.duration_s(), 100.0 * registered_share);
+    std::snprintf(text.data(), text.size(), "%zu poses in %.0f s, %.1f %% of them by lidar%s",
+                  run.trajectory.poses.size(), run.trajectory.duration_s(), 100.0 * registered_share,
+                  registered_share < 1.0 ? ", the others by motion alone" : "");
   }
   return text.data();
 }

@@ -48,7 +48,7 @@ export async function check_basics(page, what, height = 900) {
     await page.setViewport({ width, height });
     for (const theme of ['light', 'dark']) {
       await page.emulateMediaFeatures([{ name: 'prefers-color-scheme', value: theme }]);
-      await wait(250);
+      await wait(120);
       const wide = await page.evaluate(() => document.documentElement.scrollWidth);
       if (wide > width) found.push(`${width} px ${theme}: ${wide} px wide`);
       found.push(...(await violations(page, theme)).map((text) => `${width} px ${theme}: ${text}`));

@@ -154,7 +154,10 @@ export class Chart {
   private show_values(plot: uPlot): void {
     const last = plot.data[0].length - 1;
     if (last < 0 || (plot.cursor.left ?? -1) >= 0) return;
-    plot.setLegend({ idx: this.marked_s === null ? last : plot.valToIdx(this.marked_s) }, false);
+    let row = this.marked_s === null ? last : plot.valToIdx(this.marked_s);
+    // The newest that is not after it, as everywhere on the page.
+    if (row > 0 && this.marked_s !== null && plot.data[0][row] > this.marked_s) --row;
+    plot.setLegend({ idx: row }, false);
   }
 
   /** Moves the line over the chart, which is not drawn anew for it. */

@@ -54,7 +54,7 @@ export class FrameBudget {
 
   private learn(points: number, took_ms: number): void {
     if (took_ms > kSlowMs && points > 0) this.allowed = Math.max(kLeastPoints, Math.min(points, this.allowed) * Math.max(0.3, kWantedMs / took_ms));
-    // A frame with fewer points than it might have tells nothing of more.
-    else if (took_ms < kQuickMs && points >= 0.9 * this.allowed) this.allowed = Math.min(kMostPoints, this.allowed * (took_ms < kQuickMs / 2 ? 2 : 1.2));
+    // A frame with far fewer points than it might have tells nothing of more.
+    else if (took_ms < kQuickMs && points >= 0.5 * this.allowed) this.allowed = Math.min(kMostPoints, this.allowed * (took_ms < kQuickMs / 2 ? 2 : 1.2));
   }
 }

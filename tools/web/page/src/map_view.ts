@@ -19,6 +19,8 @@ const kDarkQuery = '(prefers-color-scheme: dark)';
 const kMostPixelRatio = 1.5;
 /** A map that grows moves the view only where it would move by more than this share of its distance. */
 const kGentleShare = 0.04;
+/** Of the points that a frame may draw, into a picture that is not shown yet. */
+const kUnseenShare = 0.6;
 
 /** Leaves out single places far beyond all others, as a return through a window: the map would be small in the picture. */
 function without_strays(places: THREE.Vector3[]): THREE.Vector3[] {
@@ -284,7 +286,9 @@ export class MapView {
   private draw_points(): number {
     const { picture } = this;
     const total = Math.max(1, this.points.count);
-    const to = Math.min(1, picture.share + this.budget.points / total);
+    // What grows unseen leaves time to the rest of the page, such as charts that follow the robot.
+    const points = (picture.is_shown ? 1 : kUnseenShare) * this.budget.points;
+    const to = Math.min(1, picture.share + points / total);
     if (picture.share === 0) this.shading.begin();
     this.points.set_part(picture.share, to, picture.is_shown);
     this.shading.draw(this.scene, this.camera);
