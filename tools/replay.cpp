@@ -105,11 +105,11 @@ void print_written(const std::filesystem::path& out) {
 /// The scans by what became of them.
 void print_scans(const ReplaySummary& summary) {
   const std::uint64_t began = summary.poses - summary.registered - summary.from_prior;
-  std::printf("%llu scans: %llu began the map, %llu poses registered, %llu from the prior; %llu map points\n",
-              static_cast<unsigned long long>(summary.scans), static_cast<unsigned long long>(began),
-              static_cast<unsigned long long>(summary.registered),
-              static_cast<unsigned long long>(summary.from_prior),
-              static_cast<unsigned long long>(summary.map_points));
+  std::printf(
+      "%llu scans: %llu poses registered, %llu from the prior, %llu that begin the map; %llu map points\n",
+      static_cast<unsigned long long>(summary.scans), static_cast<unsigned long long>(summary.registered),
+      static_cast<unsigned long long>(summary.from_prior), static_cast<unsigned long long>(began),
+      static_cast<unsigned long long>(summary.map_points));
   std::printf("%.1f s of recording in %.1f s, %.1f times real time\n", summary.recorded_s, summary.wall_s,
               summary.wall_s > 0.0 ? summary.recorded_s / summary.wall_s : 0.0);
 }

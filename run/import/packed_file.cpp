@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "core/errors.hpp"
@@ -67,8 +68,8 @@ class UnpackedStream : public MessageStream {
  public:
   explicit UnpackedStream(const std::filesystem::path& file)
       : packed_(file.string()), unpacked_(scratch_.path() / file.stem()) {
-    const std::string early = write();
-    if (!early.empty()) damage_.add([&] { return early; });
+    std::string early = write();
+    if (!early.empty()) damage_.add([&] { return std::move(early); });
     stream_ = open_unpacked();
   }
 
@@ -93,7 +94,7 @@ class UnpackedStream : public MessageStream {
                       std::strerror(errno) + "; TMPDIR names a folder with room");
     };
     if (to == nullptr) refuse();
-    const std::string early = unpack(packed_, [&](const char* bytes, std::size_t size) {
+    std::string early = unpack(packed_, [&](const char* bytes, std::size_t size) {
       if (std::fwrite(bytes, 1, size, to.get()) != size) refuse();
       return true;
     });
