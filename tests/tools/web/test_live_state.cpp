@@ -66,17 +66,21 @@ TEST_CASE("an equal event is sent once") {
 TEST_CASE("a waiting viewer is woken by news and by the end") {
   LiveState live;
   Cursor cursor;
+  std::string events;
   std::thread writer([&] {
     std::this_thread::sleep_for(20ms);
     live.put(Topic::kMap, "{}");
+  });
+  CHECK(live.wait_for_news(cursor, 10s, events));
+  writer.join();
+  // A stop that came before the news were taken would take their place.
+  std::thread ender([&] {
     std::this_thread::sleep_for(20ms);
     live.stop();
   });
-  std::string events;
-  CHECK(live.wait_for_news(cursor, 10s, events));
   CHECK(!live.wait_for_news(cursor, 10s, events));
   CHECK(live.stopped());
-  writer.join();
+  ender.join();
 }
 
 TEST_CASE("the history of a long run is bounded, begins with the run and ends with it, evenly spaced") {
