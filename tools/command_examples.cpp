@@ -64,8 +64,10 @@ void add_examples(CLI::App& app) {
   const std::string path = command_path(app);
   for (const CommandExample& example : kExamples) {
     if (path != example.command || !app.get_footer().empty()) continue;
-    const std::string words = *example.words == '\0' ? "" : " " + std::string(example.words);
-    app.footer("Example:\n\n  " + path + words);
+    std::string footer = "Example:\n\n  ";
+    footer += path;
+    if (*example.words != '\0') footer.append(" ").append(example.words);
+    app.footer(footer);
   }
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) add_examples(*command);
 }
