@@ -31,6 +31,7 @@ constexpr std::array kColumns{
     Column{"ATE rms", "m", 3, [](const MethodFigures& f) { return f.ate_rms_m; }},
     Column{"dz end", "m", 3, [](const MethodFigures& f) { return f.final_height_error_m; }},
 };
+using Json = nlohmann::ordered_json;
 using Sizes = std::array<double, kColumns.size()>;  // magnitudes, one a column; NaN: unknown
 
 // "Never worse than the best": within a tenth of it.
@@ -142,7 +143,6 @@ std::string experiment_table(const std::vector<ExperimentResult>& results) {
 }
 
 std::string experiment_json(const std::vector<ExperimentResult>& results, const std::string& command) {
-  using Json = nlohmann::ordered_json;
   Json json{{"command", command}, {"recordings", Json::array()}};
   for (const ExperimentResult& result : results) {
     Json one{{"name", result.recording}};
