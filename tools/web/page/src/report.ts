@@ -47,7 +47,10 @@ function curves(data: ReportData, target: HTMLElement): void {
     figure('Height along the way', heights.root, data.altimeter ? 'Dashed: the reference; dotted: the altimeter.' : 'Dashed: the reference.'));
 }
 
-/** Calls back once, when a part comes near the window or is to be printed. */
+/** Text and curves have been painted and read by then [ms]. */
+const kLaterMs = 1000;
+
+/** Calls back once: when a part comes near the window or is to be printed, or later in any case. */
 function when_near(part: HTMLElement, callback: () => void): void {
   let is_done = false;
   const once = () => {
@@ -63,9 +66,10 @@ function when_near(part: HTMLElement, callback: () => void): void {
   }, { rootMargin: '600px' });
   watcher.observe(part);
   addEventListener('beforeprint', once);
+  setTimeout(once, kLaterMs);
 }
 
-/** The place of the map; what fills it, and takes a second on a weak machine, begins when a reader comes near. */
+/** The place of the map; what fills it, and takes a second on a weak machine, begins after text and curves. */
 function map_of(data: ReportData, target: HTMLElement): void {
   const indices = data.methods.map((_, index) => index).filter((index) => data.methods[index].has_map);
   if (indices.length === 0) return;
