@@ -74,7 +74,7 @@ try {
   for (const [name, url] of [['report of a run', `file://${run}`], ['page of a run', url_of_run]]) {
     const single = await open(url);
     await single.page.waitForSelector('.map-view canvas', { timeout: 10_000 });
-    await single.page.waitForFunction(() => /\d points/.test(document.body.innerText), { timeout: 10_000 });
+    await single.page.waitForFunction(() => /\d[ kM]* points/.test(document.body.innerText), { timeout: 10_000 });
     await check(name, single);
   }
 
