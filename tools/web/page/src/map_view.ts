@@ -9,6 +9,7 @@ import { element, on_theme_change, style_value } from './dom';
 import type { MapPiece } from './map_chunks';
 import { MapPoints } from './map_points';
 import { FrameBudget } from './frame_budget';
+import { without_strays } from './strays';
 import { PathLine, RobotMarker, type Line3 } from './map_tracks';
 
 const kFieldOfViewDeg = 50;
@@ -21,15 +22,6 @@ const kMostPixelRatio = 1.5;
 const kGentleShare = 0.04;
 /** Of the points that a frame may draw, into a picture that is not shown yet. */
 const kUnseenShare = 0.6;
-
-/** Leaves out single places far beyond all others, as a return through a window: the map would be small in the picture. */
-function without_strays(places: THREE.Vector3[]): THREE.Vector3[] {
-  if (places.length === 0) return places;
-  const part = (values: number[], share: number) => values.sort((a, b) => a - b)[Math.round(share * (values.length - 1))];
-  const centre = new THREE.Vector3(...(['x', 'y', 'z'] as const).map((axis) => part(places.map((place) => place[axis]), 0.5)));
-  const farthest = 1.5 * part(places.map((place) => place.distanceTo(centre)), 0.98);
-  return places.filter((place) => place.distanceTo(centre) <= farthest);
-}
 
 export class MapView {
   readonly root = element('div', 'map-view');
