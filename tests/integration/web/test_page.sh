@@ -15,13 +15,13 @@ finish() { for pid in "${pids[@]}"; do kill -9 "$pid" 2>/dev/null || true; done;
 trap finish EXIT
 fail() { echo "FAILED: $*"; for log in "$work"/*.log; do echo "--- $log"; tail -n 20 "$log"; done; exit 1; }
 
-"$isobar" simulate stairs-demo --seed 5 --short --stop-after 7 --out "$work/recording" >"$work/simulate.log" 2>&1
+"$isobar" simulate stairs-demo --seed 5 --short --stop-after 30 --out "$work/recording" >"$work/simulate.log" 2>&1
 "$isobar" config show --sensors-of "$work/recording" >"$work/isobar.toml"
 echo 'a-token-of-this-test' >"$work/token"
 chmod 600 "$work/token"
 "$isobar" web --port 18080 --token-file "$work/token" --viewers 3 >"$work/web.log" 2>&1 &
 pids+=("$!")
-# What the page's test asks for, one word a line: start, play, kill; end, when it has ended.
+# What the page's test asks for, one word a line: start, play, unplug, kill; end, when it has ended.
 mkfifo "$work/orders"
 exec 4<>"$work/orders"
 start() {
@@ -41,7 +41,8 @@ pids+=("$page")
 while read -r -u 4 order; do
   case $order in
     start) start ;;
-    play) "$isobar" play "$work/recording" >"$work/play.log" 2>&1 & pids+=("$!") ;;
+    play) "$isobar" play "$work/recording" >"$work/play.log" 2>&1 & played=$! pids+=("$!") ;;
+    unplug) kill "$played" ;;
     kill) kill -9 "$daemon" ;;
     end) break ;;
   esac

@@ -47,7 +47,10 @@ export class MapView {
   private readonly budget: FrameBudget;
   /** The picture of the points: how much of it is drawn, 0 … 1; shown at once, thinned, or when it is whole; outdated. */
   private picture = { share: 1, is_shown: true, is_old: false };
-  private waiting = false;
+  private waiting = 0;  // number of the frame that was asked for; 0: none
+  /** All pieces of the first map have come; it is drawn without a wait for the frame before. */
+  private is_whole = false;
+  private is_urgent = false;
   private follows = false;
   frames = 0;
 
@@ -91,11 +94,15 @@ export class MapView {
       this.cut();
     }
     if (!this.touched && !piece.more) this.fit_places(without_strays([...this.points.samples()]), false, true);
-    this.draw_anew(is_first);
+    const completes = !piece.more && !this.is_whole && this.points.count > 0;
+    this.is_whole ||= completes;
+    this.is_urgent ||= completes;
+    this.draw_anew(is_first || completes);
   }
 
   clear(): void {
     this.points.clear();
+    this.is_whole = false;
     this.range_m = null;
     this.draw_anew();
   }
@@ -239,7 +246,10 @@ export class MapView {
     this.points.set_view(height * ratio, kFieldOfViewDeg);
     this.shading.resize(Math.floor(width * ratio), Math.floor(height * ratio));
     if (!this.touched) this.fit_places(this.fitted, false);
+    // Before this is painted: a canvas of another size is empty.
+    this.is_urgent = true;
     this.draw_anew();
+    this.frame();
   }
 
   /** Begins another picture of the points. @param is_shown at once: what is there is of another view */
@@ -252,17 +262,14 @@ export class MapView {
   }
 
   private draw_soon(): void {
-    if (this.waiting) return;
-    this.waiting = true;
-    requestAnimationFrame(() => this.frame());
+    this.waiting ||= requestAnimationFrame(() => this.frame());
   }
 
   private frame(): void {
-    if (this.budget.is_busy) {
-      requestAnimationFrame(() => this.frame());
-      return;
-    }
-    this.waiting = false;
+    cancelAnimationFrame(this.waiting);
+    this.waiting = 0;
+    if (this.budget.is_busy && !this.is_urgent) return this.draw_soon();
+    this.is_urgent = false;
     const began_ms = performance.now();
     const drawn = this.picture.share < 1 ? this.draw_points() : 0;
     this.robot.scale_to(this.camera);
