@@ -95,6 +95,7 @@ void FloorThread::begin_session(std::uint32_t session) {
                  error.what());
   }
   stage_.begin(session, path);
+  list_is_old_ = true;
   map_is_whole_ = asked_ = false;
   names_ns_ = 0;
   names_changed_ = {};
@@ -112,6 +113,7 @@ void FloorThread::follow_names(std::int64_t now_ns) {
   names_changed_ = known;
   try {
     stage_.set_names(files::FloorNames::read(folder_));
+    list_is_old_ = true;
     draft_.names_unreadable = false;
   } catch (const std::exception& why) {
     spdlog::warn("floors: {}; the names before it hold", why.what());
@@ -137,6 +139,7 @@ bool FloorThread::round_is_due(std::int64_t now_ns) const {
 void FloorThread::run_round(std::int64_t now_ns) {
   const CpuTimer timer;
   stage_.find();
+  list_is_old_ = true;
   cpu_ms_ = timer.elapsed_ms();
   offer_grid(stage_.current(), now_ns);
   draft_.round_ms = cpu_ms_;
@@ -179,13 +182,17 @@ void FloorThread::publish(const ipc::CurrentFloor& floor, std::int64_t now_ns) {
 }
 
 void FloorThread::publish_known(std::int64_t now_ns) {
-  if (now_ns - listed_ns_ < kSecondNs) return;
+  if (!list_is_old_ || now_ns - listed_ns_ < kSecondNs) return;
   const ipc::KnownFloors known = stage_.known();
-  if (known == listed_) return;
+  if (known == listed_) {
+    list_is_old_ = false;
+    return;
+  }
   ipc::KnownFloors* message = lists_.loan();
   if (message == nullptr) return;
   *message = known;
   lists_.publish(message);
+  list_is_old_ = false;
   listed_ = known;
   listed_ns_ = now_ns;
 }

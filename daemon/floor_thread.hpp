@@ -72,7 +72,8 @@ class FloorThread {
   std::int32_t grid_floor_ = 0;
   ipc::CurrentFloor published_;
   std::int64_t published_ns_ = 0;
-  ipc::KnownFloors listed_;  ///< as published
+  ipc::KnownFloors listed_;   ///< as published
+  bool list_is_old_ = false;  ///< floors or their names were found or read since
   std::int64_t listed_ns_ = 0;
   std::filesystem::path folder_;  ///< of the map
   std::int64_t names_ns_ = 0;     ///< when the names were looked at
