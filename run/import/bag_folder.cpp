@@ -38,6 +38,11 @@ std::string bare_name(const std::string& file_name) {
   return is_bag ? name.stem().string() : std::string();
 }
 
+/// What stands before the number at the end of a bare name: "bag_" of "bag_10".
+std::string before_number(const std::string& bare) {
+  return bare.substr(0, bare.find_last_not_of("0123456789") + 1);
+}
+
 /// "bag_10.db3" comes after "bag_9.db3".
 bool comes_before(const std::string& a, const std::string& b) {
   return a.size() != b.size() ? a.size() < b.size() : a < b;
@@ -62,10 +67,7 @@ std::vector<std::string> bag_files_in(const std::filesystem::path& folder) {
 
 /// Files that a folder without metadata holds are one bag where they count 0, 1, 2 …, or share their name before the number.
 bool are_parts(const std::vector<std::string>& names) {
-  const auto base = [](const std::string& name) {
-    const std::string bare = bare_name(name);
-    return bare.substr(0, bare.find_last_not_of("0123456789") + 1);
-  };
+  const auto base = [](const std::string& name) { return before_number(bare_name(name)); };
   bool counts = true;
   bool shares = true;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -122,10 +124,9 @@ BagMetadata find_bag(const std::filesystem::path& folder) {
 
 std::optional<std::int64_t> part_number(const std::string& file_name) {
   const std::string bare = bare_name(file_name);
-  const std::size_t at = bare.find_last_not_of("0123456789");
+  const std::string base = before_number(bare);
   std::int64_t number = 0;
-  if (at == std::string::npos || bare[at] != '_' || !text::parse_number(bare.substr(at + 1), number))
-    return std::nullopt;
+  if (!base.ends_with('_') || !text::parse_number(bare.substr(base.size()), number)) return std::nullopt;
   return number;
 }
 
@@ -134,8 +135,7 @@ std::optional<std::string> next_part(const std::filesystem::path& file) {
   const auto number = part_number(name);
   if (!number) return std::nullopt;
   const std::string bare = bare_name(name);
-  const std::string next = bare.substr(0, bare.find_last_not_of("0123456789") + 1) +
-                           std::to_string(*number + 1) + name.substr(bare.size());
+  const std::string next = before_number(bare) + std::to_string(*number + 1) + name.substr(bare.size());
   std::error_code error;
   return std::filesystem::exists(file.parent_path() / next, error) ? std::optional(next) : std::nullopt;
 }
