@@ -9,6 +9,7 @@
 #include "tests/run/import/message_builder.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/tools/import/imported.hpp"
 #include "tools/import/import_source.hpp"
 
 namespace isobar::test::test_import_bags {
@@ -73,36 +74,9 @@ std::vector<BagMessage> messages_of(const Robot& robot) {
 
 using namespace tools;
 
-struct Imported {
-  ImportReport report;
-  recording::Manifest manifest;
-  std::vector<recording::Event> events;
-  std::size_t clouds = 0;
-
-  [[nodiscard]] std::string notes() const {
-    std::string text;
-    for (const std::string& note : report.notes) text += note + "\n";
-    return text;
-  }
-  [[nodiscard]] std::vector<recording::Event> of(recording::EventKind kind) const {
-    std::vector<recording::Event> found;
-    for (const auto& event : events) {
-      if (event.kind == kind) found.push_back(event);
-    }
-    return found;
-  }
-};
-
 Imported import_of(const std::filesystem::path& source, ImportRequest request = {}) {
-  const TemporaryFolder folder;
   request.source = source;
-  request.out = folder.path() / "recording";
-  Imported imported{.report = import_source(request, [](double) {}), .manifest = {}, .events = {}};
-  recording::RecordingReader reader(request.out);
-  imported.manifest = reader.manifest();
-  recording::Event event;
-  while (reader.next(event)) imported.events.push_back(event);
-  return imported;
+  return import_and_read(request);
 }
 
 Imported import_robot(const Robot& robot, const ImportRequest& request = {}) {
