@@ -47,26 +47,18 @@ function curves(data: ReportData, target: HTMLElement): void {
     figure('Height along the way', heights.root, data.altimeter ? 'Dashed: the reference; dotted: the altimeter.' : 'Dashed: the reference.'));
 }
 
-/** Text and curves have been painted and read by then [ms]. */
-const kLaterMs = 1000;
+/** Text and curves have been painted by then [ms]. */
+const kLaterMs = 300;
 
-/** Calls back once: when a part comes near the window or is to be printed, or later in any case. */
-function when_near(part: HTMLElement, callback: () => void): void {
-  let is_done = false;
+/** Calls back once: later, or before the page is printed. */
+function later(callback: () => void): void {
   const once = () => {
-    if (is_done) return;
-    is_done = true;
-    watcher.disconnect();
+    clearTimeout(timer);
     removeEventListener('beforeprint', once);
     callback();
   };
-  // After the next frame: text and curves are painted first.
-  const watcher = new IntersectionObserver((entries) => {
-    if (entries.some((entry) => entry.isIntersecting)) requestAnimationFrame(() => setTimeout(once, 0));
-  }, { rootMargin: '600px' });
-  watcher.observe(part);
+  const timer = setTimeout(once, kLaterMs);
   addEventListener('beforeprint', once);
-  setTimeout(once, kLaterMs);
 }
 
 /** The place of the map; what fills it, and takes a second on a weak machine, begins after text and curves. */
@@ -83,7 +75,7 @@ function map_of(data: ReportData, target: HTMLElement): void {
   const box = element('div', 'map-box', group, place, slicer.root);
   target.append(figure('The map', box,
     'Coloured by height. Drag to turn, wheel or pinch to zoom, right button or two fingers to move; buttons show one floor. Thick line: the estimate; thin line: the reference.'));
-  when_near(box, () => {
+  later(() => {
     let view: MapView;
     try {
       view = new MapView();
