@@ -3,14 +3,13 @@
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import type { Box, BoxChartData } from './chart_data';
-import { colour_of, kAxisFont, number_text, Readout, scaled, themed_axis } from './chart_style';
+import { colour_of, kAxisFont, kNarrowPx, number_text, Readout, scaled, themed_axis } from './chart_style';
 import { element, on_theme_change, style_value } from './dom';
 
 const kRowPx = 46;
 const kBoxPx = 22;
 const kCapPx = 7;
 const kNamePx = 8;  // a box below its name stands so much lower
-const kNarrowPx = 560;
 const kLogarithmic = 3;  // uPlot's scale distribution
 
 export class BoxChart {
@@ -38,7 +37,7 @@ export class BoxChart {
     const is_narrow = width < kNarrowPx;
     const names = rows.map((row) => row.name);
     const medians = rows.map((row) => this.value_text(row.median));
-    const plain: uPlot.Axis = { ...themed_axis(''), label: undefined, labelSize: 0, stroke: () => style_value('--ink'), grid: { show: false }, splits: () => rows.map((_, i) => -i) };
+    const plain: uPlot.Axis = { ...themed_axis(), stroke: () => style_value('--ink'), grid: { show: false }, splits: () => rows.map((_, i) => -i) };
     return {
       width, height: rows.length * kRowPx + 52,
       padding: [6, 6, 0, 0],

@@ -3,6 +3,7 @@
 // with the other views. What is drawn is the caller's.
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
+import { kNarrowPx, themed_axis } from './chart_style';
 import { element, on_theme_change, style_value } from './dom';
 import { span } from './format';
 
@@ -28,9 +29,6 @@ export interface ChartOptions {
   /** Charts of one name share cursor and zoom. */
   sync?: string;
 }
-
-const kNarrowPx = 560;
-const kAxisFont = '11px system-ui, sans-serif';
 
 export class Chart {
   readonly root = element('div', 'chart');
@@ -91,7 +89,6 @@ export class Chart {
 
   private plot_options({ width, height }: { width: number; height: number }): uPlot.Options {
     const { series, bands, y_label } = this.options;
-    const axis = { stroke: () => style_value('--muted'), font: kAxisFont, ticks: { show: false }, grid: { stroke: () => style_value('--line'), width: 1 } };
     return {
       width, height,
       scales: { x: { time: false }, y: { range: (_, low, high) => this.padded(low, high) } },
@@ -102,8 +99,8 @@ export class Chart {
       },
       legend: { live: true },
       axes: [
-        { ...axis, values: (_, ticks) => ticks.map((tick) => span(tick, ticks.length > 1 && ticks[1] - ticks[0] < 1 ? 1 : 0)), size: 26 },
-        { ...axis, label: y_label, labelFont: kAxisFont, labelSize: 16, labelGap: 0, size: 56 },
+        { ...themed_axis(), values: (_, ticks) => ticks.map((tick) => span(tick, ticks.length > 1 && ticks[1] - ticks[0] < 1 ? 1 : 0)), size: 26 },
+        { ...themed_axis(y_label), labelSize: 16, size: 56 },
       ],
       series: [
         { label: 'time', value: (_, t_s) => (t_s === null || t_s === undefined ? '–' : span(t_s, 1)) },

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the charts of a report have in common.
+// What all charts have in common.
 import type uPlot from 'uplot';
 import { element, style_value } from './dom';
 
 export const kAxisFont = '11px system-ui, sans-serif';
+/** Charts below this width give their text less room. */
+export const kNarrowPx = 560;
 
 /** The value of a colour that may be the name of a custom property, for a canvas. */
 export function colour_of(name: string): string {
@@ -21,11 +23,11 @@ export function number_text(value: number, decimals: number): string {
 }
 
 /** An axis whose text and grid follow the theme. */
-export function themed_axis(label: string): uPlot.Axis {
+export function themed_axis(label?: string): uPlot.Axis {
   return {
     stroke: () => style_value('--muted'), font: kAxisFont, ticks: { show: false },
     grid: { stroke: () => style_value('--line'), width: 1 },
-    label, labelFont: kAxisFont, labelSize: 18, labelGap: 0,
+    ...(label === undefined ? {} : { label, labelFont: kAxisFont, labelSize: 18, labelGap: 0 }),
   };
 }
 
